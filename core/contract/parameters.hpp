@@ -1,0 +1,64 @@
+#pragma once
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace ricochet {
+
+/// A parameter value: real, integer, boolean or one of a list of words.
+using ParameterValue = std::variant<double, long long, bool, std::string>;
+
+/// An interval of admissible reals; each end is open or closed.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+  bool contains(double value) const;
+  /// Mathematical notation: "[0, 1]", "]0, ∞[".
+  std::string text() const;
+};
+
+/// One parameter of a plugin, declared once; checking, `describe` and the JSON Schema all read this.
+struct ParameterSpec {
+  enum class Type { real, integer, boolean, word };
+  std::string key;
+  Type type = Type::real;
+  std::string unit;                          ///< SI, "1" when dimensionless
+  std::optional<ParameterValue> fallback;    ///< default; absent means the study must give it
+  Range range;                               ///< for real and integer
+  std::vector<std::string> words;            ///< for word
+  std::string text;                          ///< one sentence of manual, with the symbol of the equation
+  bool per_lane = false;                     ///< may differ between lanes that share one factorisation
+};
+
+ParameterSpec real_parameter(std::string key, std::string unit, std::optional<double> fallback, Range range,
+                             std::string text);
+ParameterSpec integer_parameter(std::string key, std::optional<long long> fallback, Range range, std::string text);
+ParameterSpec word_parameter(std::string key, std::vector<std::string> words, std::optional<std::string> fallback,
+                             std::string text);
+
+/// Checked values of one plugin's parameters, complete (defaults filled in).
+class Parameters {
+ public:
+  Parameters() = default;
+  explicit Parameters(std::map<std::string, ParameterValue> values) : values_(std::move(values)) {}
+  double real(const std::string& key) const;
+  long long integer(const std::string& key) const;
+  bool flag(const std::string& key) const;
+  const std::string& word(const std::string& key) const;
+  void set(const std::string& key, ParameterValue value) { values_[key] = std::move(value); }
+  const std::map<std::string, ParameterValue>& values() const { return values_; }
+
+ private:
+  std::map<std::string, ParameterValue> values_;
+};
+
+/// Checks one value against its declaration; returns the sentence that says what was expected, or nothing when it fits.
+/// An integer is accepted where a real is expected; nothing is ever clamped.
+std::optional<std::string> check_parameter(const ParameterSpec& spec, const ParameterValue& value);
+
+}  // namespace ricochet

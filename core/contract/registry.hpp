@@ -1,0 +1,60 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/contract/parameters.hpp>
+#include <ricochet/contract/time_scheme.hpp>
+
+namespace ricochet {
+
+enum class Role { mass, contact, time };
+const char* role_name(Role role);
+
+/// The manual of a plugin, registered together with its factory so that it cannot drift.
+struct PluginManual {
+  std::string name;                        ///< [a-z0-9-]+
+  std::string summary;                     ///< one line
+  std::string text;                        ///< one paragraph
+  std::string source;                      ///< author, year, equation
+  std::vector<ParameterSpec> parameters;
+};
+
+/// One registered method.
+template <class Interface>
+struct Entry {
+  PluginManual manual;
+  std::function<std::unique_ptr<Interface>(const Parameters&)> make;
+  std::string file;                        ///< library it came from
+};
+
+/// All methods known to this process, by role and name. Core registers none itself.
+class Registry {
+ public:
+  void add_mass(PluginManual manual, std::function<std::unique_ptr<MassStrategy>(const Parameters&)> make);
+  void add_contact(PluginManual manual, std::function<std::unique_ptr<ContactLaw>(const Parameters&)> make);
+  void add_time(PluginManual manual, std::function<std::unique_ptr<TimeScheme>(const Parameters&)> make);
+
+  const Entry<MassStrategy>* mass(const std::string& name) const;
+  const Entry<ContactLaw>* contact(const std::string& name) const;
+  const Entry<TimeScheme>* time(const std::string& name) const;
+  const PluginManual* manual(Role role, const std::string& name) const;
+  /// File of a method's library, "" when registered in-process.
+  std::string file(Role role, const std::string& name) const;
+  std::vector<std::string> names(Role role) const;
+  /// The library that registers from now on, recorded with each entry.
+  void set_current_file(std::string file) { current_file_ = std::move(file); }
+
+ private:
+  void check(Role role, const PluginManual& manual) const;
+  std::map<std::string, Entry<MassStrategy>> mass_;
+  std::map<std::string, Entry<ContactLaw>> contact_;
+  std::map<std::string, Entry<TimeScheme>> time_;
+  std::string current_file_;
+};
+
+}  // namespace ricochet

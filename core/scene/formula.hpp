@@ -1,0 +1,39 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+
+namespace ricochet {
+
+/// A number or a formula in x (m) and t (s), as a study writes it: "0.04*x^2", "sin(pi*x)*cos(10*t)", pi and e defined.
+/// Throws InputError (with the pointer given) when the text does not parse, names an unknown variable, or a value is not finite.
+class Formula {
+ public:
+  Formula();  ///< the constant 0
+  explicit Formula(double constant);
+  /// `variables` is the subset of "xt" that may appear.
+  Formula(const std::string& text, const std::string& pointer, const std::string& variables = "xt");
+  Formula(const Formula&);
+  Formula(Formula&&) noexcept;
+  Formula& operator=(const Formula&);
+  Formula& operator=(Formula&&) noexcept;
+  ~Formula();
+
+  double operator()(double x, double t = 0) const;
+  /// values[i] = f(x[i], t); one call, no allocation. A non-finite value is left in `values` for the caller to judge.
+  void evaluate(std::span<const double> x, double t, std::span<double> values) const;
+  /// df/dx by a seven-point stencil that stays inside [low, high]: exact to round-off for polynomials of degree ≤ 6.
+  double slope(double x, double low, double high, double t = 0) const;
+
+  bool uses_x() const;
+  bool uses_t() const;
+  /// A constant that equals zero: what it feeds is left out.
+  bool is_zero() const;
+  const std::string& text() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ricochet

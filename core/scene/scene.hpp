@@ -1,0 +1,74 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <ricochet/scene/formula.hpp>
+
+/// \file
+/// What is simulated, as the study says it, in SI units. Nothing numerical is chosen here.
+namespace ricochet {
+
+/// A cross-section, reduced to what Euler–Bernoulli needs: EI (N m²) and ρS (kg/m). See section_properties().
+struct Section {
+  enum class Type { tube, circle, rectangle, given };
+  Type type = Type::tube;
+  double outer_diameter = 0, wall = 0;   ///< tube
+  double diameter = 0;                   ///< circle
+  double width = 0, height = 0;          ///< rectangle, bending across height
+  double EI = 0, rhoS = 0;               ///< given
+};
+
+struct SectionProperties {
+  double EI = 0;    ///< N m²
+  double rhoS = 0;  ///< kg/m
+};
+/// tube: I = π(D⁴ − d⁴)/64, S = π(D² − d²)/4, d = D − 2·wall; circle: I = πD⁴/64; rectangle: I = b h³/12.
+SectionProperties section_properties(const Section& section, double young, double density);
+
+/// C = α K + η M.
+struct Damping {
+  double stiffness = 0;  ///< α, s
+  double mass = 0;       ///< η, 1/s
+};
+
+struct BeamSpec {
+  double length = 1;
+  double young = 0, density = 0;
+  Section section;
+  Damping damping;
+};
+using StructureSpec = std::variant<BeamSpec>;
+
+/// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop.
+struct StopsSpec {
+  enum class Place { nodes, tip, positions };
+  std::optional<Formula> lower, upper;
+  Place place = Place::nodes;
+  std::vector<double> positions;  ///< m, for Place::positions, anywhere in ]0, L]
+};
+
+/// φ(t) = A0 sin(ωt + ψ).
+struct SupportSpec {
+  double amplitude = 0;   ///< m
+  double pulsation = 0;   ///< rad/s
+  double phase = 0;       ///< rad
+};
+
+/// Absolute u(x,0) and u_t(x,0).
+struct InitialSpec {
+  enum class Projection { none, constraint };
+  Formula displacement, velocity;
+  Projection projection = Projection::none;
+};
+
+struct SceneSpec {
+  StructureSpec structure;
+  StopsSpec stops;
+  SupportSpec support;
+  Formula load;      ///< f(x,t), N/m
+  InitialSpec initial;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/scene/scene.hpp>
+
+namespace ricochet {
+
+/// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element.
+class DistributedLoad {
+ public:
+  DistributedLoad(const Formula& load, const FiniteElementSpace& space);
+  bool absent() const { return load_.is_zero(); }
+  bool constant_in_time() const { return !load_.uses_t(); }
+  /// F(t) into `out` (n); no allocation. Values that are not finite are passed on, and stop the lane as diverged.
+  void assemble(double t, double* out) const;
+
+ private:
+  Formula load_;
+  std::vector<double> points_;                   ///< 4 per element
+  mutable std::vector<double> values_;
+  std::vector<std::array<int, 4>> dofs_;
+  std::vector<std::array<double, 16>> weights_;  ///< per element: weight·φ_a at each Gauss point
+  int size_ = 0;
+};
+
+/// The semi-discrete problem for w = u − φ:
+///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
+/// with s_i = ∫ρS φ_i (whatever the mass strategy).
+struct SemiDiscrete {
+  FiniteElementSpace space;
+  Inertia inertia;
+  SparseMatrix stiffness;            ///< K, both triangles, n × n
+  Damping damping;                   ///< α, η
+  SupportSpec support;
+  Eigen::VectorXd support_shape;     ///< s (kg)
+  std::shared_ptr<const DistributedLoad> load;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> contact;  ///< H, m × n
+  std::vector<double> contact_x;     ///< position of each contact point, m
+  Eigen::VectorXd lower, upper;      ///< g1, g2 at the contact points; ±∞ where absent
+  Eigen::SparseMatrix<double, Eigen::RowMajor> tip;      ///< 1 × n: the displacement shown to people
+  Eigen::VectorXd position, velocity;  ///< q₀, v₀ of w
+  double projection_energy = 0;      ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
+  std::vector<std::string> notes;    ///< what was done that a reader should know
+  int dofs() const { return static_cast<int>(position.size()); }
+  int points() const { return static_cast<int>(contact.rows()); }
+  bool damped() const { return damping.stiffness != 0 || damping.mass != 0; }
+};
+
+using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
+
+/// The displacement space of the structure on a uniform mesh of `elements` elements.
+FiniteElementSpace make_space(const StructureSpec& structure, int elements);
+
+/// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower", …)
+/// for stops that cross (lower ≥ upper somewhere), a clamp that the support pushes through a stop, an initial state outside
+/// the stops, formulas that give no finite value. A strategy that does not apply is a Refusal.
+SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass);
+
+/// The checks of discretise() that need no mass and no mesh, for a study to run before any case (mesh: finest of the study).
+void check_scene(const SceneSpec& scene, int elements);
+
+/// Orthonormal-in-nothing basis Z (n × N) of Ker M (only for kernel_dimension > 0).
+Eigen::MatrixXd mass_kernel(const Inertia& inertia);
+
+/// M x, through the factors where M is not formed. For set-up, not for the marching loop.
+Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x);
+
+}  // namespace ricochet

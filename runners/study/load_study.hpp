@@ -1,0 +1,22 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include <ricochet/contract/catalogue.hpp>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// Reads, checks and expands a study; opens only the plugins that it names. Nothing runs.
+/// Throws InputError (pointer "" for the whole file) for everything a user can get wrong, PluginError for a plugin that is there but does
+/// not serve.
+Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry);
+
+/// The same from text already read (`file` only for messages).
+Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry);
+
+/// The error as a person reads it: "FILE:LINE: at /json/pointer: what is wrong; what was expected".
+std::string explain(const InputError& error, const std::filesystem::path& file);
+
+}  // namespace ricochet
