@@ -1,0 +1,39 @@
+#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// Rigid stops by Lagrange multipliers: lower ≤ y ⊥ p ≤ upper with y = y° + reach·W p, the scheme's impact measure.
+class Signorini final : public ContactLaw {
+ public:
+  void prepare(int points, std::span<const Parameters>) override { solver_.prepare(points); }
+
+  void solve(ReducedProblem& problem) override {
+    for (const int lane : problem.touched)
+      problem.outcome[lane] =
+          solver_.solve(*problem.delassus, problem.reach, 0.0, problem.free + lane, problem.lower + lane,
+                        problem.upper + lane, problem.effort + lane, problem.points, problem.lanes);
+  }
+
+ private:
+  BoxSolver solver_;
+};
+
+void register_all(Registry& registry) {
+  registry.add_contact(
+      {.name = "signorini",
+       .summary = "rigid stops, Lagrange multipliers (Signorini conditions on both sides)",
+       .text = "Finds the contact efforts p such that the scheme's impact measure stays between the stops and p acts "
+               "only where it touches one: lower ≤ y ⊥ p ≤ upper. What y is (a position, an average of positions, a "
+               "velocity) and what restitution is folded into it is the time scheme's choice.",
+       .source = "Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller, "
+                 "Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback",
+       .parameters = {}},
+      [](const Parameters&) { return std::make_unique<Signorini>(); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(contact, signorini, register_all)

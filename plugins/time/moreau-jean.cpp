@@ -1,0 +1,66 @@
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// Moreau–Jean θ-scheme, impacts at velocity level. With z = v_{n+1} − v_n and p = impulse/h:
+///
+///     (M/h + θC + hθ²K) z = (1−θ)F(t) + θF(t+h) − C v − K(q + θh v) + Hᵀp
+///     v ← v + z,   q ← q + h v + hθ z,   y = H v_{n+1} on the sides that the gap test finds closed
+///
+/// Gap test at q + (h/2)v. On a closed side that is approached, v⁺ rebounds with −e v⁻ (relative to the stop); else it only may not enter.
+/// Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
+class MoreauJean final : public TimeScheme {
+ public:
+  MoreauJean(double theta, double restitution) : theta_(theta), e_(restitution) {}
+
+  PlanOrRefusal plan(double h, const ProblemFacts&) const override {
+    StepPlan plan;
+    plan.slots = {"q", "v"};
+    plan.initial = {{1, 0}, {0, 1}};
+    plan.velocity = {.slots = {0, 1}};
+    Stage stage;
+    const Levels load{{0, 1 - theta_}, {1, theta_}};
+    stage.matrix = {1 / h, theta_, h * theta_ * theta_};
+    stage.history = {{0, 0, -1}, {0, -1, -theta_ * h}};
+    stage.load = load;
+    stage.impact = {{.slots = {0, 1}, .z = 1},
+                    {{1, 1}},
+                    VelocityGate{{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, e_}};
+    const Combination end{.slots = {1, h}, .z = h * theta_};
+    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {1}};
+    stage.at(Evaluation::averaged) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {theta_, 1 - theta_}};
+    stage.at(Evaluation::explicit_start) = {{.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.update = {end, {.slots = {0, 1}, .z = 1}};
+    stage.increment = {.slots = {0, h}, .z = h * theta_};
+    stage.work = {{.slots = {0, h}, .z = h / 2}, {.slots = {0, 1}, .z = theta_}, load, {1}};
+    plan.stages = {stage};
+    plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};
+    plan.facts.order = theta_ == 0.5 ? 2 : 1;
+    plan.facts.restitution = Restitution::exact;
+    plan.facts.contact_never_gains = e_ == 0;
+    return plan;
+  }
+
+ private:
+  double theta_, e_;
+};
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "moreau-jean",
+       .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
+       .text = "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
+               "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
+               "approaches its stop; a closed point that does not approach is only kept from entering. Positions may pass "
+               "the stop by O(h).",
+       .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and Brogliato (2008), ch. 10",
+       .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
+                      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient")}},
+      [](const Parameters& p) { return std::make_unique<MoreauJean>(p.real("theta"), p.real("restitution")); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, moreau_jean, register_all)
