@@ -1,0 +1,19 @@
+#pragma once
+#include <atomic>
+
+namespace ricochet {
+
+/// While it lives, SIGINT and SIGTERM set `requested()` instead of ending the program; a second one ends it at once
+/// with code 130. SIGXFSZ is ignored, so that a file size limit is an error of the write that meets it. The former
+/// handlers come back at the end. One at a time per process.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+  /// Also set by the program itself when going on makes no sense.
+  std::atomic<bool>& requested() const;
+};
+
+}  // namespace ricochet

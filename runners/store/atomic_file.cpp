@@ -1,0 +1,77 @@
+#include "runners/store/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <vector>
+
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* kMark = ".part-";
+
+[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+  if (error == ENOSPC || error == EDQUOT)
+    throw StoreError(
+        fmt::format("{}: the disk is full; free some space and run the same command again: the cases that "
+                    "finished are kept",
+                    file.string()));
+  throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
+}
+
+/// Returns 0, or the errno of what went wrong.
+int write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& file, std::string_view content) {
+  const std::string temporary = file.string() + kMark + std::to_string(::getpid());
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(file, errno);
+  int error = write_all(descriptor, content);
+  // No fsync: these files are derived from the store and rebuilt from it.
+  if (::close(descriptor) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(temporary.c_str());
+  fail(file, error);
+}
+
+void remove_leftovers(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> leftovers;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t mark = name.rfind(kMark);
+    if (mark == std::string::npos || mark == 0) continue;
+    const std::string process = name.substr(mark + std::strlen(kMark));
+    if (!process.empty() && process.find_first_not_of("0123456789") == std::string::npos)
+      leftovers.push_back(entry.path());
+  }
+  for (const auto& leftover : leftovers) std::filesystem::remove(leftover, ignored);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && !std::filesystem::is_directory(folder, error) && !error)
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (error) throw StoreError(fmt::format("{}: the folder cannot be created: {}", folder.string(), error.message()));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,18 @@
+#pragma once
+#include <filesystem>
+#include <string_view>
+
+namespace ricochet {
+
+/// Writes `content` to a temporary file of the same folder, then renames it to `file`: readers see the old file or the
+/// new one, never a part. Throws StoreError (path and cause) when the folder does not exist, is not writable or the
+/// disk is full; the temporary file is removed and an older `file` is left as it was.
+void write_file(const std::filesystem::path& file, std::string_view content);
+
+/// Removes the temporary files that a killed process left in `folder`. Only while the folder's lock is held.
+void remove_leftovers(const std::filesystem::path& folder);
+
+/// Creates the folder and its parents. Throws StoreError (path and cause).
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#include "runners/store/fingerprint.hpp"
+
+#include <fmt/format.h>
+#include <link.h>
+
+#include <boost/uuid/name_generator_sha1.hpp>
+#include <boost/uuid/nil_generator.hpp>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <variant>
+
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+Json method_json(const MethodChoice& method) {
+  Json parameters = Json::object();
+  for (const auto& [key, value] : method.parameters.values())
+    std::visit([&, name = key](const auto& v) { parameters[name] = v; }, value);
+  return {{"name", method.name}, {"parameters", std::move(parameters)}};
+}
+
+/// The core library as the loader mapped it; the program itself where the core is linked into it.
+std::filesystem::path core_file() {
+  std::filesystem::path found = "/proc/self/exe";
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* data) {
+        const std::filesystem::path file = info->dlpi_name;
+        if (!file.filename().string().starts_with("libricochet-core")) return 0;
+        *static_cast<std::filesystem::path*>(data) = file;
+        return 1;
+      },
+      &found);
+  return found;
+}
+
+}  // namespace
+
+std::string content_hash(std::string_view content) {
+  const boost::uuids::name_generator_sha1 generator(boost::uuids::nil_uuid());
+  std::string text;
+  for (const auto byte : generator(content.data(), content.size())) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::string file_hash(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw StoreError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw StoreError(fmt::format("{}: read error", file.string()));
+  return content_hash(content);
+}
+
+const std::string& program_hash() {
+  static const std::string hash = content_hash(file_hash("/proc/self/exe") + file_hash(core_file()));
+  return hash;
+}
+
+std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std::filesystem::path>& libraries) {
+  Json content = {{"id", study_case.id},
+                  {"kind", kind_},
+                  {"program", program_},
+                  {"scene", study_case.scene_json},
+                  {"mass", method_json(study_case.mass)},
+                  {"contact", method_json(study_case.contact)},
+                  {"time", method_json(study_case.time)},
+                  {"elements", study_case.elements},
+                  {"step", study_case.step},
+                  {"duration", study_case.duration},
+                  {"samples", study_case.samples}};
+  for (const auto& [name, value] : study_case.axes) content["axes"].push_back({name, value});
+  if (study_case.excluded) content["excluded"] = *study_case.excluded;
+  for (const auto& library : libraries) {
+    if (library.empty()) continue;
+    auto known = files_.find(library);
+    if (known == files_.end()) known = files_.emplace(library, file_hash(library)).first;
+    content["libraries"].push_back(known->second);
+  }
+  return content_hash(content.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace ricochet

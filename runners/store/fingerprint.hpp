@@ -1,0 +1,38 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// 32 hexadecimal digits of the SHA-1 of `content` (as a version 5 UUID: 122 bits of it). Tells contents apart; no
+/// security is claimed.
+std::string content_hash(std::string_view content);
+
+/// content_hash() of a file's bytes. Throws StoreError (path and cause) when it cannot be read.
+std::string file_hash(const std::filesystem::path& file);
+
+/// Hash of the running program: the executable and the core library it uses. Computed once per process.
+const std::string& program_hash();
+
+/// Decides whether a stored case is still the case of the study.
+///
+///     fingerprint = hash(case id, kind, resolved content of the case, bytes of each plugin library it uses, program)
+///
+/// Any change of these makes the case run again; nothing else does.
+class Fingerprints {
+ public:
+  Fingerprints(std::string kind, std::string program) : kind_(std::move(kind)), program_(std::move(program)) {}
+  /// `libraries`: files of the case's mass, contact and time plugins; "" for a method of the program itself.
+  std::string of(const StudyCase& study_case, const std::vector<std::filesystem::path>& libraries);
+
+ private:
+  std::string kind_, program_;
+  std::map<std::filesystem::path, std::string> files_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,39 @@
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+const std::vector<MeasureInfo>& trajectory_measures() {
+  static const std::vector<MeasureInfo> measures = {
+      {"scheme_energy_start", "J", "The scheme's own discrete energy after its start rule, where it declares one."},
+      {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step."},
+      {"energy_start", "J",
+       "The common mechanical energy ½vᵀMv + ½ūᵀKū plus the contact potential, at the first mid-step."},
+      {"energy_end", "J", "The common mechanical energy at the last mid-step."},
+      {"energy_ratio", "1", "Common energy at the end divided by that at the start."},
+      {"largest_step_gain", "J",
+       "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
+       "work of the loads."},
+      {"drift_per_impact", "J",
+       "Change of energy that damping and loads do not explain, divided by the number of impacts."},
+      {"work_of_damping", "J", "Work of the viscous forces over the run; negative when they take energy out."},
+      {"work_of_loads", "J", "Work of the distributed load and of the moving support over the run."},
+      {"dissipated_at_contact", "J", "Energy taken out by the contact efforts over the run."},
+      {"balance_residual", "J", "Change of energy minus the works above: what the balance fails to close by."},
+      {"projection_energy", "J",
+       "Energy after minus before the projection of the initial state on the constraint of a singular mass."},
+      {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
+      {"impacts", "1", "Number of times a contact point closed."},
+      {"active_set_changes", "1", "Number of steps at which the set of closed contact points changed."},
+      {"impulse", "N s", "Time integral of the contact efforts' magnitude, summed over the contact points."},
+      {"complementarity_residual", "m or m/s",
+       "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
+       "velocity)."},
+      {"first_impact", "s", "Time at which a contact point first closed."},
+      {"first_release", "s", "Time at which a contact point first opened again."},
+      {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run."},
+      {"microseconds_per_step", "µs", "Wall-clock time of the marching divided by the number of steps."},
+  };
+  return measures;
+}
+
+}  // namespace ricochet

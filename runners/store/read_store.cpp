@@ -1,0 +1,121 @@
+#include "runners/store/read_store.hpp"
+
+#include <SQLiteCpp/Column.h>
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <map>
+
+#include "runners/store/schema.hpp"
+#include "runners/store/store.hpp"
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<double> series(const SQLite::Column& column) {
+  std::vector<double> values(static_cast<std::size_t>(column.getBytes()) / sizeof(double));
+  if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(double));
+  return values;
+}
+
+/// Calls `row(record, statement)` for each row of `query`, whose first column is the case.
+template <class Row>
+void per_case(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, const char* query, Row row) {
+  SQLite::Statement statement(database, query);
+  while (statement.executeStep()) {
+    const auto found = cases.find(statement.getColumn(0).getString());
+    if (found != cases.end()) row(*found->second, statement);
+  }
+}
+
+void read_study(SQLite::Database& database, StudyResults& results) {
+  SQLite::Statement statement(database, "SELECT key, value FROM study");
+  while (statement.executeStep()) {
+    const std::string key = statement.getColumn(0).getString();
+    const Json value = Json::parse(statement.getColumn(1).getString());
+    if (key == "name") results.name = value.get<std::string>();
+    if (key == "question") results.question = value.get<std::string>();
+    if (key == "kind") results.kind = value.get<std::string>();
+    if (key == "resolved") results.study = value;
+    if (key == "columns") results.columns = value.get<std::vector<std::string>>();
+    if (key == "expected_cases") results.expected_cases = value.get<int>();
+  }
+}
+
+void read_cases(SQLite::Database& database, StudyResults& results) {
+  SQLite::Statement statement(database,
+                              "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator FROM cases "
+                              "ORDER BY position");
+  while (statement.executeStep()) {
+    CaseRecord& record = results.cases.emplace_back();
+    record.id = statement.getColumn(0).getString();
+    record.status = statement.getColumn(1).getString();
+    record.reason = statement.getColumn(2).getString();
+    record.steps = statement.getColumn(3).getInt64();
+    record.setup_seconds = statement.getColumn(4).getDouble();
+    record.run_seconds = statement.getColumn(5).getDouble();
+    record.operator_name = statement.getColumn(6).getString();
+  }
+}
+
+}  // namespace
+
+StudyResults read_tables(SQLite::Database& database) {
+  StudyResults results;
+  SQLite::Transaction transaction(database);
+  read_study(database, results);
+  read_cases(database, results);
+  std::map<std::string, CaseRecord*> cases;
+  for (CaseRecord& record : results.cases) cases[record.id] = &record;
+
+  using Statement = SQLite::Statement;
+  per_case(database, cases, "SELECT case_id, name, value FROM axes ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) {
+             record.axes.emplace_back(row.getColumn(1).getString(), Json::parse(row.getColumn(2).getString()));
+           });
+  per_case(database, cases, "SELECT case_id, name, value FROM measures ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) {
+             record.measures.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getDouble());
+           });
+  per_case(database, cases, "SELECT case_id, item, reason FROM left_out ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) {
+             record.left_out.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getString());
+           });
+  per_case(database, cases, "SELECT case_id, note FROM notes ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
+  per_case(database, cases, "SELECT case_id, name, series FROM curves ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) {
+             record.curve.names.push_back(row.getColumn(1).getString());
+             record.curve.columns.push_back(series(row.getColumn(2)));
+           });
+
+  SQLite::Statement environment(database, "SELECT name, value FROM environment ORDER BY position");
+  while (environment.executeStep())
+    results.environment.entries.emplace_back(environment.getColumn(0).getString(),
+                                             environment.getColumn(1).getString());
+  return results;
+}
+
+StudyResults read_store(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "results.sqlite";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw StoreError(fmt::format("{}: there is no results.sqlite here{}; expected the folder of a study that was run",
+                                 folder.string(), error ? " (" + error.message() + ")" : ""));
+  StudyResults results;
+  guarded(file, nullptr, [&] {
+    // Opened for writing where possible: a store left by a killed process is rolled back by its first reader.
+    constexpr int wait_ms = 10000;
+    SQLite::Database database(file, SQLite::OPEN_READWRITE, wait_ms);
+    prepare_schema(database, file, false);
+    guarded(file, &database, [&] { results = read_tables(database); });
+  });
+  return results;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,11 @@
+#pragma once
+#include <SQLiteCpp/Database.h>
+
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// Reads every table in one read transaction: the state after some whole number of finished cases.
+StudyResults read_tables(SQLite::Database& database);
+
+}  // namespace ricochet

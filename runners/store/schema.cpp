@@ -1,0 +1,139 @@
+#include "runners/store/schema.hpp"
+
+#include <SQLiteCpp/Exception.h>
+#include <SQLiteCpp/Transaction.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+// series: IEEE-754 doubles, little-endian, one after the other. axes.value and study.value: JSON text.
+constexpr const char* kTables = R"sql(
+CREATE TABLE study(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE environment(position INTEGER PRIMARY KEY, name TEXT NOT NULL, value TEXT NOT NULL);
+CREATE TABLE cases(
+  id TEXT PRIMARY KEY, position INTEGER NOT NULL, fingerprint TEXT NOT NULL,
+  status TEXT NOT NULL CHECK(status IN ('done', 'refused', 'diverged', 'failed')), reason TEXT NOT NULL,
+  steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
+CREATE TABLE axes(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  name TEXT NOT NULL, value TEXT NOT NULL, PRIMARY KEY(case_id, position));
+CREATE TABLE measures(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  name TEXT NOT NULL, value REAL NOT NULL, PRIMARY KEY(case_id, position));
+CREATE TABLE left_out(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  item TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY(case_id, position));
+CREATE TABLE notes(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  note TEXT NOT NULL, PRIMARY KEY(case_id, position));
+CREATE TABLE curves(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  name TEXT NOT NULL, series BLOB NOT NULL, PRIMARY KEY(case_id, position));
+)sql";
+
+[[noreturn]] void not_ours(const std::filesystem::path& file) {
+  throw StoreError(fmt::format(
+      "{}: this file is not a Ricochet store; move it away or choose another folder with --out", file.string()));
+}
+
+std::string sentence(const SQLite::Exception& error, const SQLite::Database* database) {
+  const int system_error = database != nullptr ? sqlite3_system_errno(database->getHandle()) : errno;
+  const std::string cause = system_error != 0 ? std::strerror(system_error) : error.getErrorStr();
+  switch (error.getErrorCode() & 0xff) {
+    case SQLITE_FULL:
+      return "the disk is full; free some space and run the same command again: the cases that finished are kept";
+    case SQLITE_IOERR:
+      return fmt::format(
+          "read or write error ({}); the cases that finished are kept: run the same command again once "
+          "that is solved",
+          cause);
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+      return fmt::format("cannot be opened for writing ({})", cause);
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "another program is using this file; close it and run the same command again";
+    case SQLITE_NOTADB:
+      return "this file is not a Ricochet store; move it away or choose another folder with --out";
+    case SQLITE_CORRUPT:
+      return "this store is damaged; move it away, or forget it with --fresh";
+    default:
+      return fmt::format("the store reports: {}", error.what());
+  }
+}
+
+std::uint32_t big_endian(const std::array<unsigned char, 100>& header, std::size_t at) {
+  return std::uint32_t{header[at]} << 24U | std::uint32_t{header[at + 1]} << 16U | std::uint32_t{header[at + 2]} << 8U |
+         std::uint32_t{header[at + 3]};
+}
+
+}  // namespace
+
+void guarded(const std::filesystem::path& file, const SQLite::Database* database, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const SQLite::Exception& error) {
+    throw StoreError(fmt::format("{}: {}", file.string(), sentence(error, database)));
+  } catch (const nlohmann::json::exception& error) {
+    throw StoreError(
+        fmt::format("{}: this store is damaged ({}); forget it with --fresh", file.string(), error.what()));
+  }
+}
+
+void prepare_schema(SQLite::Database& database, const std::filesystem::path& file, bool create) {
+  guarded(file, &database, [&] {
+    const int application = database.execAndGet("PRAGMA application_id").getInt();
+    const int version = database.execAndGet("PRAGMA user_version").getInt();
+    const int tables = database.execAndGet("SELECT count(*) FROM sqlite_master").getInt();
+    if (application == 0 && version == 0 && tables == 0) {
+      if (!create) throw StoreError(fmt::format("{}: this store is empty: run the study first", file.string()));
+      SQLite::Transaction transaction(database);
+      database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};", kStoreApplication, kStoreVersion));
+      database.exec(kTables);
+      transaction.commit();
+    } else if (application != kStoreApplication) {
+      not_ours(file);
+    } else if (version != kStoreVersion) {
+      throw StoreError(
+          fmt::format("{}: this store has format version {}, this program reads and writes version {}; "
+                      "run with --fresh to forget it and run every case again, or choose another folder "
+                      "with --out",
+                      file.string(), version, kStoreVersion));
+    }
+  });
+}
+
+void forget_store(const std::filesystem::path& file) {
+  // A full header is read before SQLite has the file open: closing it later would drop SQLite's own locks.
+  std::array<unsigned char, 100> header{};
+  std::ifstream stream(file, std::ios::binary);
+  if (stream.read(reinterpret_cast<char*>(header.data()), header.size())) {
+    constexpr std::size_t version_at = 60, application_at = 68;
+    const bool sqlite = std::memcmp(header.data(), "SQLite format 3", 16) == 0;
+    const std::uint32_t application = big_endian(header, application_at);
+    const bool unfinished = application == 0 && big_endian(header, version_at) == 0;
+    if (!sqlite || (application != kStoreApplication && !unfinished)) not_ours(file);
+  } else if (stream.gcount() > 0) {
+    not_ours(file);
+  }
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
+    std::error_code error;
+    std::filesystem::remove(file.string() + suffix, error);
+    if (error) throw StoreError(fmt::format("{}{}: cannot be removed: {}", file.string(), suffix, error.message()));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,23 @@
+#pragma once
+#include <SQLiteCpp/Database.h>
+
+#include <filesystem>
+#include <functional>
+
+namespace ricochet {
+
+/// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
+constexpr int kStoreApplication = 0x5249434F;  // "RICO"
+constexpr int kStoreVersion = 1;
+
+/// Creates the tables in an empty database, in one transaction; checks the identity of one that is not empty. Throws
+/// StoreError for a file of another application or another version (found, expected, what to do).
+void prepare_schema(SQLite::Database& database, const std::filesystem::path& file, bool create);
+
+/// Removes results.sqlite and its journals. A file that is not ours is refused, not removed.
+void forget_store(const std::filesystem::path& file);
+
+/// Runs `work`, turning what SQLite reports into a StoreError that names the file, the cause and what to do.
+void guarded(const std::filesystem::path& file, const SQLite::Database* database, const std::function<void()>& work);
+
+}  // namespace ricochet

@@ -1,0 +1,179 @@
+#include "runners/store/store.hpp"
+
+#include <SQLiteCpp/Column.h>
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/read_store.hpp"
+#include "runners/store/schema.hpp"
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "series are stored as little-endian doubles");
+
+std::string text_of(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+const std::filesystem::path& made(const std::filesystem::path& folder) {
+  make_folder(folder);
+  return folder;
+}
+
+template <class... Values>
+void insert(SQLite::Statement& statement, const Values&... values) {
+  statement.reset();
+  int index = 0;
+  (statement.bind(++index, values), ...);
+  statement.exec();
+}
+
+}  // namespace
+
+Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "results.sqlite"), lock_(made(folder)) {
+  remove_leftovers(folder);
+  remove_leftovers(folder / "curves");
+  if (fresh) forget_store(file_);
+  guarded(file_, nullptr, [&] {
+    constexpr int wait_ms =
+        10000;  // a reader (a report being rebuilt, a database browser) may hold the file for a moment
+    database_ = std::make_unique<SQLite::Database>(file_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, wait_ms);
+  });
+  guarded(file_, database_.get(), [&] {
+    // Rollback journal, not WAL: between two cases the record is one plain file, which can be copied, archived, read
+    // from a folder without write permission and kept on a network disk. FULL: with a rollback journal NORMAL may
+    // damage the file at a power cut; the price is a few ms per finished case. A killed process loses nothing that was
+    // committed under either.
+    database_->exec("PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;");
+  });
+  prepare_schema(*database_, file_, true);
+}
+
+std::set<std::string> Store::begin(const StudyResults& study, const std::vector<ExpectedCase>& expected) {
+  const std::lock_guard guard(mutex_);
+  expected_.clear();
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    expected_[expected[i].id] = {expected[i].fingerprint, static_cast<int>(i)};
+  std::set<std::string> kept;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    SQLite::Statement name(*database_, "SELECT value FROM study WHERE key = 'name'");
+    if (name.executeStep()) {
+      const std::string stored = Json::parse(name.getColumn(0).getString()).get<std::string>();
+      if (stored != study.name)
+        throw StoreError(
+            fmt::format("{}: this folder holds the results of the study \"{}\", not of \"{}\"; choose "
+                        "another folder with --out, or forget them with --fresh",
+                        file_.string(), stored, study.name));
+    }
+    name.reset();
+    std::vector<std::string> dropped;
+    SQLite::Statement stored(*database_, "SELECT id, fingerprint FROM cases");
+    while (stored.executeStep()) {
+      const std::string id = stored.getColumn(0).getString();
+      const auto found = expected_.find(id);
+      if (found != expected_.end() && found->second.first == stored.getColumn(1).getString())
+        kept.insert(id);
+      else
+        dropped.push_back(id);
+    }
+    stored.reset();
+    SQLite::Statement drop(*database_, "DELETE FROM cases WHERE id = ?");
+    for (const std::string& id : dropped) insert(drop, id);
+    SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
+    for (const std::string& id : kept) insert(move, expected_.at(id).second, id);
+    SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
+    insert(state, "name", text_of(study.name));
+    insert(state, "question", text_of(study.question));
+    insert(state, "kind", text_of(study.kind));
+    insert(state, "resolved", text_of(study.study));
+    insert(state, "columns", text_of(study.columns));
+    insert(state, "expected_cases", text_of(study.expected_cases));
+    transaction.commit();
+  });
+  return kept;
+}
+
+void Store::save_environment(const Environment& environment) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    database_->exec("DELETE FROM environment");
+    SQLite::Statement add(*database_, "INSERT INTO environment(position, name, value) VALUES(?, ?, ?)");
+    int position = 0;
+    for (const auto& [name, value] : environment.entries) insert(add, position++, name, value);
+    transaction.commit();
+  });
+}
+
+void Store::save(std::span<const CaseRecord> records) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    for (const CaseRecord& record : records) save_one(record);
+    transaction.commit();
+  });
+}
+
+void Store::save_one(const CaseRecord& record) {
+  const auto expected = expected_.find(record.id);
+  if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
+  SQLite::Database& database = *database_;
+
+  SQLite::Statement add(database, "INSERT OR REPLACE INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  const auto& [fingerprint, case_position] = expected->second;
+  insert(add, record.id, case_position, fingerprint, record.status, record.reason,
+         static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name);
+
+  int position = 0;
+  SQLite::Statement axis(database, "INSERT INTO axes VALUES(?, ?, ?, ?)");
+  for (const auto& [name, value] : record.axes) insert(axis, record.id, position++, name, text_of(value));
+
+  std::vector<std::string> notes = record.notes;
+  position = 0;
+  SQLite::Statement measure(database, "INSERT INTO measures VALUES(?, ?, ?, ?)");
+  for (const auto& [name, value] : record.measures)
+    if (std::isfinite(value))
+      insert(measure, record.id, position++, name, value);
+    else
+      notes.push_back(fmt::format("{} is not a finite number and is left out", name));
+
+  position = 0;
+  SQLite::Statement left_out(database, "INSERT INTO left_out VALUES(?, ?, ?, ?)");
+  for (const auto& [item, reason] : record.left_out) insert(left_out, record.id, position++, item, reason);
+
+  position = 0;
+  SQLite::Statement note(database, "INSERT INTO notes VALUES(?, ?, ?)");
+  for (const std::string& text : notes) insert(note, record.id, position++, text);
+
+  SQLite::Statement curve(database, "INSERT INTO curves VALUES(?, ?, ?, ?)");
+  for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
+    const std::vector<double>& column = record.curve.columns[i];
+    curve.reset();
+    curve.bind(1, record.id);
+    curve.bind(2, static_cast<int>(i));
+    curve.bind(3, record.curve.names.at(i));
+    // An empty vector may have no address, and SQLite would store NULL.
+    curve.bind(4, column.empty() ? static_cast<const void*>("") : column.data(),
+               static_cast<int>(column.size() * sizeof(double)));
+    curve.exec();
+  }
+}
+
+StudyResults Store::load() const {
+  const std::lock_guard guard(mutex_);
+  StudyResults results;
+  guarded(file_, database_.get(), [&] { results = read_tables(*database_); });
+  return results;
+}
+
+}  // namespace ricochet

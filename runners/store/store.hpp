@@ -1,0 +1,64 @@
+#pragma once
+#include <SQLiteCpp/Database.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/store/folder_lock.hpp"
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// What the study expects of one case, in the study's order.
+struct ExpectedCase {
+  std::string id;
+  std::string fingerprint;
+};
+
+/// results.sqlite of one folder, opened for a run: the record of the study, of its environment and of each finished
+/// case.
+///
+/// The folder is locked while a Store lives. Each call below is one transaction: a process killed at any moment leaves
+/// the store as it was after the last call that returned. Errors are StoreError, with the path, the cause and what to
+/// do.
+class Store {
+ public:
+  /// Opens or creates FOLDER/results.sqlite; `fresh` forgets what it held. Refuses a store of another version.
+  Store(const std::filesystem::path& folder, bool fresh);
+
+  /// States the study (name, question, kind, study, columns, expected_cases of `study`) and its cases. Stored cases
+  /// that are no longer expected, or whose fingerprint changed, are dropped. Returns the ids of those that are kept.
+  /// Refuses a store of another study.
+  std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected);
+
+  /// Replaces the environment.
+  void save_environment(const Environment& environment);
+
+  /// Adds finished cases. Measures that are not finite are left out, with a note. May be called from several threads.
+  void save(std::span<const CaseRecord> records);
+
+  /// Everything the store holds.
+  StudyResults load() const;
+
+ private:
+  void save_one(const CaseRecord& record);
+
+  std::filesystem::path file_;
+  FolderLock lock_;
+  std::unique_ptr<SQLite::Database> database_;
+  std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
+  mutable std::mutex mutex_;
+};
+
+/// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. Throws
+/// StoreError.
+StudyResults read_store(const std::filesystem::path& folder);
+
+}  // namespace ricochet
