@@ -1,0 +1,28 @@
+#pragma once
+#include <ricochet/contract/mass_strategy.hpp>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Set-up pieces that discretise() is made of; nothing here runs while marching.
+namespace ricochet {
+
+/// K_ij = ∫EI φ_i'' φ_j'' dx (n × n, both triangles) for a Hermite space; EI in N m².
+SparseMatrix bending_stiffness(const FiniteElementSpace& space, double EI);
+
+/// s_i = ∫ρS φ_i dx (kg on displacements, kg m on rotations) plus the point masses: the inertia load of a support that
+/// accelerates by a is −a s.
+Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space);
+
+/// The displacement at x as Σ value·q_dof, eliminated dofs left out. x within 1e-10 of an element's length from a node
+/// is that node: one entry, exactly 1.
+std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x);
+
+/// Rows of displacement_row() for each x (m × n).
+Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,
+                                                               const std::vector<double>& x);
+
+/// Positions of the nodes, x_0 = 0 to x_N = L; the last is exactly L.
+std::vector<double> node_positions(double length, int elements);
+
+}  // namespace ricochet

@@ -1,0 +1,31 @@
+#pragma once
+#include <Eigen/Core>
+#include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
+
+/// \file
+/// Where stops act, and whether displacements stay between them.
+namespace ricochet {
+
+/// Length of the structure, m.
+double structure_length(const SceneSpec& scene);
+
+/// Positions of the contact points: free nodes, the tip, or the positions given; empty without stops.
+std::vector<double> contact_positions(const SceneSpec& scene, int elements);
+
+/// Throws InputError at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m); `what` names u
+/// in the sentence. A passage smaller than 1e-12 of the values compared is rounding.
+void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
+                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what);
+
+/// φ and its first three derivatives at t = 0: m, m/s, m/s², m/s³.
+struct SupportMotion {
+  double position = 0, velocity = 0, acceleration = 0, jerk = 0;
+};
+SupportMotion support_at_start(const SupportSpec& support);
+
+/// Values of g1 or g2 at the points, ∓∞ for an absent stop.
+Eigen::VectorXd stop_values(const std::optional<Formula>& stop, const std::vector<double>& x, double absent);
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/initial.hpp>
+
+namespace ricochet {
+namespace {
+
+double energy(const SemiDiscrete& problem) {
+  return 0.5 * problem.position.dot(problem.stiffness * problem.position) +
+         0.5 * problem.velocity.dot(apply_mass(problem.inertia, problem.velocity));
+}
+
+Eigen::VectorXd load_rate_at_start(const DistributedLoad& load, int dofs) {
+  Eigen::VectorXd rate = Eigen::VectorXd::Zero(dofs), value(dofs);
+  if (load.absent() || load.constant_in_time()) return rate;
+  constexpr double spacing = 2e-5;
+  constexpr std::array<double, 7> weights{-49.0 / 20, 6, -15.0 / 2, 20.0 / 3, -15.0 / 4, 6.0 / 5, -1.0 / 6};
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    load.assemble(static_cast<double>(j) * spacing, value.data());
+    rate += weights[j] / spacing * value;
+  }
+  return rate;
+}
+
+void note_clamp(SemiDiscrete& problem, const char* what, const char* unit, double formula, double imposed) {
+  if (std::abs(formula - imposed) <= 1e-12 * (std::abs(formula) + std::abs(imposed))) return;
+  problem.notes.push_back(fmt::format("the initial {} at the clamp is {:.6g} {}; the clamp imposes {:.6g} {}", what,
+                                      formula, unit, imposed, unit));
+}
+
+}  // namespace
+
+void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
+  const double length = structure_length(scene);
+  const auto support = support_at_start(scene.support);
+  const auto nodes = node_positions(length, static_cast<int>(problem.space.elements.size()));
+  problem.position.resize(problem.space.dofs);
+  problem.velocity.resize(problem.space.dofs);
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(2 * i - 2);
+    problem.position[row] = scene.initial.displacement(nodes[i]) - support.position;
+    problem.position[row + 1] = scene.initial.displacement.slope(nodes[i], 0, length);
+    problem.velocity[row] = scene.initial.velocity(nodes[i]) - support.velocity;
+    problem.velocity[row + 1] = scene.initial.velocity.slope(nodes[i], 0, length);
+  }
+  note_clamp(problem, "displacement", "m", scene.initial.displacement(0), support.position);
+  note_clamp(problem, "slope", "rad", scene.initial.displacement.slope(0, 0, length), 0);
+  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(0), support.velocity);
+  note_clamp(problem, "rate of slope", "rad/s", scene.initial.velocity.slope(0, 0, length), 0);
+}
+
+void project_on_mass_constraint(SemiDiscrete& problem) {
+  if (problem.inertia.kernel_dimension == 0) {
+    problem.notes.emplace_back("projection of the initial state: nothing to do, the mass is regular");
+    return;
+  }
+  const auto motion = support_at_start(problem.support);
+  Eigen::VectorXd load(problem.dofs());
+  problem.load->assemble(0, load.data());
+  load -= motion.acceleration * problem.support_shape;
+  Eigen::VectorXd rate = Eigen::VectorXd::Zero(problem.dofs());
+  if (problem.damping.stiffness == 0)
+    rate = load_rate_at_start(*problem.load, problem.dofs()) - motion.jerk * problem.support_shape;
+
+  const Eigen::MatrixXd basis = mass_kernel(problem.inertia);
+  const Eigen::LLT<Eigen::MatrixXd> reduced(basis.transpose() * (problem.stiffness * basis));
+  const auto project = [&](Eigen::VectorXd& state, const Eigen::VectorXd& right) {
+    state -= basis * reduced.solve(basis.transpose() * (problem.stiffness * state - right));
+  };
+  const double before = energy(problem);
+  project(problem.position, load);
+  project(problem.velocity, rate);
+  problem.projection_energy = energy(problem) - before;
+  problem.notes.push_back(
+      fmt::format("projection of the initial state on the constraint of the singular mass: energy "
+                  "from {:.6g} J to {:.6g} J",
+                  before, before + problem.projection_energy));
+}
+
+}  // namespace ricochet

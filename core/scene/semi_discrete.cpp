@@ -1,0 +1,52 @@
+#include <limits>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/initial.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what) {
+  const double support = support_at_start(problem.support).position;
+  const Eigen::VectorXd absolute = (problem.contact * problem.position).array() + support;
+  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what);
+}
+
+}  // namespace
+
+SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass) {
+  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
+  check_scene(scene, elements);
+
+  SemiDiscrete problem;
+  problem.space = make_space(scene.structure, elements);
+  auto built = mass.build(problem.space);
+  if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
+  problem.inertia = std::get<Inertia>(std::move(built));
+
+  const auto& beam = std::get<BeamSpec>(scene.structure);
+  problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
+  problem.damping = beam.damping;
+  problem.support = scene.support;
+  problem.support_shape = rigid_motion_load(problem.space);
+  problem.load = std::make_shared<const DistributedLoad>(scene.load, problem.space);
+
+  problem.contact_x = contact_positions(scene, elements);
+  problem.contact = displacement_rows(problem.space, problem.contact_x);
+  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
+  problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
+  problem.tip = displacement_rows(problem.space, {beam.length});
+
+  interpolate_initial(scene, problem);
+  check_start(problem, "/scene/initial/displacement", "the initial displacement");
+  if (scene.initial.projection == InitialSpec::Projection::constraint) {
+    project_on_mass_constraint(problem);
+    check_start(problem, "/scene/initial/projection", "the projected initial displacement");
+  }
+  return problem;
+}
+
+}  // namespace ricochet
