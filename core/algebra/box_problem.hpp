@@ -1,20 +1,33 @@
 #pragma once
-#include <span>
-#include <vector>
-
+#include <cstdint>
 #include <ricochet/contract/contact_law.hpp>
+#include <vector>
 
 namespace ricochet {
 
 /// The two-sided box problem of one lane
 ///
-///     y = y° + (reach·W + diag(compliance)) p,      lower ≤ y ⊥ p ≤ upper:
+///     y = y° + A p,   A = reach·W + compliance·I,      lower ≤ y ⊥ p ≤ upper:
 ///     p_i > 0 only where y_i = lower_i,  p_i < 0 only where y_i = upper_i,  else p_i = 0                          (1)
 ///
 /// with W (m × m) symmetric positive semidefinite, read by columns on demand. Bounds may be ±∞; lower_i ≤ upper_i.
-/// One active candidate: closed form. Otherwise a primal–dual active set (Hintermüller, Ito, Kunisch 2002) warm-started
-/// from the sign of p, scaled by the diagonal, which detects a repeated set and then falls back on principal pivoting by least index
-/// (Murty 1974), finite for P-matrices. Only the columns of sets that were tried are asked for.
+/// One active candidate: closed form. Otherwise a primal–dual active set (Hintermüller, Ito, Kunisch 2002),
+/// warm-started from the sign of p: a point belongs to a stop when its measure without its own effort, y_i − A_ii p_i,
+/// lies beyond it (this is where the diagonal scales). A set met again hands over to principal pivoting by least index
+/// (Murty 1974, with two sides: Júdice and Pires 1992), finite for P-matrices, which hands back as soon as fewer points
+/// are wrong than ever before. Only the columns of sets that were tried are asked for.
+///
+/// Cost: O(m) to read the lane, and O(active³ + m·active) for each set tried.
+///
+/// **Uniqueness.** y is unique. p is computed from scratch from the final set, so the warm start changes it by
+/// round-off only, as long as W is regular on that set. Where it is not (two points at one place) a point that depends
+/// on others of lower index (pivot below 16(k+1)ε of its diagonal, k points active) carries no effort; when no such
+/// choice satisfies (1), the problem is solved with A_ii (1 + 10⁻¹²), then corrected on its final set: effort is shared
+/// in the least-norm way. A point with A_ii = 0 cannot be moved and carries no effort.
+///
+/// **Tolerance.** All tests are relative to the lane's own data, so scaling y or A changes nothing. Convergence means
+/// a residual (2) of at most 10⁻¹² times the deepest violation of y°, plus 64(k+1)ε times the largest size of y°, of
+/// the bounds in force and of the terms of A p; where W was singular, 10⁻¹⁰ instead of 10⁻¹². Signs of p are exact.
 class BoxSolver {
  public:
   BoxSolver() = default;
@@ -22,19 +35,61 @@ class BoxSolver {
   void prepare(int points);
 
   /// y°, lower, upper, p: m numbers each, `stride` apart. compliance: one number for all points (m/N), 0 for rigid.
-  /// On return p solves (1) with the residual said in the outcome:
-  ///     max_i max( lower_i − y_i, y_i − upper_i, min(p_i⁺/scale, y_i − lower_i), min(p_i⁻/scale, upper_i − y_i) ), in units of y.
-  /// Not converged: p holds the best iterate, outcome.converged is false.
+  /// On return p solves (1) with the residual said in the outcome, in units of y,
+  ///     max_i max( lower_i − y_i, y_i − upper_i, min(A_ii p_i⁺, y_i − lower_i), min(A_ii p_i⁻, upper_i − y_i) ) (2)
+  /// and the number of sets tried. Not converged (no solution, or the pivots ran out): p holds the best iterate and
+  /// outcome.converged is false. Data that are not finite (infinite bounds are) give p = 0 and an infinite residual.
+  /// The result depends on this lane's numbers only, bit for bit, whatever the stride.
   LaneOutcome solve(DelassusColumns& W, double reach, double compliance, const double* free, const double* lower,
                     const double* upper, double* p, int points, int stride = 1);
 
-  /// Largest number of pivots of the finite fallback before it gives up (default 50·m + 200).
+  /// Largest number of pivots of the finite fallback before it gives up (default, or negative: 50·m + 200).
   void limit_pivots(int pivots) { pivot_limit_ = pivots; }
 
  private:
-  int pivot_limit_ = 0;
-  std::vector<double> workspace_;   // sized by prepare()
-  std::vector<int> indices_;
+  enum class Side : signed char { upper = -1, none = 0, lower = 1, immobile = 2 };
+  struct Operator {
+    DelassusColumns& columns;
+    double reach, compliance;
+  };
+
+  LaneOutcome solve_alone(const Operator& A, double free, double lower, double upper, double& p) const;
+  LaneOutcome solve_uncoupled(double compliance);
+  LaneOutcome search(const Operator& A);
+  bool read(const double* free, const double* lower, const double* upper, const double* p, int points, int stride);
+  void choose_first_set();
+
+  void try_set(const Operator& A);
+  void factorise(const Operator& A);
+  void substitute();
+  void evaluate(const Operator& A);
+  void correct(const Operator& A);
+  void drop_wrong_signs(const Operator& A);
+
+  double bound(int i) const;
+  bool active(int i) const;
+  bool pulls(int i) const;
+  Side beyond(int i) const;
+  int count_wrong() const;
+  void move_all();
+  void move_first();
+  bool seen_before();
+  double residual() const;
+  double tolerance() const;
+
+  int pivot_limit_ = -1;
+  int points_ = 0;                                                      // m
+  int count_ = 0;                                                       // k, points in the set
+  double depth_ = 0;                                                    // deepest violation of y°
+  double terms_ = 0;                                                    // size of the terms of A p
+  double regularisation_ = 0;                                           // relative, on the diagonal
+  bool dependent_ = false;                                              // a pivot was too small, or nearly so
+  std::vector<double> free_, lower_, upper_, measure_, effort_, best_;  // m
+  std::vector<double> diagonal_, factor_, pivot_, right_;               // k, k rows of m, k, k
+  std::vector<const double*> column_;                                   // k
+  std::vector<int> set_;                                                // k, increasing
+  std::vector<Side> side_;                                              // m
+  std::vector<std::uint64_t> visited_;
 };
 
 }  // namespace ricochet

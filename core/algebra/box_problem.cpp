@@ -1,0 +1,372 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <ricochet/algebra/box_problem.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t remembered_sets = 32;
+
+// splitmix64: a set's fingerprint is the sum over its points.
+std::uint64_t fingerprint(int point, int side) {
+  std::uint64_t z =
+      (static_cast<std::uint64_t>(point) * 4 + static_cast<std::uint64_t>(side + 2)) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
+double beyond_bounds(double y, double lower, double upper) {
+  return std::max(lower - y, y - upper);
+}
+
+// The terms of (2) that a point with the effort p adds to those without.
+double complementarity(double y, double lower, double upper, double p, double diagonal) {
+  return p > 0 ? std::min(diagonal * p, y - lower) : std::min(-diagonal * p, upper - y);
+}
+
+}  // namespace
+
+void BoxSolver::prepare(int points) {
+  assert(points >= 0);
+  const auto m = static_cast<std::size_t>(points);
+  for (auto* v : {&free_, &lower_, &upper_, &measure_, &effort_, &best_, &diagonal_, &pivot_, &right_})
+    v->assign(m, 0.0);
+  factor_.assign(m * m, 0.0);
+  column_.assign(m, nullptr);
+  set_.assign(m, 0);
+  side_.assign(m, Side::none);
+  visited_.clear();
+  visited_.reserve(remembered_sets);
+}
+
+LaneOutcome BoxSolver::solve(DelassusColumns& W, double reach, double compliance, const double* free,
+                             const double* lower, const double* upper, double* p, int points, int stride) {
+  assert(points >= 0 && static_cast<std::size_t>(points) <= free_.size());
+  const Operator A{W, reach, compliance};
+  if (points == 1) return solve_alone(A, *free, *lower, *upper, *p);
+  LaneOutcome outcome;
+  if (!read(free, lower, upper, p, points, stride)) {
+    outcome = {false, 0, infinity};
+  } else if (depth_ > 0) {
+    outcome = reach == 0 ? solve_uncoupled(compliance) : search(A);
+  }
+  for (int i = 0; i < points; ++i) p[i * stride] = effort_[i];
+  return outcome;
+}
+
+LaneOutcome BoxSolver::solve_alone(const Operator& A, double free, double lower, double upper, double& p) const {
+  assert(!(lower > upper));
+  p = 0;
+  const double depth = beyond_bounds(free, lower, upper);
+  if (!std::isfinite(free) || std::isnan(lower) || std::isnan(upper)) return {false, 0, infinity};
+  if (!(depth > 0)) return {};
+  const double a = (A.reach == 0 ? 0.0 : A.reach * A.columns.column(0)[0]) + A.compliance;
+  if (!(a > 0) || !std::isfinite(a)) return {false, 1, depth};
+  p = ((free < lower ? lower : upper) - free) / a;
+  const double y = free + a * p;
+  const double residual = std::max({0.0, beyond_bounds(y, lower, upper), complementarity(y, lower, upper, p, a)});
+  return {std::isfinite(p), 1, std::isfinite(residual) ? residual : infinity};
+}
+
+bool BoxSolver::read(const double* free, const double* lower, const double* upper, const double* p, int points,
+                     int stride) {
+  points_ = points;
+  count_ = 0;
+  terms_ = regularisation_ = 0;
+  dependent_ = false;
+  double depth = 0, poison = 0;
+  for (int i = 0; i < points; ++i) {
+    const double f = free[i * stride], l = lower[i * stride], u = upper[i * stride], e = p[i * stride];
+    assert(!(l > u) && l < infinity && u > -infinity);
+    free_[i] = f;
+    lower_[i] = l;
+    upper_[i] = u;
+    effort_[i] = 0;
+    side_[i] = e > 0 && l > -infinity ? Side::lower : e < 0 && u < infinity ? Side::upper : Side::none;
+    depth = std::max(depth, beyond_bounds(f, l, u));
+    // Zero for every finite measure and every bound that is a number; NaN otherwise.
+    poison += f * 0 + (l != l || u != u ? f - f + std::numeric_limits<double>::quiet_NaN() : 0.0);
+  }
+  depth_ = depth;
+  return poison == 0;
+}
+
+// A single violated point is tried alone: most often that is the whole contact. Otherwise the previous contact, or
+// where there was none all violated points.
+void BoxSolver::choose_first_set() {
+  int violated = 0;
+  bool warm = false;
+  for (int i = 0; i < points_; ++i) {
+    violated += beyond_bounds(free_[i], lower_[i], upper_[i]) > 0;
+    warm = warm || side_[i] != Side::none;
+  }
+  if (warm && violated > 1) return;
+  for (int i = 0; i < points_; ++i)
+    side_[i] = free_[i] < lower_[i] ? Side::lower : free_[i] > upper_[i] ? Side::upper : Side::none;
+}
+
+// A = compliance·I: each point on its own.
+LaneOutcome BoxSolver::solve_uncoupled(double compliance) {
+  LaneOutcome outcome{true, 1, 0};
+  for (int i = 0; i < points_; ++i) {
+    const double depth = beyond_bounds(free_[i], lower_[i], upper_[i]);
+    if (!(depth > 0)) continue;
+    if (!(compliance > 0)) {
+      outcome.converged = false;
+      outcome.residual = std::max(outcome.residual, depth);
+      continue;
+    }
+    effort_[i] = ((free_[i] < lower_[i] ? lower_[i] : upper_[i]) - free_[i]) / compliance;
+    const double y = free_[i] + compliance * effort_[i];
+    outcome.residual = std::max({outcome.residual, beyond_bounds(y, lower_[i], upper_[i]),
+                                 complementarity(y, lower_[i], upper_[i], effort_[i], compliance)});
+  }
+  return outcome;
+}
+
+LaneOutcome BoxSolver::search(const Operator& A) {
+  LaneOutcome outcome;
+  const int limit = pivot_limit_ < 0 ? 50 * points_ + 200 : pivot_limit_;
+  int pivots = 0, fewest = points_ + 1;
+  bool one_by_one = false, solved = false, accepted = false;
+  double best = infinity;
+  visited_.clear();
+  choose_first_set();
+  seen_before();
+  for (;;) {
+    try_set(A);
+    ++outcome.iterations;
+    const int wrong = count_wrong();
+    solved = wrong == 0;
+    if (solved) break;
+    if (one_by_one) {
+      const double r = residual();
+      accepted = r <= tolerance();
+      if (accepted) break;
+      if (r < best) {
+        best = r;
+        std::copy_n(effort_.begin(), points_, best_.begin());
+      }
+      if (wrong < fewest) {
+        one_by_one = false;
+        visited_.clear();
+        seen_before();
+      }
+    }
+    fewest = std::min(fewest, wrong);
+    if (!one_by_one) {
+      move_all();
+      if (!seen_before()) continue;
+      one_by_one = true;
+    } else {
+      if (pivots++ >= limit) break;
+      move_first();
+    }
+    // Neither method is sure of its end unless A is a P-matrix, which this makes it.
+    if (one_by_one && dependent_ && regularisation_ == 0) {
+      regularisation_ = 1e-12 + 64 * epsilon * points_;
+      fewest = points_ + 1;
+    }
+  }
+  if (solved && regularisation_ > 0) correct(A);
+  if (accepted || regularisation_ > 0) drop_wrong_signs(A);
+  outcome.residual = residual();
+  outcome.converged = outcome.residual <= tolerance();
+  if (!outcome.converged && best < outcome.residual) {
+    outcome.residual = best;
+    std::copy_n(best_.begin(), points_, effort_.begin());
+  }
+  if (!std::isfinite(outcome.residual)) std::fill_n(effort_.begin(), points_, 0.0);
+  return outcome;
+}
+
+void BoxSolver::try_set(const Operator& A) {
+  for (int j = 0; j < count_; ++j) effort_[set_[j]] = 0;
+  factorise(A);
+  for (int j = 0; j < count_; ++j) right_[j] = bound(set_[j]) - free_[set_[j]];
+  substitute();
+  for (int j = 0; j < count_; ++j) effort_[set_[j]] = right_[j];
+  evaluate(A);
+}
+
+// A_SS = L D Lᵀ row by row; points that depend on earlier ones, and immobile ones, leave the set.
+void BoxSolver::factorise(const Operator& A) {
+  count_ = 0;
+  const auto row_length = static_cast<std::size_t>(points_);
+  for (int i = 0; i < points_; ++i) {
+    if (!active(i)) continue;
+    const double* column = A.columns.column(i);
+    const double a = A.reach * column[i] + A.compliance;
+    if (!(a > 0)) {
+      side_[i] = Side::immobile;
+      continue;
+    }
+    double* row = factor_.data() + count_ * row_length;
+    double d = a * (1 + regularisation_);
+    for (int j = 0; j < count_; ++j) {
+      const double* earlier = factor_.data() + j * row_length;
+      double w = A.reach * column[set_[j]];
+      for (int t = 0; t < j; ++t) w -= earlier[t] * row[t];
+      row[j] = w;
+    }
+    for (int j = 0; j < count_; ++j) {
+      const double w = row[j];
+      row[j] = w / pivot_[j];
+      d -= w * row[j];
+    }
+    // Nearly dependent: efforts keep fewer than five digits, and their signs may no longer be trusted.
+    dependent_ = dependent_ || !(d > 1e-11 * a);
+    if (!(d > 16 * (count_ + 1) * epsilon * a)) {
+      side_[i] = Side::none;
+      continue;
+    }
+    set_[count_] = i;
+    column_[count_] = column;
+    diagonal_[count_] = a;
+    pivot_[count_++] = d;
+  }
+}
+
+void BoxSolver::substitute() {
+  const auto row_length = static_cast<std::size_t>(points_);
+  for (int j = 0; j < count_; ++j) {
+    const double* row = factor_.data() + j * row_length;
+    for (int t = 0; t < j; ++t) right_[j] -= row[t] * right_[t];
+  }
+  for (int j = 0; j < count_; ++j) right_[j] /= pivot_[j];
+  for (int j = count_ - 1; j > 0; --j) {
+    const double* row = factor_.data() + j * row_length;
+    for (int t = 0; t < j; ++t) right_[t] -= row[t] * right_[j];
+  }
+}
+
+void BoxSolver::evaluate(const Operator& A) {
+  std::copy_n(free_.begin(), points_, measure_.begin());
+  double largest = 0, work = 0;
+  for (int j = 0; j < count_; ++j) {
+    const double effort = effort_[set_[j]], scaled = A.reach * effort;
+    const double* column = column_[j];
+    for (int i = 0; i < points_; ++i) measure_[i] += scaled * column[i];
+    measure_[set_[j]] += A.compliance * effort;
+    largest = std::max(largest, diagonal_[j]);
+    work += diagonal_[j] * effort * effort;
+  }
+  // Bounds max_i Σ_j |A_ij p_j| by Cauchy–Schwarz on |A_ij| ≤ √(A_ii A_jj).
+  terms_ = std::sqrt(count_ * largest * work);
+}
+
+// Newton's correction with the regularised factor: what regularisation added to y is removed.
+void BoxSolver::correct(const Operator& A) {
+  double before = residual();
+  for (int round = 0; round < 3 && before > 0; ++round) {
+    for (int j = 0; j < count_; ++j) right_[j] = bound(set_[j]) - measure_[set_[j]];
+    substitute();
+    std::copy_n(effort_.begin(), points_, best_.begin());
+    for (int j = 0; j < count_; ++j) effort_[set_[j]] += right_[j];
+    evaluate(A);
+    const double after = residual();
+    if (!(after < before)) {
+      std::copy_n(best_.begin(), points_, effort_.begin());
+      evaluate(A);
+      return;
+    }
+    before = after;
+  }
+}
+
+void BoxSolver::drop_wrong_signs(const Operator& A) {
+  for (int j = 0; j < count_; ++j)
+    if (pulls(set_[j])) effort_[set_[j]] = 0;
+  evaluate(A);
+}
+
+double BoxSolver::bound(int i) const {
+  return side_[i] == Side::lower ? lower_[i] : upper_[i];
+}
+
+bool BoxSolver::active(int i) const {
+  return side_[i] == Side::lower || side_[i] == Side::upper;
+}
+
+bool BoxSolver::pulls(int i) const {
+  return side_[i] == Side::lower ? effort_[i] < 0 : effort_[i] > 0;
+}
+
+// The bound that a free point passes by more than round-off.
+BoxSolver::Side BoxSolver::beyond(int i) const {
+  const double y = measure_[i];
+  const double slack = 16 * (count_ + 1) * epsilon * (std::abs(free_[i]) + std::abs(y) + terms_);
+  return y < lower_[i] - slack ? Side::lower : y > upper_[i] + slack ? Side::upper : Side::none;
+}
+
+int BoxSolver::count_wrong() const {
+  int wrong = 0;
+  for (int i = 0; i < points_; ++i) {
+    if (side_[i] == Side::none)
+      wrong += beyond(i) != Side::none;
+    else if (active(i))
+      wrong += pulls(i);
+  }
+  return wrong;
+}
+
+void BoxSolver::move_all() {
+  for (int i = 0; i < points_; ++i)
+    if (side_[i] == Side::none) side_[i] = beyond(i);
+  for (int j = 0; j < count_; ++j) {
+    const int i = set_[j];
+    if (!pulls(i)) continue;
+    const double without = bound(i) - diagonal_[j] * effort_[i];
+    side_[i] = without < lower_[i] ? Side::lower : without > upper_[i] ? Side::upper : Side::none;
+  }
+}
+
+void BoxSolver::move_first() {
+  for (int i = 0; i < points_; ++i) {
+    if (side_[i] == Side::none) {
+      side_[i] = beyond(i);
+      if (side_[i] != Side::none) return;
+    } else if (active(i) && pulls(i)) {
+      side_[i] = Side::none;
+      return;
+    }
+  }
+}
+
+// Remembers the set; a full memory counts as a repetition, which is safe: the fallback starts from any set.
+bool BoxSolver::seen_before() {
+  std::uint64_t sum = 0;
+  for (int i = 0; i < points_; ++i)
+    if (active(i)) sum += fingerprint(i, static_cast<int>(side_[i]));
+  if (std::find(visited_.begin(), visited_.end(), sum) != visited_.end() || visited_.size() == remembered_sets)
+    return true;
+  visited_.push_back(sum);
+  return false;
+}
+
+double BoxSolver::residual() const {
+  double worst = 0, poison = 0;
+  for (int i = 0; i < points_; ++i) {
+    worst = std::max(worst, beyond_bounds(measure_[i], lower_[i], upper_[i]));
+    poison += measure_[i] * 0;
+  }
+  for (int j = 0; j < count_; ++j) {
+    const int i = set_[j];
+    worst = std::max(worst, complementarity(measure_[i], lower_[i], upper_[i], effort_[i], diagonal_[j]));
+  }
+  return poison == 0 ? worst : infinity;
+}
+
+double BoxSolver::tolerance() const {
+  double size = 0;
+  for (int i = 0; i < points_; ++i) size = std::max(size, std::abs(free_[i]));
+  for (int j = 0; j < count_; ++j) size = std::max(size, std::abs(bound(set_[j])));
+  return (regularisation_ > 0 ? 1e-10 : 1e-12) * depth_ + 64 * (count_ + 1) * epsilon * (size + terms_);
+}
+
+}  // namespace ricochet
