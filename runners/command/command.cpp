@@ -1,0 +1,158 @@
+#include "runners/command/command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <ostream>
+#include <ricochet/contract/errors.hpp>
+
+#include "runners/command/subcommand.hpp"
+#include "runners/execution/environment.hpp"
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string overview() {
+  std::string text =
+      "Ricochet: is this what the beam does, or what the numerical method does?\n\nUsage: ricochet COMMAND …\n\n";
+  for (const Subcommand& command : subcommands())
+    text += fmt::format("  {:<9} {:<34} {}\n", command.name, command.usage, command.summary);
+  text +=
+      "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\n"
+      "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed, 4 plugin missing or incompatible,\n"
+      "5 store unusable, 130 interrupted (resumable).\n";
+  return text;
+}
+
+const Subcommand& find_command(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Subcommand& command : subcommands()) {
+    if (command.name == name) return command;
+    names.push_back(command.name);
+  }
+  names.insert(names.end(), {"help", "--help", "--version"});
+  if (name.starts_with("-")) {
+    const std::string nearest = nearest_name(name, {"--help", "--version"});
+    throw UsageError("expected a command before the option " + name +
+                     (nearest.empty() ? "" : "; did you mean " + nearest + "?") +
+                     "\n`ricochet --help` lists the commands");
+  }
+  const std::string nearest = nearest_name(name, names);
+  throw UsageError("there is no command \"" + name + "\"" +
+                   (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?") +
+                   "\n`ricochet --help` lists the commands");
+}
+
+int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
+  if (arguments.empty()) throw UsageError("expected a command\n\n" + overview());
+  const std::string& first = arguments.front();
+  const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+  if (first == "--help" || first == "-h" || first == "help") {
+    if (first == "help" && !rest.empty())
+      out << help_text(find_command(rest.front()));
+    else
+      out << overview();
+    return exit_done;
+  }
+  if (first == "--version") {
+    const auto entries = describe_environment({}).entries;
+    const auto commit =
+        std::find_if(entries.begin(), entries.end(), [](const auto& entry) { return entry.first == "commit"; });
+    out << entries.front().second << (commit != entries.end() ? ", commit " + commit->second : "") << "\n";
+    return exit_done;
+  }
+  const Subcommand& command = find_command(first);
+  const Arguments parsed = parse_arguments(command, rest);
+  if (parsed.help) {
+    out << help_text(command);
+    return exit_done;
+  }
+  return command.run(parsed, out);
+}
+
+int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
+  try {
+    return dispatch(arguments, out);
+  } catch (const UsageError& error) {
+    err << "ricochet: " << error.what() << "\n";
+    return exit_bad_input;
+  } catch (const StudyError& error) {
+    err << error.what() << "\n";
+    return exit_bad_input;
+  } catch (const InputError& error) {
+    err << (error.pointer().empty() ? "" : error.pointer() + ": ") << error.what() << "\n";
+    return exit_bad_input;
+  } catch (const PluginError& error) {
+    err << "ricochet: plugin error: " << error.what() << "\n";
+    return exit_plugin;
+  } catch (const StoreError& error) {
+    err << "ricochet: " << error.what() << "\n";
+    return exit_store;
+  } catch (const std::bad_alloc&) {
+    err << "ricochet: not enough memory\n";
+  } catch (const std::exception& error) {
+    err << "ricochet: internal error: " << error.what() << "\n";
+  } catch (...) {
+    err << "ricochet: internal error of an unknown kind\n";
+  }
+  return exit_bug;
+}
+
+}  // namespace
+
+const std::vector<Subcommand>& subcommands() {
+  static const std::vector<Subcommand> all = {
+      {"run",
+       "STUDY.json [--out DIR] [--jobs N] [--fresh]",
+       "Run what is missing of a study; write results and report.",
+       1,
+       1,
+       {"out", "jobs", "fresh", "plugin"},
+       command_run},
+      {"plan",
+       "STUDY.json",
+       "Show the combinations, what is refused and why, what is left out, the predicted cost. Nothing runs.",
+       1,
+       1,
+       {"plugin"},
+       command_plan},
+      {"list", "[mass|contact|time]", "List the methods found.", 0, 1, {"plugin"}, command_list},
+      {"describe",
+       "NAME",
+       "Show the manual of a method: text, parameters, source, facts.",
+       1,
+       1,
+       {"plugin"},
+       command_describe},
+      {"report", "DIR", "Rebuild the report and the tables of a results folder.", 1, 1, {}, command_report},
+      {"export", "DIR --to CSVDIR", "Write the results as plain CSV tables.", 1, 1, {"to"}, command_export},
+      {"schema",
+       "",
+       "Print a JSON Schema of studies, with the parameters of every method found.",
+       0,
+       0,
+       {"plugin"},
+       command_schema},
+      {"doctor",
+       "",
+       "Show what is found where: versions, libraries, plugin folders, processor.",
+       0,
+       0,
+       {"plugin"},
+       command_doctor},
+  };
+  return all;
+}
+
+int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
+  const int code = guarded(arguments, out, err);
+  if (!out.flush()) {
+    err << "ricochet: the output could not be written completely\n";
+    return code == exit_done ? exit_store : code;
+  }
+  return code;
+}
+
+}  // namespace ricochet

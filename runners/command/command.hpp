@@ -1,0 +1,23 @@
+#pragma once
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// Exit codes of the command (design §5).
+enum ExitCode {
+  exit_done = 0,
+  exit_bug = 1,        ///< our fault: an error that nothing else explains
+  exit_bad_input = 2,  ///< bad study or usage
+  exit_some_failed = 3,
+  exit_plugin = 4,  ///< plugin missing or incompatible
+  exit_store = 5,
+  exit_interrupted = 130
+};
+
+/// The `ricochet` command: `arguments` without the program's name. Errors go to `err`, each as one clear message; no
+/// exception leaves.
+int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err);
+
+}  // namespace ricochet

@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <ostream>
+
+#include "runners/command/command.hpp"
+#include "runners/command/subcommand.hpp"
+#include "runners/command/table.hpp"
+#include "runners/study/check_object.hpp"
+
+namespace ricochet {
+namespace {
+
+std::vector<Role> roles_asked(const Arguments& arguments) {
+  const std::vector<Role> all = {Role::mass, Role::contact, Role::time};
+  if (arguments.operands.empty()) return all;
+  const std::string& word = arguments.operands.front();
+  for (const Role role : all)
+    if (word == role_name(role)) return {role};
+  const std::vector<std::string> names = {"mass", "contact", "time"};
+  throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) + " (roles: " + quoted_list(names) +
+                   ")");
+}
+
+}  // namespace
+
+int command_list(const Arguments& arguments, std::ostream& out) {
+  const std::vector<Role> roles = roles_asked(arguments);
+  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  Registry registry;
+  // Only the libraries of the roles asked for are opened; one that fails is told, and the others are listed.
+  std::vector<Unusable> failed;
+  TextTable table({"role", "name", "summary", "file"});
+  for (const Role role : roles)
+    for (const std::string& name : catalogue.names(role)) {
+      try {
+        catalogue.require(role, name, registry);
+        table.add({role_name(role), name, registry.manual(role, name)->summary, registry.file(role, name)});
+      } catch (const PluginError& error) {
+        table.add({role_name(role), name, std::string("cannot be used: ") + error.what(), ""});
+        failed.push_back({name, error.what()});
+      }
+    }
+  out << table.text();
+  for (const Unusable& file : catalogue.unusable())
+    out << "\ncannot serve: " << file.file.string() << ": " << file.reason << "\n";
+  return failed.empty() ? exit_done : exit_plugin;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+#include <set>
+#include <thread>
+
+#include "runners/command/command.hpp"
+#include "runners/command/study_file.hpp"
+#include "runners/command/table.hpp"
+#include "runners/execution/run_case.hpp"
+
+namespace ricochet {
+namespace {
+
+using Grouped = std::map<std::string, int>;  // sentence → number of cases
+
+Json axis_value(const StudyCase& study_case, const std::string& axis) {
+  for (const auto& [name, value] : study_case.axes)
+    if (name == axis) return value;
+  return {};
+}
+
+bool has_axis(const StudyCase& study_case, const std::string& axis) {
+  return std::any_of(study_case.axes.begin(), study_case.axes.end(),
+                     [&](const auto& item) { return item.first == axis; });
+}
+
+// Axes that tell cases apart become columns; the others are said once.
+void split_axes(const Study& study, std::vector<std::string>& varying, std::string& same) {
+  for (const std::string& axis : study.columns) {
+    std::set<std::string> values;
+    for (const StudyCase& study_case : study.cases)
+      values.insert(has_axis(study_case, axis) ? axis_value(study_case, axis).dump() : std::string());
+    if (values.size() > 1)
+      varying.push_back(axis);
+    else
+      same += (same.empty() ? "" : ", ") + axis + " " + plain(axis_value(study.cases.front(), axis));
+  }
+}
+
+void print_grouped(const char* title, const Grouped& grouped, std::size_t all, std::ostream& out) {
+  if (grouped.empty()) return;
+  out << "\n" << title << "\n";
+  for (const auto& [sentence, count] : grouped) {
+    const bool everywhere = static_cast<std::size_t>(count) == all;
+    out << "  " << sentence << (everywhere ? " (all cases)" : fmt::format(" ({} of {} cases)", count, all)) << "\n";
+  }
+}
+
+struct Costs {
+  double total = 0, longest = 0;
+  int runnable = 0, refused = 0, excluded = 0;
+};
+
+void print_costs(const Costs& costs, std::ostream& out) {
+  out << "\n" << fmt::format("{} to run, {} refused, {} excluded\n", costs.runnable, costs.refused, costs.excluded);
+  if (costs.runnable == 0) return;
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  out << "predicted: " << plain_seconds(costs.total) << " on 1 core";
+  // A case runs on one core: the longest bounds the whole.
+  if (cores > 1) out << ", " << plain_seconds(std::max(costs.total / cores, costs.longest)) << " on all " << cores;
+  out << "\n";
+}
+
+void print_unopened(const Catalogue& catalogue, std::ostream& out) {
+  std::set<std::string> files;
+  for (const Provided& method : catalogue.provided())
+    if (std::find(catalogue.opened().begin(), catalogue.opened().end(), method.file) == catalogue.opened().end())
+      files.insert(method.file.filename().string());
+  if (files.empty()) return;
+  out << "\nplugin libraries found and not opened, as the study does not name them:\n ";
+  for (const std::string& file : files) out << " " << file;
+  out << "\n";
+}
+
+}  // namespace
+
+int command_plan(const Arguments& arguments, std::ostream& out) {
+  return with_study(arguments, [&](const OpenStudy& open) -> int {
+    const Study& study = open.study;
+    std::vector<std::string> varying;
+    std::string same;
+    split_axes(study, varying, same);
+    std::vector<std::string> header = {"id"};
+    header.insert(header.end(), varying.begin(), varying.end());
+    header.insert(header.end(), {"steps", "operator", "time", "not run because"});
+
+    TextTable table(header);
+    Grouped left_out, notes;
+    Costs costs;
+    for (const StudyCase& study_case : study.cases) {
+      std::vector<std::string> row = {study_case.id};
+      for (const std::string& axis : varying)
+        row.push_back(has_axis(study_case, axis) ? plain(axis_value(study_case, axis)) : "");
+      if (study_case.excluded) {
+        ++costs.excluded;
+        row.insert(row.end(), {"", "", "", "excluded: " + *study_case.excluded});
+        table.add(std::move(row));
+        continue;
+      }
+      const CasePlan plan = plan_case(study_case, open.registry);
+      if (!plan.refusal.empty()) {
+        ++costs.refused;
+        row.insert(row.end(), {"", "", "", "refused: " + plan.refusal});
+      } else {
+        ++costs.runnable;
+        costs.total += plan.predicted_seconds;
+        costs.longest = std::max(costs.longest, plan.predicted_seconds);
+        row.insert(row.end(),
+                   {fmt::format("{}", plan.steps), plan.operator_name, plain_seconds(plan.predicted_seconds), ""});
+        for (const auto& [item, reason] : plan.left_out) ++left_out[item + ": " + reason];
+        for (const std::string& note : plan.notes) ++notes[note];
+      }
+      table.add(std::move(row));
+    }
+
+    out << study.name << (study.question.empty() ? "" : ": " + study.question) << "\n"
+        << fmt::format("kind {}, {} cases, duration {} s\n", study.kind, study.cases.size(),
+                       study.cases.front().duration);
+    if (!same.empty()) out << "the same in all: " << same << "\n";
+    out << "\n" << table.text();
+    print_grouped("left out:", left_out, static_cast<std::size_t>(costs.runnable), out);
+    print_grouped("notes:", notes, static_cast<std::size_t>(costs.runnable), out);
+    print_costs(costs, out);
+    print_unopened(open.catalogue, out);
+    return exit_done;
+  });
+}
+
+}  // namespace ricochet

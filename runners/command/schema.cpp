@@ -1,0 +1,17 @@
+#include <ostream>
+
+#include "runners/command/command.hpp"
+#include "runners/command/subcommand.hpp"
+#include "runners/study/study_schema.hpp"
+
+namespace ricochet {
+
+int command_schema(const Arguments& arguments, std::ostream& out) {
+  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  Registry registry;
+  catalogue.open_all(registry);
+  out << study_schema(registry).dump(2) << "\n";
+  return exit_done;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,112 @@
+#include "runners/command/subcommand.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <sstream>
+
+namespace ricochet {
+namespace po = boost::program_options;
+namespace {
+
+po::options_description described(const Subcommand& command) {
+  po::options_description all("Options");
+  const auto has = [&](const char* name) {
+    return std::find(command.options.begin(), command.options.end(), name) != command.options.end();
+  };
+  auto add = all.add_options();
+  if (has("out")) add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
+  if (has("jobs"))
+    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
+  if (has("fresh")) add("fresh", "forget earlier results in the folder");
+  if (has("to"))
+    add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
+  if (has("plugin"))
+    add("plugin", po::value<std::vector<std::string>>()->value_name("FILE"),
+        "also use this plugin library (repeatable)");
+  add("help", "this text");
+  return all;
+}
+
+std::vector<std::string> option_names(const po::options_description& description) {
+  std::vector<std::string> names;
+  for (const auto& option : description.options()) names.push_back("--" + option->long_name());
+  return names;
+}
+
+std::string see_help(const Subcommand& command) {
+  return "\nUsage: ricochet " + command.name + " " + command.usage;
+}
+
+po::variables_map parse(const Subcommand& command, const po::options_description& named,
+                        const std::vector<std::string>& words) {
+  po::options_description all = named;
+  all.add_options()("operand", po::value<std::vector<std::string>>());
+  po::positional_options_description positions;
+  positions.add("operand", -1);
+  // No guessing: half an option name is an error, not another option.
+  namespace style = po::command_line_style;
+  constexpr int strict = style::unix_style & ~style::allow_guessing;
+  po::variables_map values;
+  try {
+    po::store(po::command_line_parser(words).options(all).positional(positions).style(strict).run(), values);
+  } catch (const po::unknown_option& error) {
+    std::string name = error.get_option_name();
+    if (!name.starts_with("-")) name = "--" + name;
+    const std::string nearest = nearest_name(name, option_names(named));
+    throw UsageError("ricochet " + command.name + " has no option " + name +
+                     (nearest.empty() ? "" : "; did you mean " + nearest + "?") + see_help(command));
+  } catch (const po::invalid_option_value& error) {
+    throw UsageError(std::string(error.what()) + "; expected a whole number" + see_help(command));
+  } catch (const po::error& error) {
+    throw UsageError(error.what() + see_help(command));
+  }
+  return values;
+}
+
+std::optional<std::filesystem::path> path_of(const po::variables_map& values, const char* name) {
+  if (!values.count(name)) return std::nullopt;
+  const auto& text = values[name].as<std::string>();
+  if (text.empty()) throw UsageError(std::string("--") + name + " was given an empty path");
+  return text;
+}
+
+}  // namespace
+
+Arguments parse_arguments(const Subcommand& command, const std::vector<std::string>& words) {
+  const po::options_description named = described(command);
+  const po::variables_map values = parse(command, named, words);
+  Arguments arguments;
+  arguments.help = values.count("help") > 0;
+  if (arguments.help) return arguments;
+  arguments.out = path_of(values, "out");
+  arguments.to = path_of(values, "to");
+  arguments.fresh = values.count("fresh") > 0;
+  if (values.count("jobs")) {
+    arguments.jobs = values["jobs"].as<int>();
+    constexpr int most_jobs = 4096;
+    if (arguments.jobs < 1 || arguments.jobs > most_jobs)
+      throw UsageError(fmt::format("--jobs {} is outside [1, {}]", arguments.jobs, most_jobs));
+  }
+  if (values.count("plugin"))
+    for (const std::string& file : values["plugin"].as<std::vector<std::string>>())
+      arguments.plugins.emplace_back(file);
+  if (values.count("operand")) arguments.operands = values["operand"].as<std::vector<std::string>>();
+  if (arguments.operands.size() < command.fewest)
+    throw UsageError("ricochet " + command.name + ": an argument is missing" + see_help(command));
+  if (arguments.operands.size() > command.most)
+    throw UsageError("ricochet " + command.name + " does not expect \"" + arguments.operands[command.most] + "\"" +
+                     see_help(command));
+  return arguments;
+}
+
+std::string help_text(const Subcommand& command) {
+  std::ostringstream text;
+  text << "Usage: ricochet " << command.name << (command.usage.empty() ? "" : " ") << command.usage << "\n\n"
+       << command.summary << "\n\n"
+       << described(command);
+  return text.str();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+#pragma once
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <ricochet/contract/catalogue.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// The command was used wrongly (exit code 2); the message says how it is used.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A study is wrong (exit code 2); the message is complete, with file, line and pointer.
+class StudyError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The words of a command line, checked against its command's description.
+struct Arguments {
+  std::vector<std::string> operands;
+  std::vector<std::filesystem::path> plugins;    ///< --plugin
+  std::optional<std::filesystem::path> out, to;  ///< --out, --to
+  int jobs = 0;                                  ///< --jobs; 0: all processors
+  bool fresh = false;                            ///< --fresh
+  bool help = false;
+};
+
+/// One command: what it takes, what it says of itself, what it does.
+struct Subcommand {
+  std::string name;
+  std::string usage;  ///< operands and options as the help shows them
+  std::string summary;
+  std::size_t fewest = 0, most = 0;  ///< number of operands
+  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh
+  int (*run)(const Arguments& arguments, std::ostream& out);
+};
+
+const std::vector<Subcommand>& subcommands();
+
+/// Reads the words after the command's name. Throws UsageError for an unknown option (nearest name), a missing or
+/// malformed value, too few or too many operands.
+Arguments parse_arguments(const Subcommand& command, const std::vector<std::string>& words);
+
+/// The help of one command, its options included.
+std::string help_text(const Subcommand& command);
+
+// The commands themselves; each returns its exit code.
+int command_run(const Arguments& arguments, std::ostream& out);
+int command_plan(const Arguments& arguments, std::ostream& out);
+int command_list(const Arguments& arguments, std::ostream& out);
+int command_describe(const Arguments& arguments, std::ostream& out);
+int command_report(const Arguments& arguments, std::ostream& out);
+int command_export(const Arguments& arguments, std::ostream& out);
+int command_schema(const Arguments& arguments, std::ostream& out);
+int command_doctor(const Arguments& arguments, std::ostream& out);
+
+}  // namespace ricochet

@@ -1,0 +1,226 @@
+#include "runners/study/check_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ricochet/scene/formula.hpp>
+
+#include "runners/study/json_text.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string unit_text(const ParameterSpec& spec) {
+  return spec.unit.empty() || spec.unit == "1" ? std::string() : ", in " + spec.unit;
+}
+
+ParameterValue to_parameter(const Json& value, ParameterSpec::Type type, const std::string& pointer,
+                            const std::string& expected) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) {
+    const auto real = value.get<double>();
+    // 1e2 is a whole number however it is spelled; 2^53 bounds what a double counts.
+    if (type == ParameterSpec::Type::integer && std::floor(real) == real && std::abs(real) <= 9007199254740992.0)
+      return static_cast<long long>(real);
+    return real;
+  }
+  throw InputError(pointer, expected + ", found " + quote(value));
+}
+
+std::string expectation(const Field& field) {
+  const ParameterSpec& spec = field.spec;
+  switch (spec.type) {
+    case ParameterSpec::Type::real:
+      return "expected a number in " + spec.range.text() + unit_text(spec);
+    case ParameterSpec::Type::integer:
+      return "expected a whole number in " + spec.range.text();
+    case ParameterSpec::Type::boolean:
+      return "expected true or false";
+    case ParameterSpec::Type::word:
+      break;
+  }
+  return "expected one of " + quoted_list(spec.words);
+}
+
+Json check_scalar(const Field& field, const Json& value, const std::string& pointer) {
+  const ParameterValue given = to_parameter(value, field.spec.type, pointer, expectation(field));
+  if (check_parameter(field.spec, given)) {
+    std::string hint;
+    if (field.spec.type == ParameterSpec::Type::word && value.is_string())
+      hint = did_you_mean(value.get<std::string>(), field.spec.words);
+    throw InputError(pointer, expectation(field) + ", found " + quote(value) + hint);
+  }
+  return to_json(given);
+}
+
+Json check_formula(const Field& field, const Json& value, const std::string& pointer) {
+  if (value.is_null() && field.nullable) return value;
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) {
+    Formula(value.get<std::string>(), pointer, field.variables);
+    return value;
+  }
+  const std::string variables = field.variables == "x" ? "x" : "x and t";
+  throw InputError(pointer, "expected a number or a formula in " + variables + (field.nullable ? " or null" : "") +
+                                unit_text(field.spec) + ", found " + quote(value));
+}
+
+Json check_places(const Json& value, const std::string& pointer) {
+  const std::string expected = "expected \"nodes\", \"tip\" or a list of positions x in ]0, L], in m";
+  if (value.is_string()) {
+    const std::vector<std::string> words = {"nodes", "tip"};
+    const auto word = value.get<std::string>();
+    if (word == "nodes" || word == "tip") return value;
+    throw InputError(pointer, expected + ", found " + quote(value) + did_you_mean(word, words));
+  }
+  if (!value.is_array()) throw InputError(pointer, expected + ", found " + quote(value));
+  if (value.empty()) throw InputError(pointer, "an empty list of positions; for no stops, set both stops to null");
+  Json result = Json::array();
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const std::string here = pointer_to(pointer, i);
+    if (!value[i].is_number())
+      throw InputError(here, "expected a position x in ]0, L], in m, found " + quote(value[i]));
+    result.push_back(value[i].get<double>());
+  }
+  return result;
+}
+
+// A list of positions is one value; a list that holds words or lists is an axis.
+bool is_axis(const Field& field, const Json& value) {
+  if (!field.axis || !value.is_array()) return false;
+  if (field.form != Field::Form::places) return true;
+  return std::any_of(value.begin(), value.end(), [](const Json& item) { return item.is_string() || item.is_array(); });
+}
+
+Json check_value(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  if (is_axis(field, value)) {
+    if (value.empty()) throw InputError(pointer, "an empty list makes no cases; give at least one value");
+    Field element = field;
+    element.axis = false;
+    Axis axis{pointer, {}};
+    Json list = Json::array();
+    std::map<std::string, std::size_t> seen;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      axis.values.push_back(check_value(element, value[i], pointer_to(pointer, i), axes));
+      list.push_back(axis.values.back());
+      const auto [first, fresh] = seen.emplace(list.back().dump(), i);
+      if (!fresh)
+        throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
+                                                     pointer_to(pointer, first->second) +
+                                                     ": the same case would run twice");
+    }
+    axes.push_back(std::move(axis));
+    return list;
+  }
+  switch (field.form) {
+    case Field::Form::scalar:
+      if (value.is_array() && !field.axis)
+        throw InputError(pointer, expectation(field) + "; a list is not possible here");
+      return check_scalar(field, value, pointer);
+    case Field::Form::text:
+      if (!value.is_string()) throw InputError(pointer, "expected a text, found " + quote(value));
+      return value;
+    case Field::Form::formula:
+      return check_formula(field, value, pointer);
+    case Field::Form::places:
+      return check_places(value, pointer);
+    case Field::Form::object:
+      return check_object(field.nested.front(), value, pointer, axes);
+    case Field::Form::methods:
+    case Field::Form::excludes:
+      break;
+  }
+  return value;
+}
+
+// The value at `discriminator`, a path of keys inside `object`; a misspelt key on the way is told as such.
+const Json& discriminate(const std::vector<const Field*>& declared, const Json& object, const std::string& pointer,
+                         const std::string& discriminator, const std::vector<std::string>& words) {
+  const Json* here = &object;
+  std::string where = pointer;
+  for (std::size_t begin = 1; begin <= discriminator.size();) {
+    const std::size_t end = std::min(discriminator.find('/', begin), discriminator.size());
+    const std::string key = discriminator.substr(begin, end - begin);
+    if (!here->is_object()) throw InputError(where, "expected an object, found " + quote(*here));
+    const auto found = here->find(key);
+    if (found == here->end()) {
+      for (const auto& item : here->items()) {
+        const std::string& other = item.key();
+        const bool known =
+            std::any_of(declared.begin(), declared.end(), [&](const Field* field) { return field->key() == other; });
+        if (!known && nearest_name(other, {key}) == key)
+          throw InputError(pointer_to(where, other), "unknown key \"" + other + "\"; did you mean \"" + key + "\"?");
+      }
+      throw InputError(pointer_to(where, key), end < discriminator.size()
+                                                   ? "missing; this key is required"
+                                                   : "missing; expected one of " + quoted_list(words));
+    }
+    here = &*found;
+    where = pointer_to(where, key);
+    begin = end + 1;
+  }
+  return *here;
+}
+
+}  // namespace
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? std::string() : "; did you mean \"" + nearest + "\"?";
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string result;
+  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + word + "\"";
+  return result;
+}
+
+std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, const std::string& pointer) {
+  if (!value.is_object()) throw InputError(pointer, "expected an object, found " + quote(value));
+  std::vector<const Field*> fields;
+  const ObjectForm* level = &form;
+  while (true) {
+    for (const Field& field : level->fields) fields.push_back(&field);
+    if (level->discriminator.empty()) return fields;
+    std::vector<std::string> words;
+    for (const Variant& variant : level->variants)
+      words.insert(words.end(), variant.words.begin(), variant.words.end());
+    const std::string key = level->discriminator.substr(level->discriminator.rfind('/') + 1);
+    const std::string where = pointer + level->discriminator;
+    const Json& found = discriminate(fields, value, pointer, level->discriminator, words);
+    if (!found.is_string())
+      throw InputError(where, "expected one of " + quoted_list(words) + ", found " + quote(found));
+    const auto word = found.get<std::string>();
+    const auto variant = std::find_if(level->variants.begin(), level->variants.end(), [&](const Variant& candidate) {
+      return std::find(candidate.words.begin(), candidate.words.end(), word) != candidate.words.end();
+    });
+    if (variant == level->variants.end())
+      throw InputError(
+          where, "unknown " + key + " \"" + word + "\"; there is: " + quoted_list(words) + did_you_mean(word, words));
+    level = &variant->keys;
+  }
+}
+
+Json check_object(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  const std::vector<const Field*> fields = fields_of(form, value, pointer);
+  std::vector<std::string> keys;
+  for (const Field* field : fields) keys.push_back(field->key());
+  for (const auto& [key, ignored] : value.items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"" + did_you_mean(key, keys) +
+                                                     " (keys here: " + quoted_list(keys) + ")");
+  Json result = Json::object();
+  for (const Field* field : fields) {
+    const std::string here = pointer_to(pointer, field->key());
+    const auto given = value.find(field->key());
+    if (given == value.end() && field->required()) {
+      const bool scalar = field->form == Field::Form::scalar;
+      throw InputError(here, "missing" + (scalar ? "; " + expectation(*field) : "; this key is required"));
+    }
+    result[field->key()] = check_value(*field, given == value.end() ? *field->fallback : *given, here, axes);
+  }
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/study/field.hpp"
+
+namespace ricochet {
+
+/// A list given where a scalar is expected.
+struct Axis {
+  std::string pointer;       ///< of the list
+  std::vector<Json> values;  ///< checked; numbers of real fields are doubles
+};
+
+/// Checks a closed object against its form and returns it complete: keys in the order of the form, defaults written
+/// out, lists kept. Lists that are axes are appended to `axes`. Methods and excludes are copied unchecked: they need
+/// plugins and cases. Throws InputError for an unknown or missing key, a wrong type, a value out of range, a formula
+/// that does not parse, an empty list.
+Json check_object(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
+
+/// The fields that an object has, its variants resolved. Throws InputError when a discriminator is missing or unknown.
+std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, const std::string& pointer);
+
+/// "; did you mean "X"?" or "".
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
+
+/// "a", "b", "c".
+std::string quoted_list(const std::vector<std::string>& words);
+
+}  // namespace ricochet

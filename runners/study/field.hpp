@@ -1,0 +1,67 @@
+#pragma once
+#include <optional>
+#include <ricochet/contract/parameters.hpp>
+#include <ricochet/contract/registry.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/study/study.hpp"
+
+/// \file
+/// The study format as data: each key is declared once, and the checker, the defaults and the JSON Schema all read the
+/// declaration.
+namespace ricochet {
+
+struct Field;
+struct Variant;
+
+/// A closed JSON object: the keys it may have. With a discriminator (a pointer relative to the object, such as
+/// "/type"), further keys depend on the word found there; variants may have a discriminator of their own.
+struct ObjectForm {
+  std::vector<Field> fields;
+  std::string discriminator;
+  std::vector<Variant> variants;
+};
+
+/// One key of an object.
+struct Field {
+  enum class Form {
+    scalar,    ///< a number, whole number, boolean or word, as `spec` declares
+    text,      ///< any string
+    formula,   ///< a number or a formula in `variables`
+    places,    ///< where stops act: "nodes", "tip" or a list of positions
+    object,    ///< a nested object
+    methods,   ///< methods of `role`: a name, an object, or a list of either
+    excludes,  ///< partial matches with a reason
+  };
+  Form form = Form::scalar;
+  ParameterSpec spec;              ///< key, unit, text; for scalars also type, range, words
+  std::optional<Json> fallback;    ///< what an absent key means; none: the study must give it
+  bool axis = false;               ///< a list here is an axis of the cross product
+  bool nullable = false;           ///< null is a value (an absent stop)
+  std::string variables;           ///< for formulas: a subset of "xt"
+  Role role = Role::mass;          ///< for methods
+  std::vector<ObjectForm> nested;  ///< one entry for Form::object
+
+  const std::string& key() const { return spec.key; }
+  bool required() const { return !fallback; }
+};
+
+struct Variant {
+  std::vector<std::string> words;  ///< values of the discriminator that lead here
+  ObjectForm keys;                 ///< keys in addition to the enclosing object's
+};
+
+/// The keys of a whole study; its variants are the kinds. A new kind is one more variant, with its own keys.
+const ObjectForm& study_form();
+
+/// The kinds of study that exist.
+std::vector<std::string> study_kinds();
+
+/// The keys of one method as a study writes it: "name" and the plugin's parameters, each of which may be a list.
+ObjectForm method_form(const PluginManual& manual);
+
+/// A default or a bound as JSON.
+Json to_json(const ParameterValue& value);
+
+}  // namespace ricochet

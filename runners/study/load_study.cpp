@@ -1,0 +1,227 @@
+#include "runners/study/load_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <sstream>
+
+#include "runners/study/case_id.hpp"
+#include "runners/study/check_object.hpp"
+#include "runners/study/excludes.hpp"
+#include "runners/study/json_text.hpp"
+#include "runners/study/product.hpp"
+#include "runners/study/read_methods.hpp"
+#include "runners/study/read_scene.hpp"
+
+namespace ricochet {
+namespace {
+
+using Axes = std::vector<std::pair<std::string, Json>>;
+
+// More steps than any machine marches: beyond, the ratio is a slip of units.
+constexpr double most_steps = 1e12;
+
+// One scene of the cross product of the scene's lists.
+struct SceneOption {
+  SceneSpec scene;
+  Json json;
+  Axes axes;
+};
+
+std::string read_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) throw InputError("", "is a folder; expected a study, a JSON file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
+    throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
+  return text.str();
+}
+
+void check_name(const std::string& name) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  if (name.empty() || name.size() > 100 || !std::isalnum(static_cast<unsigned char>(name[0])) ||
+      !std::all_of(name.begin(), name.end(), allowed))
+    throw InputError("/name",
+                     "expected a name that can be a folder: 1 to 100 letters, digits, '-', '_' or '.', the first a "
+                     "letter or a digit; found " +
+                         quote(name));
+}
+
+// The values of a field that may be a list.
+template <class T>
+std::vector<T> list_of(const Json& value) {
+  if (value.is_array()) return value.get<std::vector<T>>();
+  return {value.get<T>()};
+}
+
+std::string element_pointer(const Json& value, const std::string& pointer, std::size_t index) {
+  return value.is_array() ? pointer_to(pointer, index) : pointer;
+}
+
+void check_steps(const Json& steps, double duration) {
+  const std::vector<double> values = list_of<double>(steps);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string pointer = element_pointer(steps, "/step", i);
+    if (values[i] > duration)
+      throw InputError(pointer, fmt::format("a step of {} s is longer than the duration of {} s", values[i], duration));
+    if (duration / values[i] > most_steps)
+      throw InputError(pointer, fmt::format("{} s in steps of {} s would take {:.3g} steps; expected at most {:g}",
+                                            duration, values[i], duration / values[i], most_steps));
+  }
+}
+
+std::string column_of(const std::string& scene_pointer) {
+  std::string column = scene_pointer.substr(std::string("/scene/").size());
+  std::replace(column.begin(), column.end(), '/', '.');
+  return column;
+}
+
+// Reads and checks every scene; an offending value that came from a list is named with its place in the list.
+std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest) {
+  std::vector<SceneOption> options;
+  Product product;
+  for (const Axis& axis : axes) product.add(axis.values.size());
+  product.refuse_above(largest_study, "/scene");
+  for (; !product.ended(); product.next()) {
+    SceneOption option;
+    option.json = scene;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const Json& value = axes[a].values[product[a]];
+      option.json[Json::json_pointer(axes[a].pointer.substr(std::string("/scene").size()))] = value;
+      option.axes.emplace_back(column_of(axes[a].pointer), value);
+    }
+    try {
+      option.scene = read_scene(option.json);
+      check_scene(option.scene, finest);
+    } catch (const InputError& error) {
+      std::string pointer = error.pointer();
+      for (std::size_t a = 0; a < axes.size(); ++a)
+        if (pointer == axes[a].pointer || pointer.starts_with(axes[a].pointer + "/"))
+          pointer.insert(axes[a].pointer.size(), "/" + std::to_string(product[a]));
+      throw InputError(pointer, error.what());
+    }
+    options.push_back(std::move(option));
+  }
+  return options;
+}
+
+// Two entries that expand to the same method would run the same case twice.
+void refuse_repeated(const std::vector<MethodOption>& options, Role role) {
+  std::map<std::string, std::string> seen;
+  for (const MethodOption& option : options) {
+    std::string text;
+    for (const auto& [key, value] : option.axes) text += (text.empty() ? "" : ", ") + key + " = " + quote(value);
+    const auto [first, fresh] = seen.emplace(text, option.places.back());
+    if (!fresh)
+      throw InputError(option.places.back(), "gives the same " + std::string(role_name(role)) + " method as " +
+                                                 first->second + " (" + text + "): the same case would run twice");
+  }
+}
+
+void add_columns(const Axes& axes, std::vector<std::string>& columns) {
+  for (const auto& [name, ignored] : axes)
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+}
+
+}  // namespace
+
+Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry) {
+  std::vector<Axis> axes;
+  Study study;
+  study.resolved = check_object(study_form(), parse_json(text), "", axes);
+  Json& resolved = study.resolved;
+  study.name = resolved["name"].get<std::string>();
+  study.question = resolved["question"].get<std::string>();
+  study.kind = resolved["kind"].get<std::string>();
+  check_name(study.name);
+  const auto duration = resolved["duration"].get<double>();
+  const auto samples = resolved["samples"].get<int>();
+  check_steps(resolved["step"], duration);
+  const std::vector<double> steps = list_of<double>(resolved["step"]);
+  const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
+
+  std::vector<MethodOptions> methods;
+  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+    const std::string key = role_name(role);
+    methods.push_back(read_methods(role, resolved["methods"][key], "/methods/" + key, catalogue, registry));
+    refuse_repeated(methods.back().options, role);
+    resolved["methods"][key] = methods.back().resolved;
+  }
+  const auto& masses = methods[0].options;
+  const auto& contacts = methods[1].options;
+  const auto& times = methods[2].options;
+
+  axes.erase(
+      std::remove_if(axes.begin(), axes.end(), [](const Axis& axis) { return !axis.pointer.starts_with("/scene/"); }),
+      axes.end());
+  Product everything;
+  for (const Axis& axis : axes) everything.add(axis.values.size());
+  for (const std::size_t size : {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size()})
+    everything.add(size);
+  everything.refuse_above(largest_study, "");
+
+  const int finest = *std::max_element(meshes.begin(), meshes.end());
+  const std::vector<SceneOption> scenes = expand_scenes(resolved["scene"], axes, finest);
+
+  for (const MethodOptions& role : methods)
+    for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
+  add_columns({{"elements", nullptr}, {"step", nullptr}}, study.columns);
+  add_columns(scenes.front().axes, study.columns);
+
+  CaseIds ids;
+  Product product;
+  for (const std::size_t size :
+       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size()})
+    product.add(size);
+  for (; !product.ended(); product.next()) {
+    StudyCase one;
+    const SceneOption& scene = scenes[product[0]];
+    one.scene = scene.scene;
+    one.scene_json = scene.json;
+    one.mass = masses[product[1]].choice;
+    one.contact = contacts[product[2]].choice;
+    one.time = times[product[3]].choice;
+    for (const MethodOption* option : {&masses[product[1]], &contacts[product[2]], &times[product[3]]})
+      one.axes.insert(one.axes.end(), option->axes.begin(), option->axes.end());
+    one.elements = meshes[product[4]];
+    one.step = steps[product[5]];
+    one.axes.emplace_back("elements", one.elements);
+    one.axes.emplace_back("step", one.step);
+    one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
+    one.duration = duration;
+    one.samples = samples;
+    one.id = ids.next(one, study.kind);
+    study.cases.push_back(std::move(one));
+  }
+  apply_excludes(resolved["exclude"], study);
+  return study;
+}
+
+Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry) {
+  return parse_study(read_text(file), catalogue, registry);
+}
+
+std::string explain(const InputError& error, const std::filesystem::path& file) {
+  std::string place = file.string();
+  if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))
+    return fmt::format("{}:{}:{}: {}", place, syntax->where().line, syntax->where().column, error.what());
+  if (error.pointer().empty()) return place + ": " + error.what();
+  try {
+    const std::string text = read_text(file);
+    parse_json(text);
+    if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
+  } catch (const InputError& twice) {
+    // A key given twice: the text can still be located in. Anything else has no line to tell.
+    if (!twice.pointer().empty())
+      if (const auto where = locate(read_text(file), error.pointer())) place += ":" + std::to_string(where->line);
+  }
+  return place + ": at " + error.pointer() + ": " + error.what();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,29 @@
+#pragma once
+#include <ricochet/contract/catalogue.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// One method of one role, every list of parameters expanded.
+struct MethodOption {
+  MethodChoice choice;
+  std::vector<std::pair<std::string, Json>> axes;  ///< "time": name, then "time.beta": value, …, in the plugin's order
+  std::vector<std::string> places;                 ///< JSON pointers that chose it: the entry, then list elements
+};
+
+struct MethodOptions {
+  std::vector<MethodOption> options;  ///< in the study's order
+  Json resolved;                      ///< a list of complete objects
+};
+
+/// Reads the methods of a role: a name, an object {name, parameters…}, or a list of either. Opens the libraries named,
+/// and only these. Throws InputError for an unknown name, parameter or value; PluginError when no file provides the
+/// name but some found files cannot serve, or when the one that does fails.
+MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
+                           Registry& registry);
+
+}  // namespace ricochet

@@ -1,0 +1,77 @@
+#include "runners/study/read_scene.hpp"
+
+namespace ricochet {
+namespace {
+
+Formula read_formula(const Json& value, const std::string& pointer, const std::string& variables) {
+  if (value.is_number()) return Formula(value.get<double>());
+  return Formula(value.get<std::string>(), pointer, variables);
+}
+
+Section read_section(const Json& json) {
+  Section section;
+  const auto type = json.at("type").get<std::string>();
+  if (type == "tube") {
+    section.type = Section::Type::tube;
+    section.outer_diameter = json.at("outer_diameter").get<double>();
+    section.wall = json.at("wall").get<double>();
+  } else if (type == "circle") {
+    section.type = Section::Type::circle;
+    section.diameter = json.at("diameter").get<double>();
+  } else if (type == "rectangle") {
+    section.type = Section::Type::rectangle;
+    section.width = json.at("width").get<double>();
+    section.height = json.at("height").get<double>();
+  } else {
+    section.type = Section::Type::given;
+    section.EI = json.at("EI").get<double>();
+    section.rhoS = json.at("rhoS").get<double>();
+  }
+  return section;
+}
+
+BeamSpec read_beam(const Json& json) {
+  BeamSpec beam;
+  beam.length = json.at("length").get<double>();
+  beam.section = read_section(json.at("section"));
+  if (beam.section.type != Section::Type::given) {
+    beam.young = json.at("young").get<double>();
+    beam.density = json.at("density").get<double>();
+  }
+  beam.damping = {json.at("damping").at("stiffness").get<double>(), json.at("damping").at("mass").get<double>()};
+  return beam;
+}
+
+StopsSpec read_stops(const Json& json) {
+  StopsSpec stops;
+  if (!json.at("lower").is_null()) stops.lower = read_formula(json.at("lower"), "/scene/stops/lower", "x");
+  if (!json.at("upper").is_null()) stops.upper = read_formula(json.at("upper"), "/scene/stops/upper", "x");
+  const Json& at = json.at("at");
+  if (at.is_string()) {
+    stops.place = at == "tip" ? StopsSpec::Place::tip : StopsSpec::Place::nodes;
+    return stops;
+  }
+  stops.place = StopsSpec::Place::positions;
+  stops.positions = at.get<std::vector<double>>();
+  return stops;
+}
+
+}  // namespace
+
+SceneSpec read_scene(const Json& scene) {
+  SceneSpec spec;
+  spec.structure = read_beam(scene.at("structure"));
+  spec.stops = read_stops(scene.at("stops"));
+  const Json& support = scene.at("support");
+  spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),
+                  support.at("phase").get<double>()};
+  spec.load = read_formula(scene.at("load"), "/scene/load", "xt");
+  const Json& initial = scene.at("initial");
+  spec.initial.displacement = read_formula(initial.at("displacement"), "/scene/initial/displacement", "x");
+  spec.initial.velocity = read_formula(initial.at("velocity"), "/scene/initial/velocity", "x");
+  spec.initial.projection =
+      initial.at("projection") == "constraint" ? InitialSpec::Projection::constraint : InitialSpec::Projection::none;
+  return spec;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// A checked and complete scene, scalars only (as check_object leaves it, lists replaced by one value each), as the
+/// core wants it. What one key alone does not show (a wall thicker than the radius, a position beyond the tip) is left
+/// to check_scene().
+SceneSpec read_scene(const Json& scene);
+
+}  // namespace ricochet

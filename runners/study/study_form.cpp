@@ -1,0 +1,223 @@
+#include <limits>
+
+#include "runners/study/field.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const Range any{};
+const Range positive{0, infinity, true, false};
+const Range non_negative{0, infinity, false, false};
+
+Field real(const char* key, const char* unit, const Range& range, std::optional<double> fallback, const char* text) {
+  Field field;
+  field.spec = real_parameter(key, unit, fallback, range, text);
+  if (fallback) field.fallback = *fallback;
+  field.axis = true;
+  return field;
+}
+
+Field single(Field field) {
+  field.axis = false;
+  return field;
+}
+
+Field integer(const char* key, const Range& range, std::optional<long long> fallback, const char* text) {
+  Field field;
+  field.spec = integer_parameter(key, fallback, range, text);
+  if (fallback) field.fallback = *fallback;
+  return field;
+}
+
+Field word(const char* key, std::vector<std::string> words, std::optional<std::string> fallback, const char* text) {
+  Field field;
+  field.spec = word_parameter(key, std::move(words), fallback, text);
+  if (fallback) field.fallback = *fallback;
+  return field;
+}
+
+Field named(Field::Form form, const char* key, std::optional<Json> fallback, const char* text) {
+  Field field;
+  field.form = form;
+  field.spec.key = key;
+  field.spec.text = text;
+  field.fallback = std::move(fallback);
+  return field;
+}
+
+Field formula(const char* key, const char* unit, const char* variables, bool nullable, std::optional<Json> fallback,
+              const char* text) {
+  Field field = named(Field::Form::formula, key, std::move(fallback), text);
+  field.spec.unit = unit;
+  field.variables = variables;
+  field.nullable = nullable;
+  field.axis = true;
+  return field;
+}
+
+Field object(const char* key, std::optional<Json> fallback, const char* text, ObjectForm keys) {
+  Field field = named(Field::Form::object, key, std::move(fallback), text);
+  field.nested.push_back(std::move(keys));
+  return field;
+}
+
+Field methods(const char* key, Role role, const char* text) {
+  Field field = named(Field::Form::methods, key, std::nullopt, text);
+  field.role = role;
+  return field;
+}
+
+ObjectForm section() {
+  ObjectForm keys;
+  keys.fields = {word("type", {"tube", "circle", "rectangle", "given"}, std::nullopt, "Shape of the cross-section.")};
+  keys.discriminator = "/type";
+  keys.variants = {
+      {{"tube"},
+       {{real("outer_diameter", "m", positive, std::nullopt,
+              "Outer diameter D; I = π(D⁴ − d⁴)/64 with d = D − 2·wall."),
+         real("wall", "m", positive, std::nullopt, "Wall thickness, at most half of the outer diameter.")},
+        "",
+        {}}},
+      {{"circle"}, {{real("diameter", "m", positive, std::nullopt, "Diameter D; I = πD⁴/64.")}, "", {}}},
+      {{"rectangle"},
+       {{real("width", "m", positive, std::nullopt, "Width b, along the axis of bending; I = b h³/12."),
+         real("height", "m", positive, std::nullopt, "Height h, across which the section bends.")},
+        "",
+        {}}},
+      {{"given"},
+       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness, given as a number."),
+         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length, given as a number.")},
+        "",
+        {}}},
+  };
+  return keys;
+}
+
+ObjectForm structure() {
+  ObjectForm damping;
+  damping.fields = {real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM."),
+                    real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM.")};
+  ObjectForm beam;
+  beam.fields = {real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L."),
+                 object("section", std::nullopt, "Cross-section: EI and ρS follow from it.", section()),
+                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  beam.discriminator = "/section/type";
+  beam.variants = {{{"tube", "circle", "rectangle"},
+                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
+                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.")},
+                     "",
+                     {}}},
+                   {{"given"}, {}}};
+  ObjectForm keys;
+  keys.fields = {word("type", {"beam"}, std::nullopt, "What moves.")};
+  keys.discriminator = "/type";
+  keys.variants = {{{"beam"}, beam}};
+  return keys;
+}
+
+ObjectForm scene() {
+  ObjectForm stops;
+  stops.fields = {formula("lower", "m", "x", true, Json(nullptr), "Lower stop g1(x) ≤ u; null: absent."),
+                  formula("upper", "m", "x", true, Json(nullptr), "Upper stop u ≤ g2(x); null: absent."),
+                  named(Field::Form::places, "at", Json("nodes"),
+                        "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")};
+  stops.fields.back().axis = true;
+
+  ObjectForm support;
+  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the clamp's motion φ(t) = A0 sin(ωt + ψ)."),
+                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the clamp's motion."),
+                    real("phase", "rad", any, 0.0, "ψ of the clamp's motion.")};
+
+  ObjectForm initial;
+  initial.fields = {
+      formula("displacement", "m", "x", false, Json("0"), "Absolute displacement u(x,0)."),
+      formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0)."),
+      word("projection", {"none", "constraint"}, "none",
+           "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};
+  initial.fields.back().axis = true;
+
+  ObjectForm keys;
+  keys.fields = {
+      object("structure", std::nullopt, "The structure.", structure()),
+      object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: no stops.", stops),
+      object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+             "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+      formula("load", "N/m", "xt", false, Json("0"), "Distributed load f(x,t)."),
+      object("initial", Json::object(), "Absolute initial state; absent: at rest in the laboratory frame.", initial)};
+  return keys;
+}
+
+// A new kind is one more entry here, with the keys that only it has.
+std::vector<Variant> kinds() {
+  return {
+      {{"trajectory"},
+       {{single(real("duration", "s", positive, std::nullopt,
+                     "Simulated time; the run ends at the last whole step not beyond it.")),
+         integer("samples", {2, 1000000, false, false}, 200, "Number of points of each sampled curve.")},
+        "",
+        {}}},
+  };
+}
+
+ObjectForm study() {
+  ObjectForm mesh;
+  mesh.fields = {integer("elements", {1, 100000, false, false}, std::nullopt, "Number of equal elements.")};
+  mesh.fields.back().axis = true;
+
+  ObjectForm chosen;
+  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised, hence the mass matrix."),
+                   methods("contact", Role::contact, "The contact law."),
+                   methods("time", Role::time, "The time scheme.")};
+
+  ObjectForm keys;
+  keys.fields = {
+      named(Field::Form::text, "name", std::nullopt,
+            "Name of the study: letters, digits, '-', '_' and '.'; results go to results/NAME."),
+      named(Field::Form::text, "question", Json(""), "The question that the study answers."),
+      word("kind", study_kinds(), std::nullopt, "What is made of each case."),
+      object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
+      object("mesh", std::nullopt, "The meshes.", mesh),
+      object("methods", std::nullopt, "The methods whose combinations are run.", chosen),
+      real("step", "s", positive, std::nullopt, "Time step h."),
+      named(Field::Form::excludes, "exclude", Json::array(), "Combinations that are not run, each with its reason.")};
+  keys.discriminator = "/kind";
+  keys.variants = kinds();
+  return keys;
+}
+
+}  // namespace
+
+std::vector<std::string> study_kinds() {
+  std::vector<std::string> words;
+  for (const Variant& kind : kinds()) words.insert(words.end(), kind.words.begin(), kind.words.end());
+  return words;
+}
+
+const ObjectForm& study_form() {
+  static const ObjectForm form = study();
+  return form;
+}
+
+Json to_json(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+ObjectForm method_form(const PluginManual& manual) {
+  ObjectForm keys;
+  keys.fields = {word("name", {manual.name}, std::nullopt, manual.summary.c_str())};
+  for (const ParameterSpec& spec : manual.parameters) {
+    Field field;
+    field.spec = spec;
+    field.axis = true;
+    if (spec.fallback) {
+      const auto* whole = std::get_if<long long>(&*spec.fallback);
+      field.fallback =
+          whole && spec.type == ParameterSpec::Type::real ? Json(static_cast<double>(*whole)) : to_json(*spec.fallback);
+    }
+    keys.fields.push_back(std::move(field));
+  }
+  return keys;
+}
+
+}  // namespace ricochet
