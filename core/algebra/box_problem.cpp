@@ -34,7 +34,8 @@ double complementarity(double y, double lower, double upper, double p, double di
 void BoxSolver::prepare(int points) {
   assert(points >= 0);
   const auto m = static_cast<std::size_t>(points);
-  for (auto* v : {&free_, &lower_, &upper_, &measure_, &effort_, &best_, &diagonal_, &pivot_, &right_})
+  for (auto* v :
+       {&free_, &lower_, &upper_, &measure_, &effort_, &feasible_, &best_, &diagonal_, &pivot_, &right_, &null_})
     v->assign(m, 0.0);
   factor_.assign(m * m, 0.0);
   column_.assign(m, nullptr);
@@ -77,8 +78,8 @@ bool BoxSolver::read(const double* free, const double* lower, const double* uppe
                      int stride) {
   points_ = points;
   count_ = 0;
-  terms_ = regularisation_ = 0;
-  dependent_ = false;
+  terms_ = 0;
+  best_residual_ = infinity;
   double depth = 0, poison = 0;
   for (int i = 0; i < points; ++i) {
     const double f = free[i * stride], l = lower[i * stride], u = upper[i * stride], e = p[i * stride];
@@ -131,56 +132,25 @@ LaneOutcome BoxSolver::solve_uncoupled(double compliance) {
 
 LaneOutcome BoxSolver::search(const Operator& A) {
   LaneOutcome outcome;
-  const int limit = pivot_limit_ < 0 ? 50 * points_ + 200 : pivot_limit_;
-  int pivots = 0, fewest = points_ + 1;
-  bool one_by_one = false, solved = false, accepted = false;
-  double best = infinity;
   visited_.clear();
   choose_first_set();
   seen_before();
-  for (;;) {
+  bool solved = false;
+  for (bool repeated = false; !solved && !repeated;) {
     try_set(A);
     ++outcome.iterations;
-    const int wrong = count_wrong();
-    solved = wrong == 0;
+    solved = all_right();
     if (solved) break;
-    if (one_by_one) {
-      const double r = residual();
-      accepted = r <= tolerance();
-      if (accepted) break;
-      if (r < best) {
-        best = r;
-        std::copy_n(effort_.begin(), points_, best_.begin());
-      }
-      if (wrong < fewest) {
-        one_by_one = false;
-        visited_.clear();
-        seen_before();
-      }
-    }
-    fewest = std::min(fewest, wrong);
-    if (!one_by_one) {
-      move_all();
-      if (!seen_before()) continue;
-      one_by_one = true;
-    } else {
-      if (pivots++ >= limit) break;
-      move_first();
-    }
-    // Neither method is sure of its end unless A is a P-matrix, which this makes it.
-    if (one_by_one && dependent_ && regularisation_ == 0) {
-      regularisation_ = 1e-12 + 64 * epsilon * points_;
-      fewest = points_ + 1;
-    }
+    move_all();
+    repeated = seen_before();
   }
-  if (solved && regularisation_ > 0) correct(A);
-  if (accepted || regularisation_ > 0) drop_wrong_signs(A);
+  if (!solved) descend(A, outcome);
   outcome.residual = residual();
-  outcome.converged = outcome.residual <= tolerance();
-  if (!outcome.converged && best < outcome.residual) {
-    outcome.residual = best;
+  if (best_residual_ < outcome.residual) {
+    outcome.residual = best_residual_;
     std::copy_n(best_.begin(), points_, effort_.begin());
   }
+  outcome.converged = outcome.residual <= tolerance();
   if (!std::isfinite(outcome.residual)) std::fill_n(effort_.begin(), points_, 0.0);
   return outcome;
 }
@@ -197,6 +167,7 @@ void BoxSolver::try_set(const Operator& A) {
 // A_SS = L D Lᵀ row by row; points that depend on earlier ones, and immobile ones, leave the set.
 void BoxSolver::factorise(const Operator& A) {
   count_ = 0;
+  dropped_ = -1;
   const auto row_length = static_cast<std::size_t>(points_);
   for (int i = 0; i < points_; ++i) {
     if (!active(i)) continue;
@@ -207,7 +178,7 @@ void BoxSolver::factorise(const Operator& A) {
       continue;
     }
     double* row = factor_.data() + count_ * row_length;
-    double d = a * (1 + regularisation_);
+    double d = a;
     for (int j = 0; j < count_; ++j) {
       const double* earlier = factor_.data() + j * row_length;
       double w = A.reach * column[set_[j]];
@@ -219,9 +190,11 @@ void BoxSolver::factorise(const Operator& A) {
       row[j] = w / pivot_[j];
       d -= w * row[j];
     }
-    // Nearly dependent: efforts keep fewer than five digits, and their signs may no longer be trusted.
-    dependent_ = dependent_ || !(d > 1e-11 * a);
     if (!(d > 16 * (count_ + 1) * epsilon * a)) {
+      std::copy_n(row, count_, null_.begin());
+      dropped_ = i;
+      dropped_side_ = side_[i];
+      rank_ = count_;
       side_[i] = Side::none;
       continue;
     }
@@ -260,29 +233,108 @@ void BoxSolver::evaluate(const Operator& A) {
   terms_ = std::sqrt(count_ * largest * work);
 }
 
-// Newton's correction with the regularised factor: what regularisation added to y is removed.
-void BoxSolver::correct(const Operator& A) {
-  double before = residual();
-  for (int round = 0; round < 3 && before > 0; ++round) {
-    for (int j = 0; j < count_; ++j) right_[j] = bound(set_[j]) - measure_[set_[j]];
-    substitute();
-    std::copy_n(effort_.begin(), points_, best_.begin());
-    for (int j = 0; j < count_; ++j) effort_[set_[j]] += right_[j];
-    evaluate(A);
-    const double after = residual();
-    if (!(after < before)) {
-      std::copy_n(best_.begin(), points_, effort_.begin());
-      evaluate(A);
-      return;
+void BoxSolver::descend(const Operator& A, LaneOutcome& outcome) {
+  for (int i = 0; i < points_; ++i) {
+    if (active(i) && (effort_[i] == 0 || pulls(i))) side_[i] = Side::none;
+    feasible_[i] = active(i) ? effort_[i] : 0.0;
+  }
+  const int limit = set_limit_ < 0 ? 50 * points_ + 200 : set_limit_;
+  int entering = -1;
+  for (int tried = 0; tried < limit; ++tried) {
+    try_set(A);
+    ++outcome.iterations;
+    if (dropped_ >= 0) {
+      if (!slide(entering)) return;
+      continue;
     }
-    before = after;
+    double step = 1;
+    const int leaving = first_to_leave(step);
+    if (leaving < 0) {
+      for (int j = 0; j < count_; ++j) feasible_[set_[j]] = effort_[set_[j]];
+      keep_best();
+      entering = deepest();
+      if (entering < 0 || best_residual_ <= tolerance()) return;
+      side_[entering] = beyond(entering);
+      continue;
+    }
+    // The entering point would leave at once: its violation was round-off.
+    if (leaving == entering && feasible_[entering] == 0) return;
+    for (int j = 0; j < count_; ++j) {
+      const int i = set_[j];
+      feasible_[i] += step * (effort_[i] - feasible_[i]);
+    }
+    feasible_[leaving] = 0;
+    side_[leaving] = Side::none;
   }
 }
 
-void BoxSolver::drop_wrong_signs(const Operator& A) {
-  for (int j = 0; j < count_; ++j)
-    if (pulls(set_[j])) effort_[set_[j]] = 0;
-  evaluate(A);
+// A_SS is singular: along its null vector y does not move, and the sum decreases at the rate at which the entering
+// point's violation is worked on, until a point of the set has no effort left. If none ever has, no p satisfies (1).
+bool BoxSolver::slide(int entering) {
+  for (int j = rank_ - 1; j >= 0; --j) {
+    null_[j] = -null_[j];
+    const double* row = factor_.data() + j * static_cast<std::size_t>(points_);
+    for (int t = 0; t < j; ++t) null_[t] += row[t] * null_[j];
+  }
+  side_[dropped_] = dropped_side_;
+  double along = dropped_ == entering ? 1 : 0;
+  for (int j = 0; j < rank_; ++j)
+    if (set_[j] == entering) along = null_[j];
+  const double sign = entering >= 0 && (along < 0) == (side_[entering] == Side::lower) ? -1 : 1;
+
+  int leaving = -1;
+  double step = infinity;
+  const auto look = [&](int i, double rate) {
+    if (i == entering || (side_[i] == Side::lower ? rate >= 0 : rate <= 0)) return;
+    const double until = -feasible_[i] / rate;
+    if (until < step) {
+      step = until;
+      leaving = i;
+    }
+  };
+  for (int j = 0; j < rank_; ++j) look(set_[j], sign * null_[j]);
+  look(dropped_, sign);
+  if (leaving < 0) return false;
+  for (int j = 0; j < rank_; ++j) feasible_[set_[j]] += step * sign * null_[j];
+  feasible_[dropped_] += step * sign;
+  feasible_[leaving] = 0;
+  side_[leaving] = Side::none;
+  return true;
+}
+
+// The first point whose effort changes sign on the way from feasible_ to effort_, and the part of the way until there.
+int BoxSolver::first_to_leave(double& step) const {
+  int leaving = -1;
+  for (int j = 0; j < count_; ++j) {
+    const int i = set_[j];
+    if (!pulls(i)) continue;
+    const double until = feasible_[i] / (feasible_[i] - effort_[i]);
+    if (leaving < 0 || until < step) {
+      step = until;
+      leaving = i;
+    }
+  }
+  return leaving;
+}
+
+int BoxSolver::deepest() const {
+  int found = -1;
+  double depth = 0;
+  for (int i = 0; i < points_; ++i) {
+    const double d = beyond_bounds(measure_[i], lower_[i], upper_[i]);
+    if (d > depth && side_[i] == Side::none && beyond(i) != Side::none) {
+      depth = d;
+      found = i;
+    }
+  }
+  return found;
+}
+
+void BoxSolver::keep_best() {
+  const double r = residual();
+  if (!(r < best_residual_)) return;
+  best_residual_ = r;
+  std::copy_n(effort_.begin(), points_, best_.begin());
 }
 
 double BoxSolver::bound(int i) const {
@@ -304,15 +356,11 @@ BoxSolver::Side BoxSolver::beyond(int i) const {
   return y < lower_[i] - slack ? Side::lower : y > upper_[i] + slack ? Side::upper : Side::none;
 }
 
-int BoxSolver::count_wrong() const {
-  int wrong = 0;
+bool BoxSolver::all_right() const {
   for (int i = 0; i < points_; ++i) {
-    if (side_[i] == Side::none)
-      wrong += beyond(i) != Side::none;
-    else if (active(i))
-      wrong += pulls(i);
+    if (side_[i] == Side::none ? beyond(i) != Side::none : active(i) && pulls(i)) return false;
   }
-  return wrong;
+  return true;
 }
 
 void BoxSolver::move_all() {
@@ -326,19 +374,7 @@ void BoxSolver::move_all() {
   }
 }
 
-void BoxSolver::move_first() {
-  for (int i = 0; i < points_; ++i) {
-    if (side_[i] == Side::none) {
-      side_[i] = beyond(i);
-      if (side_[i] != Side::none) return;
-    } else if (active(i) && pulls(i)) {
-      side_[i] = Side::none;
-      return;
-    }
-  }
-}
-
-// Remembers the set; a full memory counts as a repetition, which is safe: the fallback starts from any set.
+// Remembers the set; a full memory counts as a repetition, which is safe: descent starts from any set.
 bool BoxSolver::seen_before() {
   std::uint64_t sum = 0;
   for (int i = 0; i < points_; ++i)
@@ -365,8 +401,9 @@ double BoxSolver::residual() const {
 double BoxSolver::tolerance() const {
   double size = 0;
   for (int i = 0; i < points_; ++i) size = std::max(size, std::abs(free_[i]));
-  for (int j = 0; j < count_; ++j) size = std::max(size, std::abs(bound(set_[j])));
-  return (regularisation_ > 0 ? 1e-10 : 1e-12) * depth_ + 64 * (count_ + 1) * epsilon * (size + terms_);
+  for (int j = 0; j < count_; ++j)
+    if (active(set_[j])) size = std::max(size, std::abs(bound(set_[j])));
+  return 1e-12 * depth_ + 64 * (count_ + 1) * epsilon * (size + terms_);
 }
 
 }  // namespace ricochet

@@ -442,7 +442,7 @@ TEST_CASE("the plain active set can cycle; the fallback does not", "[box]") {
     REQUIRE(Eigen::SelfAdjointEigenSolver<MatrixXd>(c.W).eigenvalues().minCoeff() > 0);
     BoxSolver plain;
     plain.prepare(static_cast<int>(m));
-    plain.limit_pivots(0);
+    plain.limit_descent(0);
     Columns columns(c.W);
     VectorXd p = VectorXd::Zero(m);
     const LaneOutcome stuck = plain.solve(columns, 1, 0, problem.free.data(), problem.lower.data(),
