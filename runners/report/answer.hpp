@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/report/case_view.hpp"
+
+namespace ricochet::report {
+
+/// How a quantity behaves as the step shrinks, told from measured values alone.
+struct Trend {
+  std::string words;
+  std::optional<double> order;  ///< of |r − 1| between the two finest steps, where it decreases
+};
+
+/// `steps` decreasing and positive, `ratios` = E(T)/E(0) at these steps; `noise` relative to 1: what is below it counts
+/// as kept.
+Trend step_trend(const std::vector<double>& steps, const std::vector<double>& ratios, double noise);
+
+/// Relative size below which a change of a case's energy is not told from round-off: the larger of 2⁻⁵² × steps and the
+/// residual of its energy balance over its starting energy.
+double noise_of(const CaseRecord& record);
+
+/// A step counts as gaining energy above this share of the starting energy.
+inline constexpr double step_gain_threshold = 1e-9;
+
+/// The section "Answer" as HTML: sentences and tables made of measured figures only.
+std::string answer_html(const CaseView& view);
+
+}  // namespace ricochet::report

@@ -1,0 +1,210 @@
+#include "runners/report/case_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runners/report/html.hpp"
+
+namespace ricochet::report {
+namespace {
+
+constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"};
+constexpr std::string_view roles[] = {"mass", "contact", "time"};
+
+bool contains(const std::vector<std::string>& list, std::string_view item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+/// The word that a label puts before a value: the last part of the column, nothing for a method's own name.
+std::string word(std::string_view column) {
+  for (std::string_view role : roles)
+    if (column == role) return "";
+  const size_t dot = column.rfind('.');
+  const bool method = role_of(column) != column;
+  return std::string(method && dot != std::string_view::npos ? column.substr(dot + 1) : column) + " ";
+}
+
+}  // namespace
+
+std::string with_unit(const Quantity& quantity) {
+  return quantity.unit.empty() || quantity.unit == "1" ? quantity.name : quantity.name + " (" + quantity.unit + ")";
+}
+
+std::string role_of(std::string_view column) {
+  for (std::string_view role : roles)
+    if (column == role || (column.starts_with(role) && column.substr(role.size(), 1) == ".")) return std::string(role);
+  return std::string(column);
+}
+
+std::string axis_unit(std::string_view column) {
+  static const std::map<std::string_view, std::string> units = {{"step", "s"},
+                                                                {"duration", "s"},
+                                                                {"support.amplitude", "m"},
+                                                                {"support.pulsation", "rad/s"},
+                                                                {"support.phase", "rad"},
+                                                                {"structure.length", "m"},
+                                                                {"structure.young", "Pa"},
+                                                                {"structure.density", "kg/m³"},
+                                                                {"structure.damping.stiffness", "s"},
+                                                                {"structure.damping.mass", "1/s"},
+                                                                {"structure.section.outer_diameter", "m"},
+                                                                {"structure.section.wall", "m"},
+                                                                {"structure.section.diameter", "m"},
+                                                                {"structure.section.width", "m"},
+                                                                {"structure.section.height", "m"},
+                                                                {"structure.section.EI", "N m²"},
+                                                                {"structure.section.rhoS", "kg/m"},
+                                                                {"stops.lower", "m"},
+                                                                {"stops.upper", "m"}};
+  const auto found = units.find(column);
+  return found == units.end() ? "" : found->second;
+}
+
+CaseView::CaseView(const StudyResults& results) : results_(results) {
+  for (const std::string& column : results.columns) {
+    std::vector<std::string>& found = values_[column];
+    bool absent = false;
+    std::set<std::string> seen;
+    for (const CaseRecord& record : results.cases) {
+      const std::string value = text(record, column);
+      if (value.empty())
+        absent = true;
+      else if (seen.insert(value).second)
+        found.push_back(value);
+    }
+    if (seen.size() + absent > 1) varying_.push_back(column);
+  }
+  for (const CaseRecord& record : results.cases) {
+    const std::string mass = mass_label(record);
+    if (!contains(masses_, mass)) masses_.push_back(mass);
+  }
+}
+
+bool CaseView::varies(std::string_view column) const {
+  return contains(varying_, column);
+}
+
+const std::vector<std::string>& CaseView::values(const std::string& column) const {
+  static const std::vector<std::string> none;
+  const auto found = values_.find(column);
+  return found == values_.end() ? none : found->second;
+}
+
+std::vector<std::string> CaseView::constants() const {
+  std::vector<std::string> out;
+  if (results_.cases.empty()) return out;
+  for (const std::string& column : results_.columns) {
+    if (varies(column)) continue;
+    const std::string value = text(results_.cases.front(), column);
+    if (value.empty()) continue;
+    const std::string unit = axis_unit(column);
+    out.push_back(column + " " + value + (unit.empty() ? "" : " " + unit));
+  }
+  return out;
+}
+
+std::string CaseView::text(const CaseRecord& record, std::string_view column) {
+  for (const auto& [name, value] : record.axes) {
+    if (name != column) continue;
+    if (value.is_null()) return "";
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return exact_text(value.get<double>());
+    return value.dump();
+  }
+  return "";
+}
+
+std::optional<double> CaseView::number(const CaseRecord& record, std::string_view column) {
+  for (const auto& [name, value] : record.axes)
+    if (name == column && value.is_number()) return value.get<double>();
+  return std::nullopt;
+}
+
+std::optional<double> CaseView::measure(const CaseRecord& record, std::string_view name) {
+  for (const auto& [key, value] : record.measures)
+    if (key == name) return value;
+  return std::nullopt;
+}
+
+std::string CaseView::label(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  std::string out, previous_role;
+  for (const std::string& column : columns) {
+    if (values(column).size() < 2) continue;
+    const std::string value = text(record, column);
+    if (value.empty()) continue;
+    const std::string role = role_of(column);
+    if (!out.empty()) out += role == previous_role ? ", " : " · ";
+    const std::string unit = axis_unit(column);
+    out += word(column) + value + (unit.empty() ? "" : " " + unit);
+    previous_role = role;
+  }
+  return out;
+}
+
+std::string CaseView::mass_label(const CaseRecord& record) const {
+  std::string out = text(record, "mass");
+  for (const std::string& column : results_.columns) {
+    if (column == "mass" || role_of(column) != "mass" || values(column).size() < 2) continue;
+    const std::string value = text(record, column);
+    if (!value.empty()) out += ", " + word(column) + value;
+  }
+  return out;
+}
+
+std::string CaseView::colour(const CaseRecord& record) const {
+  const auto found = std::find(masses_.begin(), masses_.end(), mass_label(record));
+  return colours[static_cast<size_t>(found - masses_.begin()) % std::size(colours)];
+}
+
+std::vector<std::string> CaseView::varying_without(const std::vector<std::string>& excluded) const {
+  std::vector<std::string> out;
+  for (const std::string& column : varying_)
+    if (!contains(excluded, column) && !contains(excluded, role_of(column))) out.push_back(column);
+  return out;
+}
+
+std::vector<CaseGroup> CaseView::group(const Cases& cases, const std::vector<std::string>& columns) const {
+  std::vector<CaseGroup> groups;
+  std::map<std::string, size_t> place;
+  for (const CaseRecord* record : cases) {
+    std::string key;
+    for (const std::string& column : columns) key += text(*record, column) + '\x1f';
+    const auto [at, fresh] = place.emplace(std::move(key), groups.size());
+    if (fresh) groups.push_back({label(*record, columns), {}});
+    groups[at->second].cases.push_back(record);
+  }
+  return groups;
+}
+
+Cases CaseView::all() const {
+  Cases out;
+  for (const CaseRecord& record : results_.cases) out.push_back(&record);
+  return out;
+}
+
+Cases CaseView::with_status(std::string_view status) const {
+  Cases out;
+  for (const CaseRecord& record : results_.cases)
+    if (record.status == status) out.push_back(&record);
+  return out;
+}
+
+std::string CaseView::describe(const Cases& cases) const {
+  const size_t total = results_.cases.size();
+  if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
+  std::string what;
+  for (const std::string& column : varying_) {
+    std::vector<std::string> inside;
+    for (const CaseRecord* record : cases) {
+      std::string value = text(*record, column);
+      if (!value.empty() && !contains(inside, value)) inside.push_back(std::move(value));
+    }
+    if (inside.empty() || inside.size() == values(column).size()) continue;
+    what += fmt::format("{}{} {}", what.empty() ? "" : "; ", column, fmt::join(inside, ", "));
+  }
+  return fmt::format("{} of {} cases{}", cases.size(), total, what.empty() ? "" : " (" + what + ")");
+}
+
+}  // namespace ricochet::report

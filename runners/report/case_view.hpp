@@ -1,0 +1,82 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+namespace ricochet::report {
+
+using Cases = std::vector<const CaseRecord*>;
+
+/// A name and a unit, for axes, headers and tooltips.
+struct Quantity {
+  std::string name, unit;
+};
+
+/// "name (unit)", without the unit where it is "1" or unknown.
+std::string with_unit(const Quantity& quantity);
+
+/// Cases that agree in some axes.
+struct CaseGroup {
+  std::string label;
+  Cases cases;
+};
+
+/// The cases of a study as a report speaks of them: which axes vary, short labels, groups, one colour per mass matrix.
+/// A *role* is a method's name with its parameters: "mass" stands for the columns mass, mass.velocity, …
+class CaseView {
+ public:
+  explicit CaseView(const StudyResults& results);
+
+  const StudyResults& results() const { return results_; }
+  /// Axis columns with more than one value over the cases, in the study's order.
+  const std::vector<std::string>& varying() const { return varying_; }
+  bool varies(std::string_view column) const;
+  /// Distinct values of a column as texts, in order of appearance; cases without the column do not count.
+  const std::vector<std::string>& values(const std::string& column) const;
+  /// Columns that have one value in every case, as "column value".
+  std::vector<std::string> constants() const;
+
+  /// The value of a column as text, "" where the case has none.
+  static std::string text(const CaseRecord& record, std::string_view column);
+  static std::optional<double> number(const CaseRecord& record, std::string_view column);
+  static std::optional<double> measure(const CaseRecord& record, std::string_view name);
+
+  /// Short label of a case out of some columns: "singular, velocity P1 · beta 0.25"; only what varies is said.
+  std::string label(const CaseRecord& record, const std::vector<std::string>& columns) const;
+  /// Label out of every varying column.
+  std::string label(const CaseRecord& record) const { return label(record, varying_); }
+  /// The mass matrix with every parameter that varies; never empty where the study has a mass.
+  std::string mass_label(const CaseRecord& record) const;
+  /// Mass matrices in order of appearance.
+  const std::vector<std::string>& masses() const { return masses_; }
+  /// Colour of the case's mass matrix, the same in all charts (Okabe and Ito 2008: distinct for colour-blind readers).
+  std::string colour(const CaseRecord& record) const;
+
+  /// Varying columns but for those of the given columns or roles.
+  std::vector<std::string> varying_without(const std::vector<std::string>& roles) const;
+  /// Cases grouped by the values of `columns`, in order of appearance, labelled by them.
+  std::vector<CaseGroup> group(const Cases& cases, const std::vector<std::string>& columns) const;
+  /// All cases, and those with a status.
+  Cases all() const;
+  Cases with_status(std::string_view status) const;
+
+  /// What sets `cases` apart from all cases: "all 24 cases", "12 of 24 cases (mass singular)".
+  std::string describe(const Cases& cases) const;
+
+ private:
+  const StudyResults& results_;
+  std::map<std::string, std::vector<std::string>> values_;
+  std::vector<std::string> varying_, masses_;
+};
+
+/// The role of a column: "mass" of "mass.velocity"; the column itself where it belongs to no method.
+std::string role_of(std::string_view column);
+
+/// Unit of an axis column that the study format defines ("s" for step); "" for a plugin's own parameters.
+std::string axis_unit(std::string_view column);
+
+}  // namespace ricochet::report

@@ -1,0 +1,102 @@
+#include "runners/report/curve_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace ricochet::report {
+
+std::string base64_doubles(std::span<const double> values) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> bytes;
+  bytes.reserve(values.size() * 8 + 2);
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int k = 0; k < 8; ++k) bytes.push_back(static_cast<unsigned char>(bits >> (8 * k)));
+  }
+  const size_t length = bytes.size();
+  bytes.resize(length + 2, 0);
+  std::string out;
+  out.reserve((length + 2) / 3 * 4);
+  for (size_t i = 0; i < length; i += 3) {
+    const unsigned triple = (unsigned{bytes[i]} << 16) | (unsigned{bytes[i + 1]} << 8) | bytes[i + 2];
+    out += digits[triple >> 18];
+    out += digits[(triple >> 12) & 63];
+    out += i + 1 < length ? digits[(triple >> 6) & 63] : '=';
+    out += i + 2 < length ? digits[triple & 63] : '=';
+  }
+  return out;
+}
+
+std::vector<size_t> keep_extremes(std::span<const double> values, size_t limit) {
+  const size_t n = values.size();
+  std::vector<size_t> kept;
+  if (n <= limit || limit < 4) {
+    kept.resize(n);
+    for (size_t i = 0; i < n; ++i) kept[i] = i;
+    return kept;
+  }
+  const size_t bins = limit / 2 - 1;
+  kept.push_back(0);
+  for (size_t bin = 0; bin < bins; ++bin) {
+    const size_t from = 1 + (n - 2) * bin / bins, to = 1 + (n - 2) * (bin + 1) / bins;
+    size_t low = from, high = from;
+    for (size_t i = from; i < to; ++i) {
+      if (values[i] < values[low]) low = i;
+      if (values[i] > values[high]) high = i;
+    }
+    kept.push_back(std::min(low, high));
+    if (low != high) kept.push_back(std::max(low, high));
+  }
+  kept.push_back(n - 1);
+  return kept;
+}
+
+std::optional<std::span<const double>> curve_column(const Curve& curve, std::string_view name) {
+  for (size_t i = 0; i < curve.names.size() && i < curve.columns.size(); ++i)
+    if (curve.names[i] == name) return std::span<const double>(curve.columns[i]);
+  return std::nullopt;
+}
+
+std::optional<nlohmann::ordered_json> CurveData::series(const CaseRecord& record, const std::string& x,
+                                                        const std::string& y) {
+  const auto xs = curve_column(record.curve, x), ys = curve_column(record.curve, y);
+  if (!xs || !ys || xs->empty() || xs->size() != ys->size()) return std::nullopt;
+  const bool thin = ys->size() > limit_;
+  const std::string x_key = record.id + "/" + x + (thin ? "@" + y : ""), y_key = record.id + "/" + y;
+  if (!blocks_.contains(y_key)) {
+    if (thin) {
+      std::vector<double> some_x, some_y;
+      for (const size_t i : keep_extremes(*ys, limit_)) {
+        some_x.push_back((*xs)[i]);
+        some_y.push_back((*ys)[i]);
+      }
+      blocks_[x_key] = base64_doubles(some_x);
+      blocks_[y_key] = base64_doubles(some_y);
+      ++thinned_;
+      longest_ = std::max(longest_, ys->size());
+    } else {
+      if (!blocks_.contains(x_key)) blocks_[x_key] = base64_doubles(*xs);
+      blocks_[y_key] = base64_doubles(*ys);
+    }
+  }
+  return nlohmann::ordered_json{{"x", x_key}, {"y", y_key}};
+}
+
+std::string CurveData::thinning() const {
+  if (thinned_ == 0) return "";
+  return fmt::format(
+      "{} series of up to {} samples are thinned to {} for this page: of each small interval the smallest and the "
+      "largest sample are "
+      "kept, so no peak is lost. The full series are in the store and in curves/.",
+      thinned_, longest_, limit_);
+}
+
+size_t sample_limit(size_t series) {
+  return std::max<size_t>(4000, 2'000'000 / std::max<size_t>(series, 1));
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,49 @@
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+namespace ricochet::report {
+
+/// Little-endian doubles as base64 (RFC 4648): exact, and shorter than decimal text.
+std::string base64_doubles(std::span<const double> values);
+
+/// At most `limit` of n samples, chosen so that no peak is lost: the interval is cut into limit/2 equal counts of
+/// samples, and of each the smallest and the largest are kept, in their order. First and last sample are kept. Returns
+/// increasing indices; all when n ≤ limit.
+std::vector<size_t> keep_extremes(std::span<const double> values, size_t limit);
+
+/// The column of a curve, nothing where there is none (a refused case has no curve).
+std::optional<std::span<const double>> curve_column(const Curve& curve, std::string_view name);
+
+/// The curves that charts refer to, each written into the page once, whatever the number of charts that show it.
+class CurveData {
+ public:
+  /// `limit`: largest number of samples of one series that the page carries.
+  explicit CurveData(size_t limit) : limit_(limit) {}
+
+  /// A reference {"x": key, "y": key} that the page's script replaces by points; nothing when the record has no such
+  /// column.
+  std::optional<nlohmann::ordered_json> series(const CaseRecord& record, const std::string& x, const std::string& y);
+  /// Key → base64.
+  const nlohmann::ordered_json& blocks() const { return blocks_; }
+  /// Sentence on what was thinned out for display, "" when nothing was.
+  std::string thinning() const;
+
+ private:
+  size_t limit_;
+  size_t thinned_ = 0, longest_ = 0;
+  nlohmann::ordered_json blocks_ = nlohmann::ordered_json::object();
+};
+
+/// Limit for CurveData such that the page stays below about 60 MB: 4·10⁶ numbers shared by the series, at least 4000
+/// samples each.
+size_t sample_limit(size_t series);
+
+}  // namespace ricochet::report

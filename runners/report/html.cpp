@@ -1,0 +1,131 @@
+#include "runners/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ricochet::report {
+namespace {
+
+/// "1e-07" → "1e-7", "1e+12" → "1e12".
+std::string short_exponent(std::string text) {
+  const size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  size_t from = e + 1;
+  if (text[from] == '+') text.erase(from, 1);
+  if (text[from] == '-') ++from;
+  while (from + 1 < text.size() && text[from] == '0') text.erase(from, 1);
+  return text;
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view with) {
+  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
+    text.replace(at, what.size(), with);
+}
+
+/// Length of the valid UTF-8 sequence at `at`, 0 when there is none.
+size_t utf8_length(std::string_view text, size_t at) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(at);
+  if (lead < 0x80) return 1;
+  const size_t length = lead >= 0xC2 && lead < 0xE0   ? 2
+                        : lead >= 0xE0 && lead < 0xF0 ? 3
+                        : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                      : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xC0) != 0x80) return 0;
+  if (lead == 0xE0 && byte(at + 1) < 0xA0) return 0;
+  if (lead == 0xED && byte(at + 1) > 0x9F) return 0;
+  if (lead == 0xF0 && byte(at + 1) < 0x90) return 0;
+  if (lead == 0xF4 && byte(at + 1) > 0x8F) return 0;
+  return length;
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  for (size_t i = 0; i < text.size();) {
+    const size_t length = utf8_length(text, i);
+    if (length == 0) {
+      out += "\xEF\xBF\xBD";
+      ++i;
+      continue;
+    }
+    switch (text[i]) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out.append(text, i, length);
+    }
+    i += length;
+  }
+  return out;
+}
+
+std::string script_json(const nlohmann::ordered_json& value) {
+  std::string text = value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  replace_all(text, "<", "\\u003c");
+  return text;
+}
+
+std::string script_text(std::string_view program) {
+  std::string text;
+  text.reserve(program.size() + 64);
+  for (size_t i = 0; i < program.size(); ++i) {
+    text += program[i];
+    if (program[i] != '<') continue;
+    std::string next(program.substr(i + 1, 7));
+    std::transform(next.begin(), next.end(), next.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (next == "/script" || next.substr(0, 3) == "!--") text += '\\';
+  }
+  return text;
+}
+
+std::string number_text(double value, int digits) {
+  if (std::isnan(value)) return "not a number";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  if (value == 0) return "0";
+  std::string text = short_exponent(fmt::format("{:.{}g}", value, digits));
+  if (text[0] == '-') text.replace(0, 1, "−");
+  return text;
+}
+
+std::string exact_text(double value) {
+  char buffer[40];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return short_exponent(std::string(buffer, end.ptr));
+}
+
+std::string percent_text(double ratio) {
+  if (!std::isfinite(ratio) || std::abs(ratio) >= 1e4) return number_text(100 * ratio) + " %";
+  const double distance = 100 * std::abs(ratio - 1);
+  int decimals = 1;
+  if (distance > 0) decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(distance))), 2, 12);
+  std::string text = fmt::format("{:.{}f}", 100 * ratio, decimals);
+  if (text[0] == '-') text.replace(0, 1, "−");
+  return text + " %";
+}
+
+std::string count_text(size_t count, std::string_view singular, std::string_view plural) {
+  return fmt::format("{} {}", count, count == 1 ? singular : plural);
+}
+
+}  // namespace ricochet::report

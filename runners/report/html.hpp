@@ -1,0 +1,31 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace ricochet::report {
+
+/// Text as HTML text or as a quoted attribute: & < > " ' escaped, bytes that are no UTF-8 replaced by U+FFFD.
+std::string escape(std::string_view text);
+
+/// JSON that may stand inside a <script> element: no '<' appears raw, so neither "</script" nor "<!--" can.
+std::string script_json(const nlohmann::ordered_json& value);
+
+/// JavaScript that may stand inside a <script> element: "</script" becomes "<\/script", "<!--" becomes "<\!--" (both
+/// the same inside a string, and neither occurs elsewhere in a program).
+std::string script_text(std::string_view program);
+
+/// `digits` significant digits, exponents short: "0.02431", "1.2e-7".
+std::string number_text(double value, int digits = 4);
+
+/// The shortest text that reads back as the same number: "0.25", "1e-7".
+std::string exact_text(double value);
+
+/// An energy ratio in per cent with enough digits to see how far it is from 1: 0.9999876 → "99.9988 %", 0.7 → "70.00
+/// %".
+std::string percent_text(double ratio);
+
+/// "1 case", "3 cases".
+std::string count_text(size_t count, std::string_view singular, std::string_view plural);
+
+}  // namespace ricochet::report

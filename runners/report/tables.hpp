@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+
+#include "runners/report/case_view.hpp"
+
+namespace ricochet::report {
+
+/// All cases with status, reason and every measure: sortable, filterable; units in the header, the measure's text as
+/// its tooltip and in a list below.
+std::string case_table_html(const CaseView& view);
+
+/// What `compile` left out of the cases, the same item and reason put together.
+std::string left_out_html(const CaseView& view);
+
+/// The notes of the cases, put together.
+std::string notes_html(const CaseView& view);
+
+/// Compiler, processor, libraries, and the resolved study.
+std::string environment_html(const CaseView& view);
+
+}  // namespace ricochet::report
