@@ -1,3 +1,4 @@
+#include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -18,6 +19,14 @@ std::uint64_t fingerprint(int point, int side) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
   return z ^ (z >> 31);
+}
+
+using Array = Eigen::Map<Eigen::ArrayXd>;
+using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
+
+// Round-off of a measure with k active points, relative to its terms.
+double round_off(int k) {
+  return 16 * (k + 1) * epsilon;
 }
 
 double beyond_bounds(double y, double lower, double upper) {
@@ -51,10 +60,13 @@ LaneOutcome BoxSolver::solve(DelassusColumns& W, double reach, double compliance
   const Operator A{W, reach, compliance};
   if (points == 1) return solve_alone(A, *free, *lower, *upper, *p);
   LaneOutcome outcome;
-  if (!read(free, lower, upper, p, points, stride)) {
+  if (!read(free, lower, upper, points, stride)) {
     outcome = {false, 0, infinity};
-  } else if (depth_ > 0) {
-    outcome = reach == 0 ? solve_uncoupled(compliance) : search(A);
+  } else if (violated_ > 0) {
+    if (reach == 0)
+      outcome = solve_uncoupled(compliance);
+    else if (violated_ > 1 || !try_alone(A, outcome))
+      outcome = search(A, p, stride);
   }
   for (int i = 0; i < points; ++i) p[i * stride] = effort_[i];
   return outcome;
@@ -64,7 +76,7 @@ LaneOutcome BoxSolver::solve_alone(const Operator& A, double free, double lower,
   assert(!(lower > upper));
   p = 0;
   const double depth = beyond_bounds(free, lower, upper);
-  if (!std::isfinite(free) || std::isnan(lower) || std::isnan(upper)) return {false, 0, infinity};
+  if (!std::isfinite(free) || !(lower <= upper)) return {false, 0, infinity};
   if (!(depth > 0)) return {};
   const double a = (A.reach == 0 ? 0.0 : A.reach * A.columns.column(0)[0]) + A.compliance;
   if (!(a > 0) || !std::isfinite(a)) return {false, 1, depth};
@@ -74,39 +86,64 @@ LaneOutcome BoxSolver::solve_alone(const Operator& A, double free, double lower,
   return {std::isfinite(p), 1, std::isfinite(residual) ? residual : infinity};
 }
 
-bool BoxSolver::read(const double* free, const double* lower, const double* upper, const double* p, int points,
-                     int stride) {
+bool BoxSolver::read(const double* free, const double* lower, const double* upper, int points, int stride) {
   points_ = points;
   count_ = 0;
-  terms_ = 0;
   best_residual_ = infinity;
-  double depth = 0, poison = 0;
+  // Locals, because a store through a pointer to double could change any member.
+  double *f = free_.data(), *l = lower_.data(), *u = upper_.data();
   for (int i = 0; i < points; ++i) {
-    const double f = free[i * stride], l = lower[i * stride], u = upper[i * stride], e = p[i * stride];
-    assert(!(l > u) && l < infinity && u > -infinity);
-    free_[i] = f;
-    lower_[i] = l;
-    upper_[i] = u;
-    effort_[i] = 0;
-    side_[i] = e > 0 && l > -infinity ? Side::lower : e < 0 && u < infinity ? Side::upper : Side::none;
-    depth = std::max(depth, beyond_bounds(f, l, u));
-    // Zero for every finite measure and every bound that is a number; NaN otherwise.
-    poison += f * 0 + (l != l || u != u ? f - f + std::numeric_limits<double>::quiet_NaN() : 0.0);
+    f[i] = free[i * stride];
+    l[i] = lower[i * stride];
+    u[i] = upper[i * stride];
   }
-  depth_ = depth;
-  return poison == 0;
+  std::fill_n(effort_.begin(), points, 0.0);
+  const ConstArray y(f, points), low(l, points), up(u, points);
+  depth_ = std::max(0.0, (low - y).max(y - up).maxCoeff());
+  size_ = y.abs().maxCoeff();
+  bool proper = true;
+  int violated = 0, first = 0;
+  for (int i = 0; i < points; ++i) {
+    assert(!(l[i] > u[i]) && l[i] < infinity && u[i] > -infinity);
+    proper &= (f[i] - f[i] == 0) & (l[i] <= u[i]);
+    const bool beyond = (f[i] < l[i]) | (f[i] > u[i]);
+    violated += beyond;
+    first = beyond ? i : first;
+  }
+  violated_ = violated;
+  first_ = first;
+  return proper;
 }
 
-// A single violated point is tried alone: most often that is the whole contact. Otherwise the previous contact, or
-// where there was none all violated points.
-void BoxSolver::choose_first_set() {
-  int violated = 0;
+// A single violated point by its closed form: most often that is the whole contact.
+bool BoxSolver::try_alone(const Operator& A, LaneOutcome& outcome) {
+  const int i = first_;
+  const double* column = A.columns.column(i);
+  const double a = A.reach * column[i] + A.compliance;
+  if (!(a > 0)) return false;
+  side_[i] = free_[i] < lower_[i] ? Side::lower : Side::upper;
+  count_ = 1;
+  set_[0] = i;
+  column_[0] = column;
+  diagonal_[0] = a;
+  effort_[i] = (bound(i) - free_[i]) / a;
+  evaluate(A);
+  if (spill_ > 0) return false;
+  outcome.iterations = 1;
+  outcome.residual = residual();
+  outcome.converged = outcome.residual <= tolerance();
+  return outcome.converged;
+}
+
+// The previous contact, or where there was none all violated points.
+void BoxSolver::choose_first_set(const double* previous, int stride) {
   bool warm = false;
   for (int i = 0; i < points_; ++i) {
-    violated += beyond_bounds(free_[i], lower_[i], upper_[i]) > 0;
+    const double p = previous[i * stride];
+    side_[i] = p > 0 && lower_[i] > -infinity ? Side::lower : p < 0 && upper_[i] < infinity ? Side::upper : Side::none;
     warm = warm || side_[i] != Side::none;
   }
-  if (warm && violated > 1) return;
+  if (warm) return;
   for (int i = 0; i < points_; ++i)
     side_[i] = free_[i] < lower_[i] ? Side::lower : free_[i] > upper_[i] ? Side::upper : Side::none;
 }
@@ -130,21 +167,21 @@ LaneOutcome BoxSolver::solve_uncoupled(double compliance) {
   return outcome;
 }
 
-LaneOutcome BoxSolver::search(const Operator& A) {
+LaneOutcome BoxSolver::search(const Operator& A, const double* previous, int stride) {
   LaneOutcome outcome;
+  outcome.iterations = count_;
   visited_.clear();
-  choose_first_set();
-  seen_before();
-  bool solved = false;
-  for (bool repeated = false; !solved && !repeated;) {
+  choose_first_set(previous, stride);
+  for (;;) {
     try_set(A);
     ++outcome.iterations;
-    solved = all_right();
-    if (solved) break;
+    if (all_right()) break;
+    if (seen_before()) {
+      descend(A, outcome);
+      break;
+    }
     move_all();
-    repeated = seen_before();
   }
-  if (!solved) descend(A, outcome);
   outcome.residual = residual();
   if (best_residual_ < outcome.residual) {
     outcome.residual = best_residual_;
@@ -190,7 +227,7 @@ void BoxSolver::factorise(const Operator& A) {
       row[j] = w / pivot_[j];
       d -= w * row[j];
     }
-    if (!(d > 16 * (count_ + 1) * epsilon * a)) {
+    if (!(d > round_off(count_) * a)) {
       std::copy_n(row, count_, null_.begin());
       dropped_ = i;
       dropped_side_ = side_[i];
@@ -219,18 +256,22 @@ void BoxSolver::substitute() {
 }
 
 void BoxSolver::evaluate(const Operator& A) {
-  std::copy_n(free_.begin(), points_, measure_.begin());
+  const ConstArray free(free_.data(), points_), lower(lower_.data(), points_), upper(upper_.data(), points_);
+  Array y(measure_.data(), points_);
+  y = free;
   double largest = 0, work = 0;
   for (int j = 0; j < count_; ++j) {
-    const double effort = effort_[set_[j]], scaled = A.reach * effort;
-    const double* column = column_[j];
-    for (int i = 0; i < points_; ++i) measure_[i] += scaled * column[i];
-    measure_[set_[j]] += A.compliance * effort;
+    const double effort = effort_[set_[j]];
+    y += (A.reach * effort) * ConstArray(column_[j], points_);
+    y[set_[j]] += A.compliance * effort;
     largest = std::max(largest, diagonal_[j]);
     work += diagonal_[j] * effort * effort;
   }
   // Bounds max_i Σ_j |A_ij p_j| by Cauchy–Schwarz on |A_ij| ≤ √(A_ii A_jj).
   terms_ = std::sqrt(count_ * largest * work);
+  // A sum that is not finite is the sign of a term that is not.
+  worst_ = std::isfinite(y.sum()) ? std::max(0.0, (lower - y).max(y - upper).maxCoeff()) : infinity;
+  spill_ = ((lower - y).max(y - upper) - round_off(count_) * (free.abs() + y.abs() + terms_)).maxCoeff();
 }
 
 void BoxSolver::descend(const Operator& A, LaneOutcome& outcome) {
@@ -352,14 +393,16 @@ bool BoxSolver::pulls(int i) const {
 // The bound that a free point passes by more than round-off.
 BoxSolver::Side BoxSolver::beyond(int i) const {
   const double y = measure_[i];
-  const double slack = 16 * (count_ + 1) * epsilon * (std::abs(free_[i]) + std::abs(y) + terms_);
+  const double slack = round_off(count_) * (std::abs(free_[i]) + std::abs(y) + terms_);
   return y < lower_[i] - slack ? Side::lower : y > upper_[i] + slack ? Side::upper : Side::none;
 }
 
 bool BoxSolver::all_right() const {
-  for (int i = 0; i < points_; ++i) {
-    if (side_[i] == Side::none ? beyond(i) != Side::none : active(i) && pulls(i)) return false;
-  }
+  for (int j = 0; j < count_; ++j)
+    if (pulls(set_[j])) return false;
+  // Active points lie on their bounds, but for round-off that may pass the slack: only then a closer look is needed.
+  for (int i = 0; i < points_ && spill_ > 0; ++i)
+    if (side_[i] == Side::none && beyond(i) != Side::none) return false;
   return true;
 }
 
@@ -386,24 +429,19 @@ bool BoxSolver::seen_before() {
 }
 
 double BoxSolver::residual() const {
-  double worst = 0, poison = 0;
-  for (int i = 0; i < points_; ++i) {
-    worst = std::max(worst, beyond_bounds(measure_[i], lower_[i], upper_[i]));
-    poison += measure_[i] * 0;
-  }
+  double worst = worst_;
   for (int j = 0; j < count_; ++j) {
     const int i = set_[j];
     worst = std::max(worst, complementarity(measure_[i], lower_[i], upper_[i], effort_[i], diagonal_[j]));
   }
-  return poison == 0 ? worst : infinity;
+  return worst;
 }
 
 double BoxSolver::tolerance() const {
-  double size = 0;
-  for (int i = 0; i < points_; ++i) size = std::max(size, std::abs(free_[i]));
+  double size = size_;
   for (int j = 0; j < count_; ++j)
     if (active(set_[j])) size = std::max(size, std::abs(bound(set_[j])));
-  return 1e-12 * depth_ + 64 * (count_ + 1) * epsilon * (size + terms_);
+  return 1e-12 * depth_ + 4 * round_off(count_) * (size + terms_);
 }
 
 }  // namespace ricochet

@@ -60,9 +60,10 @@ class BoxSolver {
 
   LaneOutcome solve_alone(const Operator& A, double free, double lower, double upper, double& p) const;
   LaneOutcome solve_uncoupled(double compliance);
-  LaneOutcome search(const Operator& A);
-  bool read(const double* free, const double* lower, const double* upper, const double* p, int points, int stride);
-  void choose_first_set();
+  bool try_alone(const Operator& A, LaneOutcome& outcome);
+  LaneOutcome search(const Operator& A, const double* previous, int stride);
+  bool read(const double* free, const double* lower, const double* upper, int points, int stride);
+  void choose_first_set(const double* previous, int stride);
 
   void try_set(const Operator& A);
   void factorise(const Operator& A);
@@ -91,9 +92,11 @@ class BoxSolver {
   int dropped_ = -1;  // a point that depends on the first `rank_` of the set, and its side
   int rank_ = 0;
   Side dropped_side_ = Side::none;
-  double depth_ = 0;                                                               // deepest violation of y°
-  double terms_ = 0;                                                               // size of the terms of A p
-  double best_residual_ = 0;                                                       // of best_
+  int violated_ = 0, first_ = 0;  // by y°: how many, and one of them
+  double depth_ = 0, size_ = 0;   // deepest violation of y°, and its size
+  double terms_ = 0;              // size of the terms of A p
+  double worst_ = 0, spill_ = 0;  // farthest beyond a bound, and beyond it and round-off
+  double best_residual_ = 0;      // of best_
   std::vector<double> free_, lower_, upper_, measure_, effort_, feasible_, best_;  // m
   std::vector<double> diagonal_, factor_, pivot_, right_, null_;                   // k, k rows of m, k, k, k
   std::vector<const double*> column_;                                              // k
