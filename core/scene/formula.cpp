@@ -41,7 +41,8 @@ bool has_assignment(const std::string& text) {
     std::vector<std::string> known{"pi", "e"};
     for (char variable : variables) known.emplace_back(1, variable);
     for (const auto& function : parser.GetFunDef()) known.push_back(function.first);
-    const std::string nearest = nearest_name(error.GetToken(), known);
+    // A single letter is near every other one: no guess.
+    const std::string nearest = error.GetToken().size() > 1 ? nearest_name(error.GetToken(), known) : "";
     throw InputError(pointer, fmt::format("unknown name \"{}\" in the formula \"{}\"; {}, the constants are pi and e{}",
                                           error.GetToken(), text, variables_in_words(variables),
                                           nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));

@@ -6,7 +6,8 @@
 namespace ricochet {
 
 /// A number or a formula in x (m) and t (s), as a study writes it: "0.04*x^2", "sin(pi*x)*cos(10*t)", pi and e defined.
-/// Throws InputError (with the pointer given) when the text does not parse, names an unknown variable, or a value is not finite.
+/// Throws InputError (with the pointer given) when the text does not parse, names an unknown variable, or a value is
+/// not finite.
 class Formula {
  public:
   Formula();  ///< the constant 0

@@ -27,10 +27,17 @@ Eigen::VectorXd load_rate_at_start(const DistributedLoad& load, int dofs) {
   return rate;
 }
 
-void note_clamp(SemiDiscrete& problem, const char* what, const char* unit, double formula, double imposed) {
-  if (std::abs(formula - imposed) <= 1e-12 * (std::abs(formula) + std::abs(imposed))) return;
+void note_clamp(SemiDiscrete& problem, const char* what, const char* unit, double formula, double imposed,
+                double rounding) {
+  if (std::abs(formula - imposed) <= rounding) return;
   problem.notes.push_back(fmt::format("the initial {} at the clamp is {:.6g} {}; the clamp imposes {:.6g} {}", what,
                                       formula, unit, imposed, unit));
+}
+
+Eigen::VectorXd load_at_start(const SemiDiscrete& problem) {
+  Eigen::VectorXd load(problem.dofs());
+  problem.load->assemble(0, load.data());
+  return load - support_at_start(problem.support).acceleration * problem.support_shape;
 }
 
 }  // namespace
@@ -48,10 +55,24 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
     problem.velocity[row] = scene.initial.velocity(nodes[i]) - support.velocity;
     problem.velocity[row + 1] = scene.initial.velocity.slope(nodes[i], 0, length);
   }
-  note_clamp(problem, "displacement", "m", scene.initial.displacement(0), support.position);
-  note_clamp(problem, "slope", "rad", scene.initial.displacement.slope(0, 0, length), 0);
-  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(0), support.velocity);
-  note_clamp(problem, "rate of slope", "rad/s", scene.initial.velocity.slope(0, 0, length), 0);
+
+  const double size = problem.position.lpNorm<Eigen::Infinity>() + std::abs(support.position);
+  const double rate = problem.velocity.lpNorm<Eigen::Infinity>() + std::abs(support.velocity);
+  // Values are rounded to 1e-16; slopes come from a stencil of length/256.
+  note_clamp(problem, "displacement", "m", scene.initial.displacement(0), support.position, 1e-12 * size);
+  note_clamp(problem, "slope", "rad", scene.initial.displacement.slope(0, 0, length), 0,
+             1e-10 * (size + size / length));
+  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(0), support.velocity, 1e-12 * rate);
+  note_clamp(problem, "rate of slope", "rad/s", scene.initial.velocity.slope(0, 0, length), 0,
+             1e-10 * (rate + rate / length));
+}
+
+void measure_mass_constraint(SemiDiscrete& problem) {
+  if (problem.inertia.kernel_dimension == 0) return;
+  const Eigen::MatrixXd basis = mass_kernel(problem.inertia);
+  const Eigen::VectorXd residual = basis.transpose() * (problem.stiffness * problem.position - load_at_start(problem));
+  const Eigen::LLT<Eigen::MatrixXd> reduced(basis.transpose() * (problem.stiffness * basis));
+  problem.kernel_energy = 0.5 * residual.dot(reduced.solve(residual));
 }
 
 void project_on_mass_constraint(SemiDiscrete& problem) {
@@ -59,13 +80,11 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
     problem.notes.emplace_back("projection of the initial state: nothing to do, the mass is regular");
     return;
   }
-  const auto motion = support_at_start(problem.support);
-  Eigen::VectorXd load(problem.dofs());
-  problem.load->assemble(0, load.data());
-  load -= motion.acceleration * problem.support_shape;
+  const Eigen::VectorXd load = load_at_start(problem);
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(problem.dofs());
   if (problem.damping.stiffness == 0)
-    rate = load_rate_at_start(*problem.load, problem.dofs()) - motion.jerk * problem.support_shape;
+    rate = load_rate_at_start(*problem.load, problem.dofs()) -
+           support_at_start(problem.support).jerk * problem.support_shape;
 
   const Eigen::MatrixXd basis = mass_kernel(problem.inertia);
   const Eigen::LLT<Eigen::MatrixXd> reduced(basis.transpose() * (problem.stiffness * basis));

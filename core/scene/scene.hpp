@@ -1,10 +1,9 @@
 #pragma once
 #include <optional>
+#include <ricochet/scene/formula.hpp>
 #include <string>
 #include <variant>
 #include <vector>
-
-#include <ricochet/scene/formula.hpp>
 
 /// \file
 /// What is simulated, as the study says it, in SI units. Nothing numerical is chosen here.
@@ -14,10 +13,10 @@ namespace ricochet {
 struct Section {
   enum class Type { tube, circle, rectangle, given };
   Type type = Type::tube;
-  double outer_diameter = 0, wall = 0;   ///< tube
-  double diameter = 0;                   ///< circle
-  double width = 0, height = 0;          ///< rectangle, bending across height
-  double EI = 0, rhoS = 0;               ///< given
+  double outer_diameter = 0, wall = 0;  ///< tube
+  double diameter = 0;                  ///< circle
+  double width = 0, height = 0;         ///< rectangle, bending across height
+  double EI = 0, rhoS = 0;              ///< given
 };
 
 struct SectionProperties {
@@ -51,9 +50,9 @@ struct StopsSpec {
 
 /// φ(t) = A0 sin(ωt + ψ).
 struct SupportSpec {
-  double amplitude = 0;   ///< m
-  double pulsation = 0;   ///< rad/s
-  double phase = 0;       ///< rad
+  double amplitude = 0;  ///< m
+  double pulsation = 0;  ///< rad/s
+  double phase = 0;      ///< rad
 };
 
 /// Absolute u(x,0) and u_t(x,0).
@@ -67,7 +66,7 @@ struct SceneSpec {
   StructureSpec structure;
   StopsSpec stops;
   SupportSpec support;
-  Formula load;      ///< f(x,t), N/m
+  Formula load;  ///< f(x,t), N/m
   InitialSpec initial;
 };
 

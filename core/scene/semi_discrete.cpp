@@ -45,6 +45,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (scene.initial.projection == InitialSpec::Projection::constraint) {
     project_on_mass_constraint(problem);
     check_start(problem, "/scene/initial/projection", "the projected initial displacement");
+  } else {
+    measure_mass_constraint(problem);
   }
   return problem;
 }

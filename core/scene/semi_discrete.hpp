@@ -2,13 +2,12 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/scene.hpp>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace ricochet {
 
@@ -23,7 +22,7 @@ class DistributedLoad {
 
  private:
   Formula load_;
-  std::vector<double> points_;                   ///< 4 per element
+  std::vector<double> points_;  ///< 4 per element
   mutable std::vector<double> values_;
   std::vector<std::array<int, 4>> dofs_;
   std::vector<std::array<double, 16>> weights_;  ///< per element: weight·φ_a at each Gauss point
@@ -36,18 +35,22 @@ class DistributedLoad {
 struct SemiDiscrete {
   FiniteElementSpace space;
   Inertia inertia;
-  SparseMatrix stiffness;            ///< K, both triangles, n × n
-  Damping damping;                   ///< α, η
+  SparseMatrix stiffness;  ///< K, both triangles, n × n
+  Damping damping;         ///< α, η
   SupportSpec support;
-  Eigen::VectorXd support_shape;     ///< s (kg)
+  Eigen::VectorXd support_shape;  ///< s (kg)
   std::shared_ptr<const DistributedLoad> load;
   Eigen::SparseMatrix<double, Eigen::RowMajor> contact;  ///< H, m × n
-  std::vector<double> contact_x;     ///< position of each contact point, m
-  Eigen::VectorXd lower, upper;      ///< g1, g2 at the contact points; ±∞ where absent
+  std::vector<double> contact_x;                         ///< position of each contact point, m
+  Eigen::VectorXd lower, upper;                          ///< g1, g2 at the contact points; ±∞ where absent
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;      ///< 1 × n: the displacement shown to people
-  Eigen::VectorXd position, velocity;  ///< q₀, v₀ of w
-  double projection_energy = 0;      ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
-  std::vector<std::string> notes;    ///< what was done that a reader should know
+  Eigen::VectorXd position, velocity;                    ///< q₀, v₀ of w
+  double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
+  /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0), Z = Ker M: what an initial state off the constraint of a singular mass exceeds
+  /// the equilibrium of its massless part by (J), and loses in the first steps at any h; 0 for a regular mass or after
+  /// projection.
+  double kernel_energy = 0;
+  std::vector<std::string> notes;  ///< what was done that a reader should know
   int dofs() const { return static_cast<int>(position.size()); }
   int points() const { return static_cast<int>(contact.rows()); }
   bool damped() const { return damping.stiffness != 0 || damping.mass != 0; }
@@ -58,12 +61,13 @@ using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
 /// The displacement space of the structure on a uniform mesh of `elements` elements.
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
-/// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower", …)
-/// for stops that cross (lower ≥ upper somewhere), a clamp that the support pushes through a stop, an initial state outside
-/// the stops, formulas that give no finite value. A strategy that does not apply is a Refusal.
+/// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
+/// …) for stops that cross (lower ≥ upper somewhere), a clamp that the support pushes through a stop, an initial state
+/// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal.
 SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass);
 
-/// The checks of discretise() that need no mass and no mesh, for a study to run before any case (mesh: finest of the study).
+/// The checks of discretise() that need no mass and no mesh, for a study to run before any case (mesh: finest of the
+/// study).
 void check_scene(const SceneSpec& scene, int elements);
 
 /// Orthonormal-in-nothing basis Z (n × N) of Ker M (only for kernel_dimension > 0).

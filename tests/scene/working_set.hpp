@@ -1,0 +1,107 @@
+#pragma once
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <string>
+#include <variant>
+
+/// \file
+/// The beam most tests use, the mass plugins as a study would open them, and small dense checks.
+namespace ricochet::testing {
+
+/// Steel tube, L = 1.501 m, 10 mm × 0.5 mm, stops ±0.1 m at the tip, u0 = 0.04x², v0 = −2x, no load, fixed support.
+inline SceneSpec working_set() {
+  BeamSpec beam;
+  beam.length = 1.501;
+  beam.young = 2e11;
+  beam.density = 8000;
+  beam.section.type = Section::Type::tube;
+  beam.section.outer_diameter = 0.01;
+  beam.section.wall = 0.0005;
+  SceneSpec scene;
+  scene.structure = beam;
+  scene.stops.lower = Formula(-0.1);
+  scene.stops.upper = Formula(0.1);
+  scene.stops.place = StopsSpec::Place::tip;
+  scene.support.pulsation = 10;
+  scene.initial.displacement = Formula("0.04*x^2", "/scene/initial/displacement", "x");
+  scene.initial.velocity = Formula("-2*x", "/scene/initial/velocity", "x");
+  return scene;
+}
+
+inline BeamSpec& beam_of(SceneSpec& scene) {
+  return std::get<BeamSpec>(scene.structure);
+}
+
+/// EI = ρS = L = 1: eigenvalues are then (βL)⁴.
+inline SceneSpec unit_beam() {
+  SceneSpec scene = working_set();
+  beam_of(scene).length = 1;
+  beam_of(scene).section.type = Section::Type::given;
+  beam_of(scene).section.EI = 1;
+  beam_of(scene).section.rhoS = 1;
+  scene.initial = {};
+  return scene;
+}
+
+/// A mass plugin, its library opened as a study would; word parameters as given, the others at their defaults.
+inline std::unique_ptr<MassStrategy> mass(const std::string& name, std::map<std::string, ParameterValue> values = {}) {
+  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Registry registry;
+  REQUIRE(catalogue.require(Role::mass, name, registry));
+  const auto* entry = registry.mass(name);
+  REQUIRE(entry);
+  for (const auto& spec : entry->manual.parameters)
+    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
+  return entry->make(Parameters(values));
+}
+
+inline Inertia built(const MassStrategy& strategy, const FiniteElementSpace& space) {
+  auto result = strategy.build(space);
+  INFO((std::holds_alternative<Refusal>(result) ? std::get<Refusal>(result).sentence : ""));
+  REQUIRE(std::holds_alternative<Inertia>(result));
+  return std::get<Inertia>(result);
+}
+
+inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const MassStrategy& strategy) {
+  auto result = discretise(scene, elements, strategy);
+  REQUIRE(std::holds_alternative<SemiDiscrete>(result));
+  return std::get<SemiDiscrete>(result);
+}
+
+inline Eigen::MatrixXd dense_mass(const Inertia& inertia) {
+  if (!inertia.factored()) return inertia.mass;
+  const Eigen::MatrixXd coupling = inertia.coupling, velocity = inertia.velocity_mass;
+  return coupling.transpose() * velocity.llt().solve(coupling);
+}
+
+/// μ of M x = μ K x, ascending: 1/ω² of the structure, zeros where M has a kernel.
+inline Eigen::VectorXd compliances(const SparseMatrix& stiffness, const Inertia& inertia) {
+  const Eigen::MatrixXd K = stiffness, M = dense_mass(inertia);
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(M, K, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// Slope of the least-squares line through (x_i, y_i).
+inline double fitted_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const Eigen::Map<const Eigen::VectorXd> a(x.data(), static_cast<Eigen::Index>(x.size()));
+  const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
+  const Eigen::VectorXd centred = a.array() - a.mean();
+  return centred.dot(b) / centred.squaredNorm();
+}
+
+/// Runs `action`, which must throw InputError; returns "pointer: message".
+template <class Action>
+std::string input_error(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.pointer() + ": " + error.what();
+  }
+  return "no error";
+}
+
+}  // namespace ricochet::testing
