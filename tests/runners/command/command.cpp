@@ -1,0 +1,270 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// A fresh folder that goes when the test ends.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "ricochet-command-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+  /// Runs the command here; `words` is a piece of shell.
+  Outcome run(const std::string& words, const std::string& environment = "") const {
+    const std::string line = "cd '" + path_.string() + "' && RICOCHET_PLUGIN_PATH= " + environment +
+                             " '" RICOCHET_COMMAND "' " + words + " >'" + (path_ / ".out").string() + "' 2>'" +
+                             (path_ / ".err").string() + "' </dev/null";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path_ / ".out"), read(path_ / ".err")};
+  }
+
+ private:
+  fs::path path_;
+};
+
+nlohmann::ordered_json tiny() {
+  return nlohmann::ordered_json::parse(R"({
+    "name": "tiny", "question": "Does it run?", "kind": "trajectory",
+    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2e11, "density": 8000,
+                            "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}, "damping": {"stiffness": 1e-4}},
+              "stops": {"lower": -0.1, "upper": 0.1, "at": "tip"},
+              "initial": {"displacement": "0.04*x^2", "velocity": "-2*x"}},
+    "mesh": {"elements": 4},
+    "methods": {"mass": ["consistent", "singular"], "contact": ["signorini"],
+                "time": [{"name": "newmark-dumont-paoli", "beta": [0.1, 0.5]}]},
+    "step": [1e-4], "duration": 0.01, "samples": 10
+  })");
+}
+
+}  // namespace
+
+TEST_CASE("Help and version are answers, not errors") {
+  const Folder here;
+  for (const char* words : {"--help", "-h", "help"}) {
+    const Outcome outcome = here.run(words);
+    CHECK(outcome.code == 0);
+    for (const char* name : {"run", "plan", "list", "describe", "report", "export", "schema", "doctor", "130"})
+      CHECK_THAT(outcome.out, Contains(name));
+  }
+  CHECK_THAT(here.run("--version").out, StartsWith("ricochet "));
+  for (const char* name : {"run", "plan", "list", "describe", "report", "export", "schema", "doctor"}) {
+    const Outcome first = here.run(std::string(name) + " --help"), second = here.run(std::string("help ") + name);
+    CHECK(first.code == 0);
+    CHECK(first.out == second.out);
+    CHECK_THAT(first.out, StartsWith(std::string("Usage: ricochet ") + name));
+  }
+}
+
+TEST_CASE("Wrong usage ends with 2 and the nearest name") {
+  const Folder here;
+  const std::vector<std::pair<std::string, std::string>> all = {
+      {"", "expected a command"},
+      {"paln x.json", "did you mean \"plan\"?"},
+      {"--hlep", "did you mean --help?"},
+      {"help paln", "did you mean \"plan\"?"},
+      {"run", "an argument is missing"},
+      {"run a.json b.json", "does not expect \"b.json\""},
+      {"run a.json --job 2", "did you mean --jobs?"},
+      {"run a.json --jobs two", "whole number"},
+      {"run a.json --jobs 0", "outside [1, "},
+      {"run a.json --jobs", "--jobs"},
+      {"run a.json --out", "--out"},
+      {"plan a.json --fresh", "no option --fresh"},
+      {"list mas", "did you mean \"mass\"?"},
+      {"describe singlar", "did you mean \"singular\"?"},
+      {"export somewhere", "--to CSVDIR"},
+      {"schema x", "does not expect \"x\""},
+  };
+  for (const auto& [words, part] : all) {
+    INFO(words);
+    const Outcome outcome = here.run(words);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(part));
+  }
+}
+
+TEST_CASE("A bad study ends with 2, file and line, and nothing is written") {
+  const Folder here;
+  const auto refused = [&](const std::string& name, const std::string& start, const std::string& part) {
+    for (const std::string command : {"plan", "run"}) {
+      INFO(command << " " << name);
+      const Outcome outcome = here.run(command + " " + name);
+      CHECK(outcome.code == 2);
+      CHECK(outcome.out.empty());
+      CHECK_THAT(outcome.err, StartsWith(start));
+      CHECK_THAT(outcome.err, Contains(part));
+      CHECK_FALSE(fs::exists(here / "results"));
+    }
+  };
+  refused("missing.json", "missing.json: cannot be read", "No such file");
+  fs::create_directory(here / "folder.json");
+  refused("folder.json", "folder.json: is a folder", "");
+  here.write("empty.json", "");
+  refused("empty.json", "empty.json:1:1: the file is empty", "");
+  here.write("broken.json", "{\n  \"name\": \"x\",\n}\n");
+  refused("broken.json", "broken.json:3:1: not valid JSON", "");
+  here.write("twice.json", "{\"name\": \"x\",\n \"name\": \"y\"}");
+  refused("twice.json", "twice.json:2: at /name: this key is given twice", "");
+  nlohmann::ordered_json study = tiny();
+  study["scene"]["structure"]["lenght"] = 1;
+  here.write("key.json", study.dump(1));
+  refused("key.json", "key.json:21: at /scene/structure/lenght: unknown key", "did you mean \"length\"?");
+  study = tiny();
+  study["scene"]["initial"]["displacement"] = "0.04*x^2 +";
+  here.write("formula.json", study.dump(1));
+  refused("formula.json", "formula.json:28: at /scene/initial/displacement: ", "does not parse");
+  study = tiny();
+  study["methods"]["time"][0]["name"] = "newmark-dumont";
+  here.write("plugin.json", study.dump(1));
+  refused("plugin.json", "plugin.json:", "did you mean \"newmark-dumont-paoli\"?");
+  study = tiny();
+  study["step"] = {1e-4, -1};
+  here.write("step.json", study.dump(1));
+  refused("step.json", "step.json:", "at /step/1: expected a number in ]0, ∞[");
+}
+
+TEST_CASE("Plugins are listed and described from their own manuals") {
+  const Folder here;
+  const Outcome all = here.run("list"), masses = here.run("list mass");
+  CHECK(all.code == 0);
+  for (const char* name : {"consistent", "lumped", "singular", "none", "signorini", "penalty", "augmented-lagrangian",
+                           "newmark-dumont-paoli", "newmark", "moreau-jean"})
+    CHECK_THAT(all.out, Contains(name));
+  CHECK_THAT(masses.out, Contains("singular") && !Contains("signorini"));
+  const Outcome penalty = here.run("describe penalty");
+  CHECK(penalty.code == 0);
+  CHECK_THAT(penalty.out, Contains("stiffness") && Contains("N/m") && Contains("required") && Contains("source: "));
+  const Outcome scheme = here.run("describe newmark-dumont-paoli");
+  CHECK(scheme.code == 0);
+  CHECK_THAT(scheme.out,
+             Contains("restitution") && Contains("order ") && Contains("stability") && Contains("stage 1: S z = b"));
+}
+
+TEST_CASE("A plan shows cases, refusals with reasons and cost, and runs nothing") {
+  const Folder here;
+  nlohmann::ordered_json study = tiny();
+  study["exclude"] = {{{"mass", "consistent"}, {"time.beta", 0.1}, {"why", "known already"}}};
+  here.write("tiny.json", study.dump(1));
+  const Outcome outcome = here.run("plan tiny.json");
+  INFO(outcome.err);
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.out, Contains("4 cases") && Contains("excluded: known already") && Contains("refused: ") &&
+                              Contains("predicted: "));
+  CHECK_THAT(outcome.out, Contains("2 to run, 1 refused, 1 excluded") && Contains("contact signorini") &&
+                              Contains("contact-penalty.so"));
+  CHECK_FALSE(fs::exists(here / "results"));
+}
+
+TEST_CASE("A study runs to results that can be reported and exported again") {
+  const Folder here;
+  here.write("tiny.json", tiny().dump(1));
+  const Outcome run = here.run("run tiny.json --out there --jobs 1");
+  INFO(run.out << run.err);
+  CHECK(run.code == 0);
+  for (const char* file : {"results.sqlite", "report.html", "study.json", "cases.csv"})
+    CHECK(fs::exists(here / "there" / file));
+  fs::remove(here / "there" / "report.html");
+  CHECK(here.run("report there").code == 0);
+  CHECK(fs::exists(here / "there" / "report.html"));
+  CHECK(here.run("export there --to tables").code == 0);
+  CHECK(fs::exists(here / "tables" / "cases.csv"));
+  CHECK(here.run("plan there/study.json").code == 0);
+}
+
+TEST_CASE("Results that are not there, or are something else, end with 5") {
+  const Folder here;
+  const Outcome outcome = here.run("report nowhere");
+  CHECK(outcome.code == 5);
+  CHECK_THAT(outcome.err, Contains("nowhere"));
+}
+
+TEST_CASE("A plugin file that cannot serve ends with 4 and is named") {
+  const Folder here;
+  here.write("tiny.json", tiny().dump(1));
+  here.write("text.so", "not a library");
+  for (const std::string command : {"run tiny.json", "plan tiny.json", "list", "describe singular", "schema", "doctor"})
+    for (const std::string file : {"text.so", "absent.so"}) {
+      INFO(command << " " << file);
+      const Outcome outcome = here.run(command + " --plugin " + file);
+      CHECK(outcome.code == 4);
+      CHECK_THAT(outcome.err, Contains(file));
+    }
+  SECTION("in a folder it matters only to who asks for what it may hold") {
+    const std::string environment = "RICOCHET_PLUGIN_PATH='" + (here / "").string() + "'";
+    CHECK(here.run("plan tiny.json", environment).code == 0);
+    const Outcome doctor = here.run("doctor", environment);
+    CHECK(doctor.code == 4);
+    CHECK_THAT(doctor.out, Contains("text.so") && Contains("unusable"));
+    nlohmann::ordered_json study = tiny();
+    study["methods"]["time"] = {"my-own-scheme"};
+    here.write("own.json", study.dump(1));
+    const Outcome plan = here.run("plan own.json", environment);
+    CHECK(plan.code == 4);
+    CHECK_THAT(plan.err, Contains("my-own-scheme") && Contains("text.so") && Contains("/methods/time/0"));
+  }
+}
+
+TEST_CASE("The doctor says with what the program was built and what it finds") {
+  const Folder here;
+  const Outcome outcome = here.run("doctor");
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.code == 0);
+  for (const char* part : {"compiler", "flags", "Eigen", "Boost", "CHOLMOD", "nlohmann", "fmt", "TBB", "SQLite",
+                           "muParser", "charts", "processor", "instruction sets", "mass-singular.so", "ok"})
+    CHECK_THAT(outcome.out, Contains(part));
+}
+
+TEST_CASE("The schema is JSON and knows the parameters of the plugins found") {
+  const Folder here;
+  const Outcome outcome = here.run("schema");
+  CHECK(outcome.code == 0);
+  const auto schema = nlohmann::json::parse(outcome.out);
+  CHECK(schema["additionalProperties"] == false);
+  CHECK_THAT(outcome.out, Contains("\"augmentation\"") && Contains("\"velocity\"") && Contains("\"beta\""));
+}
+
+TEST_CASE("Output that cannot be written is told") {
+  if (!fs::exists("/dev/full")) return;
+  const Folder here;
+  const int status = std::system("'" RICOCHET_COMMAND "' schema >/dev/full 2>/dev/null");
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) != 0));
+}

@@ -1,0 +1,124 @@
+#include "runners/study/study_schema.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "tests/runners/study/study_fixture.hpp"
+
+using namespace ricochet;
+using namespace ricochet::tests;
+
+namespace {
+
+class Validator {
+ public:
+  explicit Validator(const Registry& registry) : text_(nlohmann::json(study_schema(registry))) {
+    valijson::SchemaParser parser;
+    parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text_), schema_);
+  }
+  bool accepts(const Json& study) {
+    const nlohmann::json plain = study;
+    valijson::Validator validator(valijson::Validator::kStrongTypes);
+    return validator.validate(schema_, valijson::adapters::NlohmannJsonAdapter(plain), nullptr);
+  }
+
+ private:
+  nlohmann::json text_;
+  valijson::Schema schema_;
+};
+
+}  // namespace
+
+TEST_CASE("The schema accepts every shipped study, as written and as resolved") {
+  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Registry registry;
+  catalogue.open_all(registry);
+  Validator validator(registry);
+  for (const auto& item : std::filesystem::directory_iterator(RICOCHET_SOURCE_DIR "/studies")) {
+    INFO(item.path().string());
+    std::ifstream stream(item.path());
+    CHECK(validator.accepts(Json::parse(stream)));
+    CHECK(validator.accepts(load_study(item.path(), catalogue, registry).resolved));
+  }
+}
+
+TEST_CASE("The schema and the reader agree on what is a study") {
+  const Registry registry = stand_ins();
+  Validator validator(registry);
+  const std::vector<Json> good = {
+      small_study(),
+      with("/scene/stops/at", {0.5, 1.5}),
+      with("/scene/stops/at", Json::array({"tip", Json::array({0.5})})),
+      with("/scene/stops/lower", {nullptr, -0.1, "-0.1"}),
+      with("/scene/support", {{"amplitude", {0.01, 0.02}}, {"pulsation", 10}}),
+      with("/methods/contact", {{"name", "spring"}, {"stiffness", {1, 10}}}),
+      with("/methods/mass", "poor"),
+      with("/exclude", Json::array({{{"mass", "poor"}, {"why", "slow"}}})),
+      with("/exclude", Json::array({{{"mass.velocity", "P1"}, {"why", "slow"}}})),
+  };
+  const std::vector<Json> bad = {
+      with("/sttep", 1),
+      without("", "step"),
+      without("/scene/structure", "young"),
+      without("/scene/structure", "type"),
+      with("/scene/structure/lenght", 1),
+      with("/scene/structure/length", -1),
+      with("/scene/structure/length", "1"),
+      with("/scene/structure/length", Json::array()),
+      with("/scene/structure/length", {1.5, 1.5}),
+      with("/scene/structure/section/type", "tueb"),
+      with("/scene/structure/section",
+           {{"type", "given"}, {"EI", 1}, {"rhoS", 1}}),  // young and density are too much then
+      with("/scene/structure/section", {{"type", "circle"}, {"wall", 1}}),
+      with("/scene/stops/at", "node"),
+      with("/scene/stops/lower", true),
+      with("/scene/load", nullptr),
+      with("/mesh/elements", 0),
+      with("/mesh/elements", 2.5),
+      with("/kind", "trajectroy"),
+      with("/duration", {0.1, 0.2}),
+      with("/methods/mass", "ful"),
+      with("/methods/mass", Json::array()),
+      with("/methods/mass", {{"name", "full"}, {"velocity", "P1"}}),
+      with("/methods/contact", "spring"),
+      with("/methods/contact", {{"name", "spring"}, {"stiffness", 0}}),
+      with("/methods/time", {{"name", "three-level"}, {"beta", 1.5}}),
+      with("/methods/time", {{"name", "three-level"}, {"order", 1.5}}),
+      with("/exclude", Json::array({{{"mass", "poor"}}})),
+      with("/exclude", Json::array({{{"why", "all"}}})),
+      with("/exclude", Json::array({{{"mas", "poor"}, {"why", "slow"}}})),
+  };
+  for (const Json& study : good) {
+    INFO(study.dump(1));
+    CHECK(refusal(study).empty());
+    CHECK(validator.accepts(study));
+  }
+  for (const Json& study : bad) {
+    INFO(study.dump(1));
+    CHECK_FALSE(refusal(study).empty());
+    CHECK_FALSE(validator.accepts(study));
+  }
+}
+
+TEST_CASE("Every object of the schema is closed and every key is described") {
+  const std::function<void(const Json&, const std::string&)> visit = [&](const Json& schema, const std::string& path) {
+    if (schema.is_object()) {
+      // Conditions inside allOf only narrow an object that is closed already.
+      if (schema.contains("properties") && schema.contains("type")) {
+        INFO(path);
+        CHECK(schema["additionalProperties"] == false);
+      }
+      for (const auto& [key, value] : schema.items()) visit(value, path + "/" + key);
+    } else if (schema.is_array()) {
+      for (const Json& item : schema) visit(item, path + "/-");
+    }
+  };
+  const Json schema = study_schema(stand_ins());
+  CHECK(schema["$schema"] == "http://json-schema.org/draft-07/schema#");
+  visit(schema, "");
+}
