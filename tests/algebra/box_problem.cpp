@@ -421,11 +421,14 @@ TEST_CASE("nearly singular: hundreds of nodes of a cantilever between two stops"
     if (repeat % 4 == 3)
       for (int i = 0; i < m; ++i) problem.free[i] += random(-0.01, 0.01);
     INFO("m " << m << " repeat " << repeat);
-    check_complementarity(problem, solve(problem));
+    const Solution s = solve(problem);
+    check_complementarity(problem, s);
+    // Each point enters or leaves a few times at most; pivoting by least index needs over 10⁵ sets here.
+    CHECK(s.outcome.iterations <= 32 + 5 * m);
   }
 }
 
-TEST_CASE("the plain active set can cycle; the fallback does not", "[box]") {
+TEST_CASE("the plain active set can cycle; descent does not", "[box]") {
   // Found by search over small integer matrices: symmetric positive definite, not an M-matrix, stop at zero below.
   struct Case {
     MatrixXd W;
@@ -459,7 +462,7 @@ TEST_CASE("the plain active set can cycle; the fallback does not", "[box]") {
   }
 }
 
-TEST_CASE("hard random operators never defeat the fallback", "[box]") {
+TEST_CASE("hard random operators never defeat descent", "[box]") {
   // Far from M-matrices: G Gᵀ with G of small integers, singular now and then.
   Random random(12);
   for (int repeat = 0; repeat < 3000; ++repeat) {
@@ -475,9 +478,7 @@ TEST_CASE("hard random operators never defeat the fallback", "[box]") {
     if (repeat % 2 == 0) problem.upper = VectorXd::NullaryExpr(m, [&](Eigen::Index i) { return p[i] > 0 ? 1 : 9.0; });
     const Solution s = solve(problem);
     INFO("repeat " << repeat << " m " << m);
-    CHECK(s.outcome.converged);
-    // 1e-10 of the deepest violation is what is promised where W is singular.
-    CHECK(residual(problem, s.p) <= 1e-10 * std::max(problem.depth(), 1.0));
+    check_complementarity(problem, s);
   }
 }
 
@@ -504,13 +505,12 @@ TEST_CASE("two contact points at one place", "[box]") {
     }
     INFO("repeat " << repeat);
     const Solution s = solve(twice), expected = solve(single);
-    CHECK(s.outcome.converged);
-    CHECK(residual(twice, s.p) <= 1e-10 * std::max(twice.depth(), 1e-3));
+    check_complementarity(twice, s);
     VectorXd shared = s.p.head(base);
     shared[0] += s.p[base];
     shared[base - 1] += s.p[base + 1];
-    // The sum of the pair is the effort of the single point, to the promise of 1e-10 times the condition 100.
-    CHECK((shared - expected.p).norm() <= 1e-7 * (1 + expected.p.norm()));
+    // The sum of the pair is the effort of the single point, to a residual of 1e-12 times the condition 100.
+    CHECK((shared - expected.p).norm() <= 1e-10 * (1 + expected.p.norm()));
   }
 }
 
@@ -524,11 +524,10 @@ TEST_CASE("a rigid bar on more supports than it needs", "[box]") {
       Problem problem{H * H.transpose(), 1, 0, H * fall, VectorXd::Zero(m), VectorXd::Constant(m, infinity)};
       const Solution s = solve(problem);
       INFO("m " << m << " tilt " << tilt);
-      CHECK(s.outcome.converged);
+      check_complementarity(problem, s);
       CHECK(s.p.minCoeff() >= 0);
-      CHECK(residual(problem, s.p) <= 1e-10);
       // All supports touched: the bar is at rest on them, H(fall + Hᵀp) = 0 determines Hᵀp = −fall.
-      CHECK((H.transpose() * s.p + fall).norm() <= 1e-9);
+      CHECK((H.transpose() * s.p + fall).norm() <= 1e-11);
     }
   }
 }
@@ -615,7 +614,7 @@ TEST_CASE("a lane among others gives what it gives alone, bit for bit", "[box]")
   }
 }
 
-TEST_CASE("solve allocates nothing, not even in the fallback", "[box]") {
+TEST_CASE("solve allocates nothing, not even in descent", "[box]") {
   const long before_prepare = allocations();
   BoxSolver solver;
   solver.prepare(50);
