@@ -126,7 +126,7 @@ void Progress::draw() {
 
 void Progress::erase() {
   if (!terminal_) return;
-  say(out_, fmt::format("\r\x1b[K"));
+  say(out_, "\r\x1b[K");
 }
 
 void Progress::refresh() {
@@ -135,7 +135,7 @@ void Progress::refresh() {
     if (stop_ && !stop_told_) {
       stop_told_ = true;
       erase();
-      say(out_, fmt::format("stopping: the cases in flight are given up, the others kept (once more ends at once)\n"));
+      say(out_, "stopping: the cases in flight are given up, the others kept (once more ends at once)\n");
     }
     if (terminal_ || seconds_since(last_line_) >= 5 * kLineEverySeconds) draw();
     wake_.wait_for(lock, kRedrawEvery);

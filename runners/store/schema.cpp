@@ -116,19 +116,22 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
   });
 }
 
-void forget_store(const std::filesystem::path& file) {
-  // A full header is read before SQLite has the file open: closing it later would drop SQLite's own locks.
+void check_owner(const std::filesystem::path& file) {
+  // The header is read before SQLite has the file open: closing it later would drop SQLite's own locks.
   std::array<unsigned char, 100> header{};
   std::ifstream stream(file, std::ios::binary);
-  if (stream.read(reinterpret_cast<char*>(header.data()), header.size())) {
-    constexpr std::size_t version_at = 60, application_at = 68;
-    const bool sqlite = std::memcmp(header.data(), "SQLite format 3", 16) == 0;
-    const std::uint32_t application = big_endian(header, application_at);
-    const bool unfinished = application == 0 && big_endian(header, version_at) == 0;
-    if (!sqlite || (application != kStoreApplication && !unfinished)) not_ours(file);
-  } else if (stream.gcount() > 0) {
-    not_ours(file);
-  }
+  stream.read(reinterpret_cast<char*>(header.data()), header.size());
+  const auto size = static_cast<std::size_t>(stream.gcount());
+  if (size == 0) return;
+  // A first write cut short: SQLite rolls it back by its journal.
+  if (size < header.size() && std::filesystem::exists(file.string() + "-journal")) return;
+  constexpr std::size_t application_at = 68;
+  const bool sqlite = size == header.size() && std::memcmp(header.data(), "SQLite format 3", 16) == 0;
+  if (!sqlite || big_endian(header, application_at) != kStoreApplication) not_ours(file);
+}
+
+void forget_store(const std::filesystem::path& file) {
+  check_owner(file);
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
     std::error_code error;
     std::filesystem::remove(file.string() + suffix, error);

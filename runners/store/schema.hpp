@@ -14,6 +14,10 @@ constexpr int kStoreVersion = 1;
 /// StoreError for a file of another application or another version (found, expected, what to do).
 void prepare_schema(SQLite::Database& database, const std::filesystem::path& file, bool create);
 
+/// Looks at the file's header, without SQLite (which takes a short file for an empty database, and overwrites it).
+/// Throws StoreError when there is a file that is not ours. To be called while no connection is open.
+void check_owner(const std::filesystem::path& file);
+
 /// Removes results.sqlite and its journals. A file that is not ours is refused, not removed.
 void forget_store(const std::filesystem::path& file);
 

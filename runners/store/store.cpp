@@ -42,6 +42,7 @@ void insert(SQLite::Statement& statement, const Values&... values) {
 Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "results.sqlite"), lock_(made(folder)) {
   remove_leftovers(folder);
   remove_leftovers(folder / "curves");
+  check_owner(file_);
   if (fresh) forget_store(file_);
   guarded(file_, nullptr, [&] {
     constexpr int wait_ms =

@@ -1,0 +1,118 @@
+#include "runners/store/csv.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <limits>
+
+#include "tests/runners/store/sample_results.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+/// A reader after RFC 4180, written apart from the writer: lines of fields.
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> lines = {{""}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c != '"')
+        lines.back().back() += c;
+      else if (i + 1 < text.size() && text[i + 1] == '"')
+        lines.back().back() += text[i++];
+      else
+        quoted = false;
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == ',') {
+      lines.back().emplace_back();
+    } else if (c == '\n') {
+      lines.push_back({""});
+    } else {
+      lines.back().back() += c;
+    }
+  }
+  lines.pop_back();
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("csv: a number reads back as the same double") {
+  for (const double value : {0.1, 1.0 / 3.0, 1e-300, 5e-324, 6.02214076e23, -0.0, 14.0, 1e22, 2.5e-7}) {
+    const std::string text = csv_number(value);
+    CHECK(std::strtod(text.c_str(), nullptr) == value);
+  }
+  CHECK(csv_number(14) == "14");
+  CHECK(csv_number(0.25) == "0.25");
+}
+
+TEST_CASE("csv: what is not finite is an empty field") {
+  CHECK(csv_number(std::numeric_limits<double>::quiet_NaN()).empty());
+  CHECK(csv_number(std::numeric_limits<double>::infinity()).empty());
+  CHECK(csv_number(-std::numeric_limits<double>::infinity()).empty());
+}
+
+TEST_CASE("csv: quoting after RFC 4180") {
+  CHECK(csv_field("plain text") == "plain text");
+  CHECK(csv_field("a,b") == "\"a,b\"");
+  CHECK(csv_field("say \"x\"") == "\"say \"\"x\"\"\"");
+  CHECK(csv_field("two\nlines") == "\"two\nlines\"");
+  CHECK(csv_field("") == "");
+}
+
+TEST_CASE("csv: axis values") {
+  CHECK(csv_value("P1") == "P1");
+  CHECK(csv_value("0.1,x") == "\"0.1,x\"");
+  CHECK(csv_value(1e-05) == "1e-05");
+  CHECK(csv_value(50) == "50");
+  CHECK(csv_value(true) == "true");
+  CHECK(csv_value(nullptr) == "");
+  CHECK(csv_value({0.5, 1.0}) == "\"[0.5,1.0]\"");
+}
+
+TEST_CASE("csv: cases have id, axes, status, reason, steps, times, then every measure") {
+  const auto lines = parse_csv(cases_csv(sample_results()));
+  REQUIRE(lines.size() == 3);
+  const std::vector<std::string> first(lines[0].begin(), lines[0].begin() + 10);
+  CHECK(first == std::vector<std::string>{"id", "mass", "mass.velocity", "step", "status", "reason", "steps",
+                                          "setup_seconds", "run_seconds", "scheme_energy_start"});
+  CHECK(lines[0].size() == 9 + trajectory_measures().size());
+  CHECK(lines[1].size() == lines[0].size());
+  CHECK(lines[2].size() == lines[0].size());
+  CHECK(lines[1][4] == "done");
+  CHECK(lines[2][2] == "");  // a refused case without that parameter: the column is there, the value is not
+  CHECK(lines[2][5] == "β = 0 leaves S \"singular\",\nuse β ≥ 1/4");
+  for (std::size_t i = 0; i < lines[0].size(); ++i)
+    if (lines[0][i] == "energy_start") CHECK(std::strtod(lines[1][i].c_str(), nullptr) == 1.0 / 3.0);
+}
+
+TEST_CASE("csv: a measure that the list does not know gets a column too") {
+  StudyResults results = sample_results();
+  results.cases[1].measures = {{"error_tip", 2.0}};
+  const auto lines = parse_csv(cases_csv(results));
+  CHECK(lines[0].back() == "error_tip");
+  CHECK(lines[1].back() == "");
+  CHECK(lines[2].back() == "2");
+}
+
+TEST_CASE("csv: a curve is its columns, and a value that is not finite is empty") {
+  Curve curve;
+  curve.names = {"t", "energy"};
+  curve.columns = {{0, 0.5}, {1, std::numeric_limits<double>::quiet_NaN()}};
+  CHECK(curve_csv(curve) == "t,energy\n0,1\n0.5,\n");
+}
+
+TEST_CASE("measures: names are unique, units and texts are there") {
+  std::vector<std::string> names;
+  for (const MeasureInfo& measure : trajectory_measures()) {
+    CHECK(std::find(names.begin(), names.end(), measure.name) == names.end());
+    names.emplace_back(measure.name);
+    CHECK_FALSE(std::string(measure.unit).empty());
+    CHECK(std::string(measure.text).back() == '.');
+  }
+  CHECK(names.front() == "scheme_energy_start");
+  CHECK(names.back() == "microseconds_per_step");
+}

@@ -1,0 +1,213 @@
+#include "runners/store/store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "runners/store/csv.hpp"
+#include "runners/store/store_error.hpp"
+#include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/store/sample_results.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+const std::vector<ExpectedCase> kExpected = {{"0123456789", "f1"}, {"abcdefabcd", "f2"}};
+
+void fill(const std::filesystem::path& folder) {
+  Store store(folder, false);
+  const StudyResults results = sample_results();
+  store.begin(results, kExpected);
+  store.save_environment(results.environment);
+  store.save(results.cases);
+}
+
+std::string open_error(const std::filesystem::path& folder, bool fresh = false) {
+  try {
+    Store store(folder, fresh);
+    store.begin(sample_results(), kExpected);
+  } catch (const StoreError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void check_equal(const CaseRecord& a, const CaseRecord& b) {
+  CHECK(a.id == b.id);
+  CHECK(a.axes == b.axes);
+  CHECK(a.status == b.status);
+  CHECK(a.reason == b.reason);
+  CHECK(a.steps == b.steps);
+  CHECK(a.setup_seconds == b.setup_seconds);
+  CHECK(a.run_seconds == b.run_seconds);
+  CHECK(a.measures == b.measures);
+  CHECK(a.left_out == b.left_out);
+  CHECK(a.notes == b.notes);
+  CHECK(a.operator_name == b.operator_name);
+  CHECK(a.curve.names == b.curve.names);
+  CHECK(a.curve.columns == b.curve.columns);
+}
+
+}  // namespace
+
+TEST_CASE("store: everything comes back, to the last bit") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  const StudyResults in = sample_results(), out = read_store(folder.path());
+  CHECK(out.name == in.name);
+  CHECK(out.question == in.question);
+  CHECK(out.kind == in.kind);
+  CHECK(out.study == in.study);
+  CHECK(out.columns == in.columns);
+  CHECK(out.expected_cases == in.expected_cases);
+  CHECK(out.environment.entries == in.environment.entries);
+  REQUIRE(out.cases.size() == in.cases.size());
+  for (std::size_t i = 0; i < in.cases.size(); ++i) check_equal(out.cases[i], in.cases[i]);
+}
+
+TEST_CASE("store: between two cases the record is one file, readable while the run has it open") {
+  const ScratchFolder folder;
+  Store store(folder.path(), false);
+  const StudyResults results = sample_results();
+  store.begin(results, kExpected);
+  store.save({results.cases.data(), 1});
+  CHECK_FALSE(std::filesystem::exists(folder / "results.sqlite-journal"));
+  CHECK_FALSE(std::filesystem::exists(folder / "results.sqlite-wal"));
+  const StudyResults seen = read_store(folder.path());
+  CHECK(seen.cases.size() == 1);
+  CHECK(seen.expected_cases == 2);
+}
+
+TEST_CASE("store: cases are in the study's order, whatever the order they finished in") {
+  const ScratchFolder folder;
+  Store store(folder.path(), false);
+  const StudyResults results = sample_results();
+  store.begin(results, kExpected);
+  store.save({results.cases.data() + 1, 1});
+  store.save({results.cases.data(), 1});
+  const StudyResults seen = store.load();
+  REQUIRE(seen.cases.size() == 2);
+  CHECK(seen.cases[0].id == kExpected[0].id);
+}
+
+TEST_CASE("store: kept are the cases whose fingerprint is the same; others and strangers are dropped") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  Store store(folder.path(), false);
+  SECTION("nothing changed") {
+    CHECK(store.begin(sample_results(), kExpected).size() == 2);
+  }
+  SECTION("one fingerprint changed") {
+    const auto kept = store.begin(sample_results(), {{"0123456789", "f1"}, {"abcdefabcd", "other"}});
+    CHECK(kept == std::set<std::string>{"0123456789"});
+    CHECK(store.load().cases.size() == 1);
+  }
+  SECTION("one case left the study, and the order changed") {
+    const auto kept = store.begin(sample_results(), {{"new", "f3"}, {"abcdefabcd", "f2"}});
+    CHECK(kept == std::set<std::string>{"abcdefabcd"});
+    CHECK(store.load().cases.front().id == "abcdefabcd");
+  }
+  SECTION("a dropped case leaves nothing in any table") {
+    store.begin(sample_results(), {});
+    const SQLite::Database database(folder / "results.sqlite");
+    for (const char* table : {"cases", "axes", "measures", "left_out", "notes", "curves"}) {
+      SQLite::Statement rows(database, std::string("SELECT count(*) FROM ") + table);
+      REQUIRE(rows.executeStep());
+      CHECK(rows.getColumn(0).getInt() == 0);
+    }
+  }
+}
+
+TEST_CASE("store: fresh forgets") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  Store store(folder.path(), true);
+  CHECK(store.load().cases.empty());
+}
+
+TEST_CASE("store: a measure that is not finite is left out, and said") {
+  const ScratchFolder folder;
+  Store store(folder.path(), false);
+  StudyResults results = sample_results();
+  results.cases[0].measures.emplace_back("impulse", std::numeric_limits<double>::quiet_NaN());
+  store.begin(results, kExpected);
+  store.save(results.cases);
+  const CaseRecord record = store.load().cases[0];
+  CHECK(record.measures.size() == 2);
+  CHECK(record.notes.back() == "impulse is not a finite number and is left out");
+}
+
+TEST_CASE("store: another version is refused with what was found, expected and to do") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
+  using Catch::Contains;
+  CHECK_THAT(open_error(folder.path()),
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 1") && Contains("--fresh"));
+  CHECK_THROWS_AS(read_store(folder.path()), StoreError);
+  CHECK(open_error(folder.path(), true).empty());
+}
+
+TEST_CASE("store: a file that is not ours is refused and never removed") {
+  const ScratchFolder folder;
+  SECTION("text") {
+    write_text(folder / "results.sqlite", std::string(5000, 'x'));
+  }
+  SECTION("short text") {
+    write_text(folder / "results.sqlite", "x");
+  }
+  SECTION("the database of another program") {
+    SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec("CREATE TABLE mine(x); PRAGMA user_version=7");
+  }
+  SECTION("the database of a program that names neither itself nor a version") {
+    SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec("CREATE TABLE mine(x)");
+  }
+  const std::string before = read_text(folder / "results.sqlite");
+  CHECK_THAT(open_error(folder.path()), Catch::Contains("not a Ricochet store"));
+  CHECK_THAT(open_error(folder.path(), true), Catch::Contains("not a Ricochet store"));
+  CHECK((read_text(folder / "results.sqlite") == before));
+}
+
+TEST_CASE("store: a store whose creation was cut short is begun anew") {
+  const ScratchFolder folder;
+  write_text(folder / "results.sqlite", "");
+  CHECK_THROWS_AS(read_store(folder.path()), StoreError);
+  fill(folder.path());
+  CHECK(read_store(folder.path()).cases.size() == 2);
+}
+
+TEST_CASE("store: the results of another study are not overwritten") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  Store store(folder.path(), false);
+  StudyResults other = sample_results();
+  other.name = "other";
+  CHECK_THROWS_WITH(store.begin(other, {}), Catch::Contains("\"sample\"") && Catch::Contains("\"other\""));
+  CHECK(store.load().cases.size() == 2);
+}
+
+TEST_CASE("store: a folder that cannot be") {
+  const ScratchFolder folder;
+  write_text(folder / "file", "in the way");
+  CHECK_THAT(open_error(folder / "file"), Catch::Contains((folder / "file").string()));
+  CHECK_THAT(open_error(folder / "file/below"), Catch::Contains((folder / "file/below").string()));
+  std::filesystem::create_directories(folder / "results.sqlite");
+  CHECK_THAT(open_error(folder.path()), Catch::Contains("results.sqlite") && Catch::Contains("cannot be opened"));
+  CHECK_THROWS_WITH(read_store(folder / "absent"), Catch::Contains("there is no results.sqlite here"));
+}
+
+TEST_CASE("store: one run at a time, and the other is named") {
+  const ScratchFolder folder;
+  {
+    const Store first(folder.path(), false);
+    CHECK_THAT(open_error(folder.path()),
+               Catch::Contains("another run") && Catch::Contains("process " + std::to_string(::getpid())));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "results.lock"));
+  CHECK(open_error(folder.path()).empty());
+}
