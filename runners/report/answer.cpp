@@ -71,7 +71,7 @@ std::string gain_sentence(const CaseView& view, const Cases& cases) {
   if (with.empty()) return "";
   const Extremes e = extremes(with, gain_share);
   if (gaining.empty())
-    return fmt::format(" No step gains more than {} of the starting energy (largest step gain: {}).",
+    return fmt::format(" No step gains more than {} of the starting energy (largest: {} of it).",
                        number_text(step_gain_threshold), number_text(e.high, 2));
   return fmt::format(" In {} of {} single steps gain energy, at most {} of the starting energy in one step{}.",
                      gaining.size(), count_text(with.size(), "case", "cases"), percent_text(e.high),
@@ -88,9 +88,109 @@ std::string unfinished_sentence(const Cases& cases) {
   return out.empty() ? "" : " Without a result: " + out + ".";
 }
 
+/// Whether something other than contact changes the energy: then its start is no reference.
+bool conservative(const CaseView& view) {
+  for (const CaseRecord* record : view.with_status("done"))
+    for (const char* work : {"work_of_damping", "work_of_loads"})
+      if (CaseView::measure(*record, work).value_or(0) != 0) return false;
+  return true;
+}
+
+std::string with_ratio(const CaseView& view, const CaseRecord& record) {
+  const std::string label = view.label(record, view.varying_without({"step"}));
+  return fmt::format("<strong>{}</strong>, which ends at {} of its start",
+                     label.empty() ? "the only method" : escape(label),
+                     percent_text(*CaseView::measure(record, "energy_ratio")));
+}
+
+/// "", or how many others end exactly as this one.
+std::string ties(const Cases& cases, const CaseRecord& record) {
+  const auto same = static_cast<size_t>(std::count_if(cases.begin(), cases.end(), [&](const CaseRecord* other) {
+    return CaseView::measure(*other, "energy_ratio") == CaseView::measure(record, "energy_ratio");
+  }));
+  return same < 2 ? "" : same == 2 ? " (one other ends the same)" : fmt::format(" ({} others end the same)", same - 1);
+}
+
+/// What the methods end at with the finest step, and who is farthest apart.
+std::string headline(const CaseView& view) {
+  Cases done = view.with_status("done");
+  std::erase_if(done, [](const CaseRecord* r) { return !CaseView::measure(*r, "energy_ratio"); });
+  if (done.empty()) return "";
+  double finest = INFINITY;
+  for (const CaseRecord* record : done) finest = std::min(finest, CaseView::number(*record, "step").value_or(INFINITY));
+  Cases at_finest;
+  for (const CaseRecord* record : done)
+    if (!view.varies("step") || CaseView::number(*record, "step") == finest) at_finest.push_back(record);
+  const bool keeps = conservative(view);
+  const Getter change = [](const CaseRecord& r) {
+    return std::optional(std::abs(*CaseView::measure(r, "energy_ratio") - 1));
+  };
+  const Extremes e = extremes(at_finest, keeps ? change : measured("energy_ratio"));
+  const std::string step = view.varies("step") ? fmt::format("With the finest step, {} s: ", exact_text(finest)) : "";
+  std::string out = "<p class=\"lead\">" + step;
+  if (e.low == e.high)
+    out += fmt::format("{} at {} of its starting energy.",
+                       at_finest.size() == 1 ? "the one finished case ends" : "every case ends",
+                       percent_text(*CaseView::measure(*at_finest.front(), "energy_ratio")));
+  else if (keeps)
+    out += fmt::format("closest to its starting energy is {}{}; farthest is {}{}.", with_ratio(view, *e.lowest),
+                       ties(at_finest, *e.lowest), with_ratio(view, *e.highest), ties(at_finest, *e.highest));
+  else
+    out += fmt::format("the most energy is left by {}{}, the least by {}{}: {} of the larger.",
+                       with_ratio(view, *e.highest), ties(at_finest, *e.highest), with_ratio(view, *e.lowest),
+                       ties(at_finest, *e.lowest), percent_text(e.low / e.high));
+  size_t kept = 0;
+  double noise = 0;
+  for (const CaseRecord* record : done) {
+    noise = std::max(noise, noise_of(*record));
+    kept += *change(*record) <= noise_of(*record);
+  }
+  if (keeps)
+    out += fmt::format(" {} of {} over all steps {} where {} began, to within the noise floor.",
+                       kept == 0 ? "None" : std::to_string(kept),
+                       count_text(done.size(), "finished case", "finished cases"), kept == 1 ? "ends" : "end",
+                       kept == 1 ? "it" : "they");
+  out += fmt::format(
+      "</p>\n<p class=\"fine\">Noise floor of a case: the larger of 2<sup>−52</sup> × its number of steps and the "
+      "residual of "
+      "its energy balance, relative to its starting energy; at most {} in these cases. Smaller differences are not "
+      "told from "
+      "round-off.</p>\n",
+      number_text(noise, 2));
+  return out;
+}
+
+/// What other than the method changed the energy, so that the ratio is not taken for what it is not.
+std::string work_sentence(const CaseView& view) {
+  if (conservative(view)) return "";
+  const Cases done = view.with_status("done");
+  std::string parts;
+  const auto add = [&](const char* what, const char* measure) {
+    const Extremes e = extremes(done, measured(measure));
+    if (e.count == 0 || (e.low == 0 && e.high == 0)) return;
+    parts += fmt::format("{}{} {} to {} J", parts.empty() ? "" : ", ", what, number_text(e.low), number_text(e.high));
+  };
+  add("damping", "work_of_damping");
+  add("loads and support", "work_of_loads");
+  return "<p>Not only contact changes the energy here. Work over the run, by case: " + parts +
+         " (negative: taken out of the beam). What went at contact is measured apart and said for each mass.</p>\n";
+}
+
+/// What contact took, where the ratio alone does not say it.
+std::string contact_sentence(const Cases& cases) {
+  const Extremes lost = extremes(cases, [](const CaseRecord& record) -> std::optional<double> {
+    const auto dissipated = CaseView::measure(record, "dissipated_at_contact"),
+               start = CaseView::measure(record, "energy_start");
+    return dissipated && start && *start > 0 ? std::optional(*dissipated / *start) : std::nullopt;
+  });
+  if (lost.count == 0) return "";
+  return fmt::format(" Contact took {} to {} of the starting energy.", percent_text(lost.low), percent_text(lost.high));
+}
+
 /// One sentence per mass matrix.
 std::string mass_sentences(const CaseView& view) {
   const Getter ratio = measured("energy_ratio");
+  const bool keeps = conservative(view);
   std::string out;
   for (const std::string& mass : view.masses()) {
     Cases all, done;
@@ -125,100 +225,43 @@ std::string mass_sentences(const CaseView& view) {
       else
         text += "no finished case.";
     }
+    if (!keeps) text += contact_sentence(done);
     text += gain_sentence(view, done) + unfinished_sentence(all);
     out += item(text);
   }
   return out;
 }
 
-/// Who ends closest to its starting energy at the finest step, who farthest; and against what noise.
-std::string headline(const CaseView& view) {
-  Cases done = view.with_status("done");
-  std::erase_if(done, [](const CaseRecord* r) { return !CaseView::measure(*r, "energy_ratio"); });
-  if (done.empty()) return "";
-  double finest = INFINITY;
-  for (const CaseRecord* record : done) finest = std::min(finest, CaseView::number(*record, "step").value_or(INFINITY));
-  Cases at_finest;
-  for (const CaseRecord* record : done)
-    if (!view.varies("step") || CaseView::number(*record, "step") == finest) at_finest.push_back(record);
-  const Getter change = [](const CaseRecord& r) {
-    return std::optional(std::abs(*CaseView::measure(r, "energy_ratio") - 1));
-  };
-  const Extremes e = extremes(at_finest, change);
-  const auto side = [&](const CaseRecord& r) {
-    return fmt::format(
-        "<strong>{}</strong>, which ends at {} of its start",
-        escape(view.label(r, view.varying_without({"step"})).empty() ? "the only method"
-                                                                     : view.label(r, view.varying_without({"step"}))),
-        percent_text(*CaseView::measure(r, "energy_ratio")));
-  };
-  std::string out = "<p class=\"lead\">";
-  const std::string where = view.varies("step") ? fmt::format("At the finest step, {} s, ", exact_text(finest)) : "";
-  if (at_finest.size() > 1 && e.lowest != e.highest && e.high > e.low) {
-    out += fmt::format("{}{} to its starting energy is {}; farthest is {}.", where,
-                       where.empty() ? "Closest" : "closest", side(*e.lowest), side(*e.highest));
-  } else {
-    const char* who = at_finest.size() == 1 ? (where.empty() ? "The one" : "the one")
-                      : where.empty()       ? "Every"
-                                            : "every";
-    out += fmt::format("{}{} case ends at {} of its starting energy.", where, who,
-                       percent_text(*CaseView::measure(*at_finest.front(), "energy_ratio")));
-  }
-  size_t kept = 0;
-  double noise = 0;
-  for (const CaseRecord* record : done) {
-    noise = std::max(noise, noise_of(*record));
-    kept += *change(*record) <= noise_of(*record);
-  }
-  out += fmt::format(" {} of {} end where they began to within their noise floor.</p>\n",
-                     kept == 0 ? "None" : fmt::format("{}", kept),
-                     count_text(done.size(), "finished case", "finished cases"));
-  out += fmt::format(
-      "<p class=\"fine\">Noise floor of a case: the larger of 2<sup>−52</sup> × its number of steps and the residual "
-      "of its energy "
-      "balance, relative to its starting energy; at most {} in these cases. Smaller differences are not told from "
-      "round-off.</p>\n",
-      number_text(noise, 2));
-  return out;
-}
-
-/// What other than the method changed the energy, so that the ratio is not taken for what it is not.
-std::string work_sentence(const CaseView& view) {
-  const Cases done = view.with_status("done");
-  const Extremes damping = extremes(done, measured("work_of_damping")),
-                 loads = extremes(done, measured("work_of_loads")),
-                 contact = extremes(done, measured("dissipated_at_contact"));
-  std::string parts;
-  const auto add = [&](const char* what, const Extremes& e) {
-    if (e.count == 0 || (e.low == 0 && e.high == 0)) return;
-    parts += fmt::format("{}{} {} to {} J", parts.empty() ? "" : ", ", what, number_text(e.low), number_text(e.high));
-  };
-  add("damping", damping);
-  add("loads and support", loads);
-  if (parts.empty()) return "";
-  std::string out = "<p>The ratio also holds the work of what is no contact (by case: " + parts + ")";
-  if (contact.count > 0)
-    out += fmt::format("; what was lost at contact is measured apart: {} to {} J (negative: gained)",
-                       number_text(contact.low), number_text(contact.high));
-  return out + ".</p>\n";
-}
-
-std::string matrix_cell(const CaseRecord* record) {
+std::string matrix_cell(const CaseRecord* record, bool conservative_study) {
   if (!record) return "<td class=\"number absent\">not run yet</td>";
   const auto ratio = CaseView::measure(*record, "energy_ratio");
   if (record->status != "done")
-    return fmt::format("<td class=\"status {0}\" title=\"{1}\">{0}</td>", escape(record->status),
+    return fmt::format("<td class=\"number status {0}\" title=\"{1}\">{0}</td>", escape(record->status),
                        escape(record->reason));
   if (!ratio) return "<td class=\"number absent\">–</td>";
-  const bool kept = std::abs(*ratio - 1) <= noise_of(*record);
+  const bool kept = conservative_study && std::abs(*ratio - 1) <= noise_of(*record);
   return fmt::format("<td class=\"number{}\" title=\"{}{}\">{}</td>", kept ? " kept" : "", exact_text(*ratio),
                      kept ? ": kept within the noise floor" : "", percent_text(*ratio));
+}
+
+/// "; diverged at 1e-6", so that a trend is not read without its missing end.
+std::string unfinished_steps(const Cases& cases) {
+  std::string out;
+  for (const char* status : {"diverged", "failed"}) {
+    std::string at;
+    for (const CaseRecord* record : cases)
+      if (record->status == status)
+        at += (at.empty() ? "" : ", ") + exact_text(CaseView::number(*record, "step").value_or(0));
+    if (!at.empty()) out += fmt::format("; {} at {}", status, at);
+  }
+  return out;
 }
 
 /// Methods × steps: energy ratio and trend.
 std::string matrix(const CaseView& view) {
   const Cases done = view.with_status("done");
   if (extremes(done, measured("energy_ratio")).count == 0) return "";
+  const bool keeps = conservative(view);
   std::vector<double> steps;
   for (const CaseRecord* record : view.all())
     if (const auto step = CaseView::number(*record, "step");
@@ -226,12 +269,12 @@ std::string matrix(const CaseView& view) {
       steps.push_back(*step);
   std::sort(steps.rbegin(), steps.rend());
   if (steps.empty()) return "";
-  std::string out =
+  std::string out = fmt::format(
       "<div class=\"scroll\"><table class=\"matrix\"><caption>Energy at the end over energy at the start, E(T)/E(0). "
-      "Columns: step h (s), "
-      "coarse to fine. Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, "
-      "where it falls.</caption>\n"
-      "<thead><tr><th scope=\"col\">method</th>";
+      "Columns: step h (s), coarse to fine. {}</caption>\n<thead><tr><th scope=\"col\">method</th>",
+      keeps
+          ? "Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, where it falls."
+          : "Order: of the moves between neighbouring steps, from the three finest, where they shrink.");
   for (const double step : steps) out += "<th scope=\"col\" class=\"number\">" + exact_text(step) + "</th>";
   out +=
       "<th scope=\"col\" class=\"number\">order</th><th scope=\"col\">as the step shrinks</th></tr></thead>\n<tbody>\n";
@@ -244,16 +287,16 @@ std::string matrix(const CaseView& view) {
       const auto found = std::find_if(group.cases.begin(), group.cases.end(),
                                       [&](const CaseRecord* r) { return CaseView::number(*r, "step") == step; });
       const CaseRecord* record = found == group.cases.end() ? nullptr : *found;
-      out += matrix_cell(record);
+      out += matrix_cell(record, keeps);
       const auto ratio = record && record->status == "done" ? CaseView::measure(*record, "energy_ratio") : std::nullopt;
       if (!ratio) continue;
       at.push_back(step);
       ratios.push_back(*ratio);
       noise = std::max(noise, noise_of(*record));
     }
-    const Trend trend = step_trend(at, ratios, noise);
+    const Trend trend = step_trend(at, ratios, noise, keeps);
     out += fmt::format("<td class=\"number\">{}</td><td>{}</td></tr>\n",
-                       trend.order ? number_text(*trend.order, 2) : "–", trend.words);
+                       trend.order ? number_text(*trend.order, 2) : "–", trend.words + unfinished_steps(group.cases));
   }
   return out + "</tbody></table></div>\n";
 }

@@ -205,6 +205,7 @@ class Maker {
     const Json gutter = {{"type", "value"}, {"min", 0}, {"max", 1}, {"show", false}};
     out.option = base_option(std::move(x), Json::array({std::move(y), gutter}), false, true);
     std::map<double, int> stacked;
+    std::string zeros;
     for (const Series& s : facet) {
       Json data = Json::array(), marks = Json::array();
       std::string unseen;
@@ -225,9 +226,7 @@ class Maker {
           data.push_back(std::move(item));
         }
       }
-      if (!unseen.empty())
-        out.notes.push_back(fmt::format("{}: exactly 0{}, which a logarithmic axis cannot show.", s.name,
-                                        s.reference ? "" : " at " + x_.name + " " + unseen));
+      if (!unseen.empty()) zeros += (zeros.empty() ? "" : "; ") + s.name + (s.reference ? "" : " at " + unseen);
       if (s.reference && !data.empty()) {
         const double level = data[0]["value"][1].get<double>();
         data = Json::array({{{"value", {x_low, level}}}, {{"value", {x_high, level}}}});
@@ -248,6 +247,7 @@ class Maker {
         out.option["series"].push_back(std::move(series));
       }
     }
+    if (!zeros.empty()) out.notes.push_back("Exactly 0, which a logarithmic axis cannot show: " + zeros + ".");
     return out;
   }
 

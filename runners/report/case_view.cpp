@@ -191,17 +191,21 @@ Cases CaseView::with_status(std::string_view status) const {
   return out;
 }
 
-std::string CaseView::describe(const Cases& cases) const {
-  const size_t total = results_.cases.size();
+std::string CaseView::describe(const Cases& cases, const Cases& among) const {
+  const size_t total = among.size();
   if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
+  const auto values_in = [](const Cases& some, const std::string& column) {
+    std::vector<std::string> out;
+    for (const CaseRecord* record : some) {
+      std::string value = text(*record, column);
+      if (!value.empty() && !contains(out, value)) out.push_back(std::move(value));
+    }
+    return out;
+  };
   std::string what;
   for (const std::string& column : varying_) {
-    std::vector<std::string> inside;
-    for (const CaseRecord* record : cases) {
-      std::string value = text(*record, column);
-      if (!value.empty() && !contains(inside, value)) inside.push_back(std::move(value));
-    }
-    if (inside.empty() || inside.size() == values(column).size()) continue;
+    const std::vector<std::string> inside = values_in(cases, column);
+    if (inside.empty() || inside.size() == values_in(among, column).size()) continue;
     what += fmt::format("{}{} {}", what.empty() ? "" : "; ", column, fmt::join(inside, ", "));
   }
   return fmt::format("{} of {} cases{}", cases.size(), total, what.empty() ? "" : " (" + what + ")");

@@ -64,8 +64,9 @@ class CaseView {
   Cases all() const;
   Cases with_status(std::string_view status) const;
 
-  /// What sets `cases` apart from all cases: "all 24 cases", "12 of 24 cases (mass singular)".
-  std::string describe(const Cases& cases) const;
+  /// What sets `cases` apart from `among`: "all 24 cases", "12 of 24 cases (mass singular)".
+  std::string describe(const Cases& cases, const Cases& among) const;
+  std::string describe(const Cases& cases) const { return describe(cases, all()); }
 
  private:
   const StudyResults& results_;

@@ -192,22 +192,24 @@ Json mark_series(const std::string& name, const std::string& colour, Json items)
 
 std::vector<std::string> outcome_notes(const CaseView& view, const Cases& cases,
                                        const std::vector<std::string>& columns) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;
   for (const CaseRecord* record : cases) {
     if (record->status == "done") continue;
-    const std::string head = status_mark(record->status) + " " + record->status, tail = record->reason;
-    const std::string key = head + '\x1f' + tail;
+    const std::pair key(record->status, record->reason);
     auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == key; });
     if (found == groups.end()) found = groups.insert(groups.end(), {key, {}});
-    std::string label = view.label(*record, columns);
-    if (!label.empty()) found->second.push_back(std::move(label));
+    found->second.push_back(record);
   }
   std::vector<std::string> out;
-  for (const auto& [key, labels] : groups) {
-    const size_t cut = key.find('\x1f');
-    out.push_back(fmt::format("{}{}{}{}", key.substr(0, cut),
-                              labels.empty() ? "" : " (" + fmt::format("{}", fmt::join(labels, "; ")) + ")",
-                              cut + 1 < key.size() ? ": " : "", key.substr(cut + 1)));
+  for (const auto& [key, group] : groups) {
+    std::string who;
+    if (group.size() > 2) {
+      who = view.describe(group, cases);
+    } else {
+      for (const CaseRecord* record : group) who += (who.empty() ? "" : "; ") + view.label(*record, columns);
+    }
+    out.push_back(status_mark(key.first) + " " + key.first + (who.empty() ? "" : ", " + who) +
+                  (key.second.empty() ? "" : ": " + key.second));
   }
   return out;
 }

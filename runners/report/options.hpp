@@ -52,7 +52,7 @@ Json log_axis(const Quantity& quantity, const Interval& range, bool vertical);
 /// curve `name`.
 Json mark_series(const std::string& name, const std::string& colour, Json items);
 
-/// The sentence "refused: h 1e-6: why", cases with the same reason put together.
+/// The sentences "refused, step 1e-6 s: why" of the cases that did not finish, those with the same reason put together.
 std::vector<std::string> outcome_notes(const CaseView& view, const Cases& cases,
                                        const std::vector<std::string>& columns);
 

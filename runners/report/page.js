@@ -39,9 +39,9 @@
   }
   function points(reference) {
     const x = column(reference.x), y = column(reference.y), out = new Array(x.length);
-    const scale = reference.scale || 1, offset = reference.offset || 0;
+    const scale = reference.scale || 1, base = reference.base || 0;
     for (let i = 0; i < x.length; ++i) {
-      const value = scale * y[i] + offset;
+      const value = scale * (y[i] - base);
       out[i] = [x[i], reference.modulus ? Math.abs(value) : value];
     }
     return out;
@@ -308,17 +308,20 @@
     const table = document.getElementById("cases");
     if (table) {
       const body = table.tBodies[0], order = () => Array.from(body.rows, (r) => r.cells[0].textContent).join();
-      const before = order(), header = table.querySelector("thead th:last-child button"), words = document.getElementById("filter");
-      header.click();
-      const up = order();
-      header.click();
-      const down = order();
+      const words = document.getElementById("filter");
+      let sorts = body.rows.length < 2;
+      for (const header of all("thead button", table)) {
+        header.click();
+        const up = order();
+        header.click();
+        sorts = sorts || up !== order();
+      }
       words.value = "no row says this";
       words.dispatchEvent(new Event("input"));
       const filtered = Array.from(body.rows).filter((r) => !r.hidden).length;
       words.value = "";
       words.dispatchEvent(new Event("input"));
-      result.table = { rows: body.rows.length, sorts: body.rows.length < 2 || up !== down || before !== up, filtered, restored: Array.from(body.rows).filter((r) => !r.hidden).length };
+      result.table = { rows: body.rows.length, sorts, filtered, restored: Array.from(body.rows).filter((r) => !r.hidden).length };
     }
     document.documentElement.setAttribute("data-selfcheck", JSON.stringify(result));
   }

@@ -65,6 +65,14 @@ std::string legend_html(const Figure& figure) {
   return out + "</div>\n";
 }
 
+std::string grid_classes(const Figure& figure) {
+  if (figure.charts.size() == 1) return "grid single";
+  std::string out = figure.charts.size() > 12 ? "grid many" : figure.charts.size() == 2 ? "grid pair" : "grid";
+  for (const Chart& chart : figure.charts)
+    if (chart.title.size() > 40) return out + " long-titles";
+  return out;
+}
+
 std::string figure_html(const Figure& figure) {
   std::string out = fmt::format(
       "<section class=\"figure\" id=\"figure-{0}\" data-figure=\"{0}\">\n<h3>{1}</h3>\n<p "
@@ -83,10 +91,7 @@ std::string figure_html(const Figure& figure) {
         "data-own> each chart its own scale</label>";
   if (figure.charts.size() > 12)
     out += "<label>Show <input type=\"search\" data-facets placeholder=\"words of a chart's title\"></label>";
-  out += "</div>\n" + legend_html(figure) +
-         fmt::format("<div class=\"grid{}\">\n", figure.charts.size() == 1   ? " single"
-                                                 : figure.charts.size() > 12 ? " many"
-                                                                             : "");
+  out += "</div>\n" + legend_html(figure) + fmt::format("<div class=\"{}\">\n", grid_classes(figure));
   for (size_t c = 0; c < figure.charts.size(); ++c) {
     const Chart& chart = figure.charts[c];
     out += fmt::format("<figure data-title=\"{0}\"><figcaption><span>{0}</span>", escape(chart.title));

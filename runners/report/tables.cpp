@@ -21,10 +21,10 @@ struct Column {
   std::string header, tooltip, classes;
 };
 
-std::string cell_number(double value, const std::string& classes) {
+std::string cell_number(double value, const std::string& classes, int digits = 5) {
   if (!std::isfinite(value)) return fmt::format("<td class=\"number absent{}\">–</td>", classes);
   return fmt::format("<td class=\"number{}\" data-value=\"{}\" title=\"{}\">{}</td>", classes, exact_text(value),
-                     exact_text(value), number_text(value, 5));
+                     exact_text(value), number_text(value, digits));
 }
 
 const MeasureInfo* info_of(const std::string& name) {
@@ -131,12 +131,20 @@ std::string case_table_html(const CaseView& view) {
     out += fmt::format(
         "<td class=\"status {0}\">{1} {0}</td><td class=\"reason\">{2}</td><td class=\"text extra\">{3}</td>",
         escape(record.status), status_mark(record.status), escape(record.reason), escape(record.operator_name));
-    out += fmt::format("<td class=\"number\" data-value=\"{0}\">{0}</td>", record.steps);
-    out += cell_number(record.setup_seconds, " extra") + cell_number(record.run_seconds, "");
+    if (record.status == "refused")
+      out +=
+          "<td class=\"number absent\">–</td><td class=\"number absent extra\">–</td><td class=\"number "
+          "absent\">–</td>";
+    else
+      out += fmt::format("<td class=\"number\" data-value=\"{0}\">{0}</td>", record.steps) +
+             cell_number(record.setup_seconds, " extra") + cell_number(record.run_seconds, "");
     for (const std::string& name : measures) {
       const std::string extra = aside.contains(name) ? " extra" : "";
       const auto value = CaseView::measure(record, name);
-      out += value ? cell_number(*value, extra) : fmt::format("<td class=\"number absent{}\">–</td>", extra);
+      // Ratios are near 1, where what counts is far behind the point.
+      const MeasureInfo* info = info_of(name);
+      const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
+      out += value ? cell_number(*value, extra, digits) : fmt::format("<td class=\"number absent{}\">–</td>", extra);
     }
     out += "</tr>\n";
   }

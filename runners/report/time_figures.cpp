@@ -24,7 +24,7 @@ struct Subject {
   bool from_zero = false, with_stops = false;
 };
 
-/// What is drawn of one case: y = |scale·column + offset| or without the modulus.
+/// What is drawn of one case: its place in the page's data, its values, its looks.
 struct Drawn {
   const CaseRecord* record = nullptr;
   Json reference;
@@ -33,10 +33,11 @@ struct Drawn {
   size_t rank = 0;
 };
 
+/// y = scale·(v − base), or its modulus; subtracting first keeps an unchanged value exactly 0.
 struct Map {
-  double scale = 1, offset = 0;
+  double base = 0, scale = 1;
   bool modulus = false;
-  double operator()(double v) const { return modulus ? std::abs(scale * v + offset) : scale * v + offset; }
+  double operator()(double v) const { return modulus ? std::abs(scale * (v - base)) : scale * (v - base); }
 };
 
 std::optional<double> start_value(const CaseRecord& record, std::span<const double> values) {
@@ -49,7 +50,7 @@ std::optional<Map> map_of(Scale scale, const Drawn& drawn) {
   if (scale == Scale::value) return Map{};
   const auto start = start_value(*drawn.record, drawn.values);
   if (!start) return std::nullopt;
-  return scale == Scale::ratio ? Map{1 / *start, 0, false} : Map{1 / *start, -1, true};
+  return scale == Scale::ratio ? Map{0, 1 / *start, false} : Map{*start, 1 / *start, true};
 }
 
 Quantity quantity_of(Scale scale, const Subject& subject) {
@@ -160,6 +161,11 @@ class Maker {
     return !label.empty() ? label : !view_.mass_label(record).empty() ? view_.mass_label(record) : "curve";
   }
 
+  /// Coarser steps are wider and lighter: where curves coincide, each still shows beside the finest.
+  double width(size_t rank) const {
+    return by_mass_ ? 1.6 : 1.4 + 0.8 * static_cast<double>(std::min<size_t>(rank, 3));
+  }
+
   double shade(size_t rank) const {
     return ranks_.size() < 2 ? 0 : 0.5 * static_cast<double>(rank) / static_cast<double>(ranks_.size() - 1);
   }
@@ -177,20 +183,28 @@ class Maker {
     return out;
   }
 
-  /// Of the finished curves; where none finished, of the others up to three times their start.
+  /// Of the finished curves, and of the others as far as they stay in sight: up to three times their start where none
+  /// finished, up to a thousand times the finished ones on a logarithmic axis.
   static Interval range_of(const std::vector<Drawn>& facet, Scale scale) {
     Interval range = Interval::nothing();
-    for (const bool finished : {true, false}) {
-      if (!finished && !range.empty() && scale != Scale::change) break;
+    const auto include = [&](bool finished, double bound) {
       for (const Drawn& d : facet) {
         const auto map = map_of(scale, d);
         if (!map || (d.record->status == "done") != finished) continue;
-        const double bound = 3 * std::abs((*map)(d.values.front()));
         for (const double v : d.values) {
           const double y = (*map)(v);
-          if (scale == Scale::change ? y > 0 : finished || bound == 0 || std::abs(y) <= bound) range.include(y);
+          if (std::abs(y) <= bound && (scale != Scale::change || y > 0)) range.include(y);
         }
       }
+    };
+    include(true, INFINITY);
+    if (scale == Scale::change) {
+      include(false, range.empty() ? 1e6 : 1e3 * std::max(1.0, range.high));
+    } else if (range.empty()) {
+      double start = 0;
+      for (const Drawn& d : facet)
+        if (const auto map = map_of(scale, d)) start = std::max(start, std::abs((*map)(d.values.front())));
+      include(false, start > 0 ? 3 * start : INFINITY);
     }
     return range;
   }
@@ -211,7 +225,7 @@ class Maker {
     } else {
       if (scale == Scale::value && subject.from_zero) range.include(0);
       if (subject.with_stops)
-        for (const double stop : stops()) range.include(stop);
+        for (const double stop : stops()) range.include(1.04 * stop);
       range = round_outwards(range, scale == Scale::ratio ? 2e-3 : 1e-12);
       const bool from_zero = range.low <= 0 && range.high >= 0;
       y = value_axis({with_unit(out.y) + (from_zero ? "" : ", axis not from 0"), "1"}, range, true);
@@ -222,12 +236,15 @@ class Maker {
     for (const Drawn& d : facet) time.include({d.t.front(), d.t.back()});
     Json x = value_axis(out.x, time, false);
     out.option = base_option(std::move(x), std::move(y), true, false);
-    for (const Drawn& d : facet) add_curve(out, d, scale, range, subject);
+    std::string unseen;
+    for (const Drawn& d : facet) add_curve(out, d, scale, range, unseen);
+    if (!unseen.empty())
+      out.notes.push_back("Samples equal to the start exactly, which a logarithmic axis cannot show: " + unseen + ".");
     if (subject.with_stops && !stops().empty()) out.option["series"].push_back(stop_lines());
     return out;
   }
 
-  void add_curve(ChartView& out, const Drawn& d, Scale scale, const Interval& range, const Subject& subject) const {
+  void add_curve(ChartView& out, const Drawn& d, Scale scale, const Interval& range, std::string& unseen) const {
     const auto map = map_of(scale, d);
     if (!map) {
       out.notes.push_back(d.name + ": energy 0 at the start, so no ratio to it.");
@@ -235,18 +252,17 @@ class Maker {
     }
     Json data = d.reference;
     if (map->scale != 1) data["scale"] = map->scale;
-    if (map->offset != 0) data["offset"] = map->offset;
+    if (map->base != 0) data["base"] = map->base;
     if (map->modulus) data["modulus"] = true;
-    Json series = {{"type", "line"},
-                   {"name", d.name},
-                   {"showSymbol", d.values.size() < 2},
-                   {"color", d.colour},
-                   {"lineStyle",
-                    {{"color", d.colour},
-                     {"width", d.rank == 0 ? 1.9 : 1.4},
-                     {"type", by_mass_ ? Json("solid") : line_dash(d.rank)}}},
-                   {"emphasis", {{"disabled", true}}},
-                   {"data", std::move(data)}};
+    Json series = {
+        {"type", "line"},
+        {"name", d.name},
+        {"showSymbol", d.values.size() < 2},
+        {"color", d.colour},
+        {"lineStyle",
+         {{"color", d.colour}, {"width", width(d.rank)}, {"type", by_mass_ ? Json("solid") : line_dash(d.rank)}}},
+        {"emphasis", {{"disabled", true}}},
+        {"data", std::move(data)}};
     if (d.values.size() > drawn_whole) series["sampling"] = "minmax";
     out.option["series"].push_back(std::move(series));
 
@@ -258,17 +274,15 @@ class Maker {
       if (std::isfinite(mapped) && std::abs(mapped) > std::abs(largest)) largest = mapped;
     }
     if (scale == Scale::change && zeros > 0)
-      out.notes.push_back(
-          fmt::format("{}: {} of {} samples equal the start exactly and have no place on a logarithmic axis.", d.name,
-                      zeros, d.values.size()));
+      unseen += fmt::format("{}{} {} of {}", unseen.empty() ? "" : ", ", d.name, zeros, d.values.size());
     if (largest > range.high || largest < range.low)
       out.notes.push_back(fmt::format("{}: leaves the frame, up to {}{}.", d.name, number_text(largest),
                                       out.y.unit == "1" ? "" : " " + out.y.unit));
-    if (d.record->status != "done") add_end(out, d, *map, range, subject);
+    if (d.record->status != "done") add_end(out, d, *map, range);
   }
 
   /// A mark where a curve that did not finish stops.
-  static void add_end(ChartView& out, const Drawn& d, const Map& map, const Interval& range, const Subject&) {
+  static void add_end(ChartView& out, const Drawn& d, const Map& map, const Interval& range) {
     size_t last = d.values.size();
     while (last > 0 && !std::isfinite(map(d.values[last - 1]))) --last;
     if (last == 0) return;

@@ -1,0 +1,53 @@
+# Sourced by runners/quickstart.sh and tests/run.sh, which set `root` to the project's folder: what this project needs of Debian 12 and of
+# npm, fetched only when it is missing, so that a second run needs no network.
+
+say() { printf '%s\n' "$*"; }
+give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev
+libvalijson-dev libmuparser-dev libsqlite3-dev libsqlitecpp-dev libtbb-dev libfmt-dev"
+# command=package: the command may come from elsewhere than Debian.
+build_commands="g++=g++ cmake=cmake ninja=ninja-build git=git"
+
+installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null 2>&1; then
+    sudo "$@"
+  else
+    give_up "this needs root or sudo: $*"
+  fi
+}
+
+# install_missing PACKAGE|COMMAND=PACKAGE …
+install_missing() {
+  missing=""
+  for item in "$@"; do
+    package=${item#*=}
+    case $item in
+      *=*) command -v "${item%%=*}" >/dev/null 2>&1 || missing="$missing $package" ;;
+      *) installed "$package" || missing="$missing $package" ;;
+    esac
+  done
+  [ -z "$missing" ] && return 0
+  command -v apt-get >/dev/null 2>&1 || give_up "this is written for Debian 12; elsewhere install what matches:$missing"
+  say "Installing:$missing"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q || say "apt-get update failed; trying with the lists that are there" >&2
+  # shellcheck disable=SC2086  # a list of words
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing ||
+    give_up "apt-get could not install:$missing"
+}
+
+# The chart library; without it reports have tables only, so failing here stops nothing.
+fetch_charts() {
+  [ -s "$root/runners/report/node_modules/echarts/dist/echarts.min.js" ] && return 0
+  if ! command -v npm >/dev/null 2>&1; then
+    # In a subshell: a machine where npm cannot be installed still gets its tables.
+    (install_missing npm=nodejs npm=npm) || { say "npm could not be installed: reports will have tables only" >&2; return 0; }
+  fi
+  say "Fetching the chart library of the report (once)"
+  (cd "$root/runners/report" && npm ci --no-audit --no-fund) ||
+    say "npm could not fetch the chart library: reports will have tables only; run this again with a network for charts" >&2
+}

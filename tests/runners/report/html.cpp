@@ -1,0 +1,41 @@
+#include "runners/report/html.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <limits>
+
+using namespace ricochet::report;
+
+TEST_CASE("escaped text holds no markup, and keeps every valid character", "[report]") {
+  CHECK(escape("a < b & c > \"d\" 'e'") == "a &lt; b &amp; c &gt; &quot;d&quot; &#39;e&#39;");
+  CHECK(escape("½vᵀMv ≤ 𝔼") == "½vᵀMv ≤ 𝔼");
+  CHECK(escape("\xc3(") == "\xEF\xBF\xBD(");
+  CHECK(escape("\xed\xa0\x80") == "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");  // a surrogate is no character
+  CHECK(escape("\xe2\x82") == "\xEF\xBF\xBD\xEF\xBF\xBD");
+}
+
+TEST_CASE("script text cannot close its element", "[report]") {
+  CHECK(script_text("x='</SCRIPT>'+'<!--'+(a<b)") == "x='<\\/SCRIPT>'+'<\\!--'+(a<b)");
+  CHECK(script_json({{"a", "</script>"}}) == "{\"a\":\"\\u003c/script>\"}");
+}
+
+TEST_CASE("numbers are short, and exact where they must be", "[report]") {
+  CHECK(number_text(0) == "0");
+  CHECK(number_text(-0.024312) == "−0.02431");
+  CHECK(number_text(1.234e-7, 2) == "1.2e-7");
+  CHECK(number_text(3e12) == "3e12");
+  CHECK(exact_text(1e-7) == "1e-7");
+  CHECK(exact_text(0.25) == "0.25");
+  for (const double value : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -2.5e-300})
+    CHECK(std::strtod(exact_text(value).c_str(), nullptr) == value);
+  CHECK(number_text(std::numeric_limits<double>::quiet_NaN()) == "not a number");
+}
+
+TEST_CASE("a ratio near one shows how near", "[report]") {
+  CHECK(percent_text(1) == "100.0 %");
+  CHECK(percent_text(0.7234) == "72.34 %");
+  CHECK(percent_text(0.9999876) == "99.9988 %");
+  CHECK(percent_text(1 + 3e-9) == "100.00000030 %");
+  CHECK(percent_text(4.8865) == "488.65 %");
+  CHECK(percent_text(3e7) == "3e9 %");
+}
