@@ -76,6 +76,7 @@ class Checker {
       combination(stage.work->rate, name + ": work rate");
       levels(stage.work->load, name + ": work load");
       effort(stage.work->effort, name + ": work");
+      levels(stage.work->support, name + ": work support");
     }
   }
 

@@ -83,6 +83,7 @@ struct WorkForm {
   Combination rate;                      ///< r, the velocity that damping sees
   Levels load;                           ///< F̄
   std::vector<double> effort = {1.0};    ///< p̄ = Σ effort_k p_{−k}
+  Levels support;                        ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
 };
 
 struct Stage {

@@ -62,7 +62,7 @@ class NewmarkDumontPaoli final : public TimeScheme {
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
     stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
     stage.increment = {.slots = {0, 1}, .z = 1};
-    stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}};
+    stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}, {{1, 0.5}, {-1, -0.5}}};
     return stage;
   }
 

@@ -57,7 +57,8 @@ class Newmark final : public TimeScheme {
     stage.at(Evaluation::explicit_start) = {{.slots = {1, h, curve}}, {{1, 1}}, {.slots = {0, 1, lag}}, {{1, 1}}, {1}};
     stage.update = {end(h), end_rate, {.slots = {}, .z = 1}};
     stage.increment = {.slots = {0, h, curve}, .z = beta_ * h * h};
-    stage.work = {stage.increment, {.slots = {0, 1, lag / 2}, .z = gamma_ * h / 2}, {{0, 0.5}, {1, 0.5}}, {0.5, 0.5}};
+    stage.work = {stage.increment, {.slots = {0, 1, lag / 2}, .z = gamma_ * h / 2}, {{0, 0.5}, {1, 0.5}}, {0.5, 0.5},
+                  {{1, 1}, {0, -1}}};
     return stage;
   }
 

@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+
+/// \file
+/// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
+/// padded to a multiple of 64 bytes; T is one of 1, 2, 4, 8, 16, 32. Every kernel does the same sequence of operations
+/// for each lane whatever T is, so a lane's result does not depend on its company. Instruction sets are chosen when the
+/// table is asked for, never by the ABI.
+namespace ricochet {
+
+/// One free step with band operators: S z = K k + M m + shape·scale + load, S = L D Lᵀ.
+struct BandStep {
+  int rows = 0;               ///< n
+  int product_width = 0;      ///< half-bandwidth w of K and M
+  const double* K = nullptr;  ///< n × (2w+1) by rows, or (2w+1) × n by diagonals when T = 1; null: no product
+  const double* k = nullptr;  ///< n × T block, w zero rows before and after
+  const double* M = nullptr;  ///< like K; null: no product
+  const double* m = nullptr;
+  const double* shape = nullptr;  ///< n; null: none
+  const double* scale = nullptr;  ///< T
+  const double* load = nullptr;   ///< n, the same for every lane; null: none
+  int solve_rows = 0;             ///< rows of the factor, n or more (quasi-definite form)
+  int solve_width = 0;            ///< half-bandwidth v of the factor
+  /// Per row: v entries L[i,i−v..i−1], v entries L[i+1..i+v,i] (nearest first), 1/D_i. Null: b is assembled, nothing is
+  /// solved.
+  const double* factor = nullptr;
+  const int* from = nullptr;  ///< row of b for each row of the factor, −1: zero; null: identity
+  double* b = nullptr;        ///< scratch block; rows n and beyond are read through `from` and left alone
+  double* z = nullptr;        ///< solve_rows × T, v zero rows before and after
+};
+
+/// A row-compressed matrix with few columns per row (H, B).
+struct LaneRows {
+  int rows = 0;
+  const int* start = nullptr;  ///< rows + 1
+  const int* index = nullptr;
+  const double* value = nullptr;
+};
+
+struct LaneKernels {
+  /// out = Σ_j weight[j] x_j, j < count ≤ 4, over `size` doubles.
+  void (*combine)(long size, int count, const double* const* x, const double* weight, double* out);
+  /// x_j ← Σ_i weight[j·(count+1)+i] x_i + weight[j·(count+1)+count] z, all j at once, then combined = Σ_j next[j] x_j
+  /// of the new slots (null: not wanted); count ≤ 4, over `size` doubles.
+  void (*update)(long size, int count, double* const* x, const double* z, const double* weight, const double* next,
+                 double* combined);
+  void (*band_step)(const BandStep& step);
+  /// z[i] = Σ_j coefficient[i·(count+1)+j] x_j[i] + coefficient[i·(count+1)+count] scale[lane]: the whole free step of
+  /// a diagonal operator.
+  void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
+                        double* z);
+  /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ 5; offset may be null.
+  void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,
+                  double* y);
+  /// z[i] += column[i] · scale[lane]: a load shape times its amplitudes, a Delassus response times the efforts.
+  void (*add_column)(int rows, const double* column, const double* scale, double* z);
+  /// Bit l set: lane l has some i with y[i] < lower[i] or y[i] > upper[i], or y[i] not a number.
+  std::uint32_t (*outside)(int rows, const double* y, const double* lower, const double* upper);
+};
+
+/// Kernels for T lanes on this processor; `baseline` asks for those of the plain x86-64 instruction set (for tests).
+const LaneKernels& lane_kernels(int lanes, bool baseline = false);
+
+/// The smallest T that holds `lanes` (1 … 32).
+int lane_width(int lanes);
+
+/// "AVX2 + FMA" or "baseline": what lane_kernels() chose.
+const char* lane_instruction_set();
+
+}  // namespace ricochet

@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/quadratic_form.hpp>
+
+namespace ricochet {
+namespace {
+
+// Four independent sums, so that the compiler may keep them in one vector register without being allowed to reorder.
+double dot_shifted(const double* a, const double* x, const double* y, long n) {
+  double sum[4] = {0, 0, 0, 0};
+  long i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (int k = 0; k < 4; ++k) sum[k] += a[i + k] * (x[i + k] * y[i + k]);
+  for (; i < n; ++i) sum[0] += a[i] * (x[i] * y[i]);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+}  // namespace
+
+QuadraticForm::QuadraticForm(const SparseMatrix& matrix)
+    : rows_(static_cast<int>(matrix.rows())), width_(half_bandwidth(matrix)) {
+  diagonals_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(width_ + 1), 0.0);
+  for (int j = 0; j < matrix.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(matrix, j); it; ++it)
+      if (it.row() <= j && it.value() != 0)
+        diagonals_[static_cast<std::size_t>((j - it.row()) * rows_ + it.row())] = it.value();
+}
+
+QuadraticForm::QuadraticForm(const SparseMatrix& coupling, const SparseMatrix& velocity_mass)
+    : rows_(static_cast<int>(coupling.cols())), velocity_width_(half_bandwidth(velocity_mass)) {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> by_rows = coupling;
+  start_.push_back(0);
+  for (int i = 0; i < by_rows.rows(); ++i) {
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(by_rows, i); it; ++it) {
+      index_.push_back(static_cast<int>(it.col()));
+      value_.push_back(it.value());
+    }
+    start_.push_back(static_cast<int>(index_.size()));
+  }
+  QuasiDefinite spd;
+  spd.A = velocity_mass;
+  BandLdlt ldlt;
+  if (const auto wrong = ldlt.factorise(spd)) throw std::logic_error("velocity mass: " + *wrong);
+  velocity_width_ = ldlt.half_width();
+  const int w = velocity_width_, stride = 2 * w + 1;
+  for (int i = 0; i < ldlt.rows(); ++i) {
+    for (int s = 0; s < w; ++s) lower_.push_back(ldlt.factor()[i * stride + s]);
+    inverse_pivot_.push_back(ldlt.factor()[i * stride + 2 * w]);
+  }
+  first_.resize(inverse_pivot_.size());
+  second_.resize(inverse_pivot_.size());
+}
+
+QuadraticForm QuadraticForm::of(const Inertia& inertia) {
+  return inertia.factored() ? QuadraticForm(inertia.coupling, inertia.velocity_mass) : QuadraticForm(inertia.mass);
+}
+
+void QuadraticForm::reduce(const double* x, std::vector<double>& out) const {
+  const int w = velocity_width_;
+  for (int i = 0; i < static_cast<int>(out.size()); ++i) {
+    double sum = 0;
+    for (int e = start_[static_cast<std::size_t>(i)]; e < start_[static_cast<std::size_t>(i) + 1]; ++e)
+      sum += value_[static_cast<std::size_t>(e)] * x[index_[static_cast<std::size_t>(e)]];
+    for (int s = std::max(0, w - i); s < w; ++s)
+      sum -= lower_[static_cast<std::size_t>(i * w + s)] * out[static_cast<std::size_t>(i - w + s)];
+    out[static_cast<std::size_t>(i)] = sum;
+  }
+}
+
+double QuadraticForm::operator()(const double* x) const {
+  return (*this)(x, x);
+}
+
+double QuadraticForm::operator()(const double* x, const double* y) const {
+  if (!start_.empty()) {
+    reduce(x, first_);
+    if (x != y) reduce(y, second_);
+    const std::vector<double>& other = x == y ? first_ : second_;
+    return dot_shifted(inverse_pivot_.data(), first_.data(), other.data(), static_cast<long>(first_.size()));
+  }
+  double sum = dot_shifted(diagonals_.data(), x, y, rows_);
+  for (int s = 1; s <= width_; ++s) {
+    const double* a = diagonals_.data() + static_cast<std::size_t>(s) * static_cast<std::size_t>(rows_);
+    const double upper = dot_shifted(a, x, y + s, rows_ - s);
+    sum += x == y ? 2 * upper : upper + dot_shifted(a, y, x + s, rows_ - s);
+  }
+  return sum;
+}
+
+}  // namespace ricochet

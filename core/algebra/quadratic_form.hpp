@@ -1,0 +1,31 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <ricochet/contract/mass_strategy.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// xᵀA y for a symmetric positive semidefinite A that is banded, or M = Bᵀ C_v⁻¹ B given by its factors (never formed).
+/// One lane, x and y contiguous. No allocation after construction.
+class QuadraticForm {
+ public:
+  QuadraticForm() = default;
+  explicit QuadraticForm(const SparseMatrix& matrix);
+  QuadraticForm(const SparseMatrix& coupling, const SparseMatrix& velocity_mass);
+  static QuadraticForm of(const Inertia& inertia);
+
+  double operator()(const double* x) const;
+  double operator()(const double* x, const double* y) const;
+
+ private:
+  void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x
+  int rows_ = 0, width_ = 0;
+  std::vector<double> diagonals_;  // (w+1) × n: A[i, i+s]
+  // Factored form: B by rows, C_v = L D Lᵀ.
+  std::vector<int> start_, index_;
+  std::vector<double> value_, lower_, inverse_pivot_;
+  int velocity_width_ = 0;
+  mutable std::vector<double> first_, second_;
+};
+
+}  // namespace ricochet

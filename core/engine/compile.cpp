@@ -1,0 +1,172 @@
+#include <ricochet/engine/compile.hpp>
+
+#include <ricochet/engine/cost_model.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace ricochet {
+namespace {
+
+const char* evaluation_word(Evaluation evaluation) {
+  switch (evaluation) {
+    case Evaluation::implicit_end: return "implicit";
+    case Evaluation::averaged: return "averaged";
+    case Evaluation::explicit_start: break;
+  }
+  return "explicit";
+}
+
+Combination padded(Combination c, std::size_t slots) {
+  c.slots.resize(slots, 0.0);
+  return c;
+}
+
+// What the law reads in this stage, if anything.
+std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, const ContactLaw& law, std::size_t slots) {
+  if (const auto evaluation = law.reads()) {
+    const auto& compliance = stage.at(*evaluation);
+    if (!compliance) return std::nullopt;
+    program.measure = compliance->displacement;
+    program.measure_levels = compliance->bound;
+    program.effort = compliance->effort;
+    program.compliance = compliance;
+  } else {
+    if (!stage.impact) return std::nullopt;
+    program.measure = stage.impact->value;
+    program.measure_levels = stage.impact->bound;
+    program.gate = stage.impact->gate;
+  }
+  if (stage.matrix.M == 0 && stage.matrix.C == 0 && stage.matrix.K == 0)
+    return Refusal{"the scheme measures contact in a stage that solves nothing"};
+  program.measure = padded(program.measure, slots);
+  program.measure_z = program.measure.z;
+  program.reads_contact = true;
+  return std::nullopt;
+}
+
+std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Program& whole) {
+  const std::size_t slots = whole.plan.slots.size();
+  program.folded = fold(stage, whole.problem->damping, static_cast<int>(slots));
+  if (whole.contact)
+    if (auto refusal = read_contact(program, stage, *whole.law, slots)) return refusal;
+  if (!program.folded.solves()) return std::nullopt;
+  auto made = make_operator(whole.kind, *whole.model, program.folded, whole.width);
+  if (auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
+  program.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
+  return std::nullopt;
+}
+
+void say_what_is_left_out(Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  const auto say = [&](std::string item, std::string reason) {
+    program.left_out.push_back({std::move(item), std::move(reason)});
+  };
+  say("damping matrix C", problem.damped() ? "C = αK + ηM is folded into the weights of K and M" : "the structure is undamped");
+  if (!program.support) say("inertia load of the support", "the support does not move");
+  if (!program.load)
+    say("distributed load", "it is zero");
+  else if (program.load_constant)
+    say("assembly of the distributed load at each step", "it does not depend on t");
+  if (!program.contact) {
+    say("contact rows and box problem", program.law->absent() ? "contact law none" : "no stop anywhere");
+  } else {
+    const auto absent = [&](bool lower) {
+      for (const LaneSpec& lane : program.lanes)
+        for (int i = 0; i < problem.points(); ++i)
+          if (std::isfinite(lower ? lane.lower[i] : lane.upper[i])) return false;
+      return true;
+    };
+    if (absent(true)) say("lower stop", "absent");
+    if (absent(false)) say("upper stop", "absent");
+    if (problem.points() == 1) say("active-set search", "one contact point: closed form");
+    if (!program.eager_delassus) say("Delassus columns of points never touched", "computed when a point is first touched");
+  }
+  bool mass_products = false;
+  for (const StageProgram& stage : program.stages) mass_products = mass_products || stage.folded.uses_mass();
+  if (!mass_products) say("products with M", "the scheme's right-hand side has none");
+  if (problem.inertia.factored() && program.kind != OperatorKind::modal)
+    say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
+  say("tangent columns", "no exponent is asked for");
+}
+
+}  // namespace
+
+LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law) {
+  LaneSpec lane;
+  lane.amplitude = problem.support.amplitude;
+  lane.phase = problem.support.phase;
+  lane.position = problem.position;
+  lane.velocity = problem.velocity;
+  lane.lower = problem.lower;
+  lane.upper = problem.upper;
+  lane.law = law;
+  return lane;
+}
+
+ProblemFacts problem_facts(const SemiDiscrete& problem, const ContactLaw& law) {
+  ProblemFacts facts;
+  facts.dofs = problem.dofs();
+  facts.mass_kernel_dimension = problem.inertia.kernel_dimension;
+  facts.damped = problem.damped();
+  facts.contact = problem.points() > 0 && !law.absent();
+  return facts;
+}
+
+ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan plan, double h,
+                         std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes, const CompileOptions& options) {
+  if (const auto wrong = check_plan(plan)) throw std::logic_error("ill-formed plan: " + *wrong);
+  if (lanes.empty()) throw std::logic_error("a program needs at least one lane");
+  Program program;
+  program.problem = problem;
+  program.plan = std::move(plan);
+  program.h = h;
+  program.law = std::move(law);
+  program.width = lane_width(static_cast<int>(lanes.size()));
+  program.lanes = std::move(lanes);
+  program.contact = problem->points() > 0 && !program.law->absent();
+  for (const LaneSpec& lane : program.lanes) program.support = program.support || lane.amplitude != 0;
+  program.load = problem->load && !problem->load->absent();
+  program.load_constant = program.load && problem->load->constant_in_time();
+  program.eager_delassus = options.eager_delassus;
+
+  const int slots = static_cast<int>(program.plan.slots.size());
+  program.kind = options.kind;
+  if (program.kind == OperatorKind::automatic)
+    program.kind = cheapest_kind(*problem, slots, program.width, options.expected_steps);
+  else if (!kind_applies(program.kind, *problem))
+    return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
+  const Cost cost = predict_cost(program.kind, *problem, slots, program.width);
+  program.predicted_step_seconds = cost.step_seconds;
+  program.predicted_setup_seconds = cost.setup_seconds;
+  program.model = std::make_shared<MarchModel>(problem, program.kind == OperatorKind::modal);
+
+  program.start.resize(program.plan.start.size());
+  program.stages.resize(program.plan.stages.size());
+  for (std::size_t k = 0; k < program.start.size(); ++k)
+    if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return *refusal;
+  bool contact_read = false, half_width_zero = true;
+  for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return *refusal;
+    contact_read = contact_read || program.stages[k].reads_contact;
+    half_width_zero = half_width_zero && program.stages[k].folded.stiffness == 0;
+  }
+  if (program.contact && !contact_read) {
+    if (const auto evaluation = program.law->reads())
+      return Refusal{std::string("the time scheme offers no ") + evaluation_word(*evaluation) +
+                     " evaluation of a compliant law: choose another evaluation"};
+    return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
+  }
+  if (program.kind == OperatorKind::band && half_width_zero && !problem->inertia.factored()) {
+    bool diagonal = true;
+    const SparseMatrix& mass = problem->inertia.mass;
+    for (int j = 0; j < mass.outerSize(); ++j)
+      for (SparseMatrix::InnerIterator it(mass, j); it; ++it) diagonal = diagonal && (it.row() == j || it.value() == 0);
+    // The band operator of half-bandwidth zero: nothing else changes, but a person wants to read it.
+    if (diagonal) program.kind = OperatorKind::diagonal;
+  }
+  say_what_is_left_out(program);
+  return program;
+}
+
+}  // namespace ricochet

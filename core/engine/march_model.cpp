@@ -1,0 +1,88 @@
+#include <ricochet/engine/march_model.hpp>
+
+#include <Eigen/Eigenvalues>
+
+namespace ricochet {
+namespace {
+
+Eigen::MatrixXd dense_mass(const Inertia& inertia) {
+  if (!inertia.factored()) return Eigen::MatrixXd(inertia.mass);
+  const Eigen::MatrixXd B(inertia.coupling), Cv(inertia.velocity_mass);
+  return B.transpose() * Cv.ldlt().solve(B);
+}
+
+SparseMatrix diagonal(const Eigen::VectorXd& entries) {
+  SparseMatrix matrix(entries.size(), entries.size());
+  for (int i = 0; i < entries.size(); ++i) matrix.insert(i, i) = entries[i];
+  return matrix;
+}
+
+RowMatrix dense_rows(const Eigen::MatrixXd& matrix) {
+  RowMatrix rows;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int j = 0; j < matrix.cols(); ++j) {
+      rows.index.push_back(j);
+      rows.value.push_back(matrix(i, j));
+    }
+    rows.start.push_back(static_cast<int>(rows.index.size()));
+  }
+  return rows;
+}
+
+}  // namespace
+
+RowMatrix RowMatrix::from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix) {
+  RowMatrix rows;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(matrix, i); it; ++it) {
+      rows.index.push_back(static_cast<int>(it.col()));
+      rows.value.push_back(it.value());
+    }
+    rows.start.push_back(static_cast<int>(rows.index.size()));
+  }
+  return rows;
+}
+
+MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
+    : problem_(std::move(problem)), rows_(problem_->dofs()) {
+  const SemiDiscrete& p = *problem_;
+  if (!modal) {
+    stiffness_ = p.stiffness;
+    inertia_ = p.inertia;
+    contact_ = RowMatrix::from(p.contact);
+    tip_ = RowMatrix::from(p.tip);
+    shape_ = p.support_shape;
+    return;
+  }
+  const Eigen::MatrixXd K(p.stiffness), M = dense_mass(p.inertia);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M, K);
+  modes_ = eigen.eigenvectors();
+  Eigen::VectorXd mu = eigen.eigenvalues();
+  for (int i = 0; i < p.inertia.kernel_dimension; ++i) mu[i] = 0;
+  stiffness_ = diagonal(Eigen::VectorXd::Ones(rows_));
+  inertia_.mass = diagonal(mu);
+  inertia_.kernel_dimension = p.inertia.kernel_dimension;
+  contact_ = dense_rows(p.contact * modes_);
+  tip_ = dense_rows(p.tip * modes_);
+  shape_ = modes_.transpose() * p.support_shape;
+}
+
+Eigen::VectorXd MarchModel::to_model(const Eigen::VectorXd& nodal) const {
+  // φᵀKφ = 1, hence Φ⁻¹ = ΦᵀK.
+  return modal() ? Eigen::VectorXd(modes_.transpose() * (problem_->stiffness * nodal)) : nodal;
+}
+
+Eigen::VectorXd MarchModel::to_nodal(const Eigen::VectorXd& model) const {
+  return modal() ? Eigen::VectorXd(modes_ * model) : model;
+}
+
+void MarchModel::load_to_model(const double* in, double* out) const {
+  const Eigen::Map<const Eigen::VectorXd> load(in, rows_);
+  Eigen::Map<Eigen::VectorXd> result(out, rows_);
+  if (modal())
+    result.noalias() = modes_.transpose() * load;
+  else
+    result = load;
+}
+
+}  // namespace ricochet

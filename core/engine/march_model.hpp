@@ -1,0 +1,52 @@
+#pragma once
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+
+namespace ricochet {
+
+/// A row-compressed matrix that owns its storage.
+struct RowMatrix {
+  std::vector<int> start{0}, index;
+  std::vector<double> value;
+  int rows() const { return static_cast<int>(start.size()) - 1; }
+  LaneRows view() const { return {rows(), start.data(), index.data(), value.data()}; }
+  static RowMatrix from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
+};
+
+/// The coordinates in which a program marches: nodal (q itself), or modal (q = Φ η with ΦᵀKΦ and ΦᵀMΦ diagonal).
+///
+/// Modes solve M φ = μ K φ (K SPD) with φᵀKφ = 1, so that the kernel of a singular mass is μ = 0 and slow modes are accurate.
+class MarchModel {
+ public:
+  MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal);
+
+  const SemiDiscrete& problem() const { return *problem_; }
+  bool modal() const { return modes_.size() > 0; }
+  int rows() const { return rows_; }
+  /// K and M in these coordinates (M empty when it stays factored), and the factors.
+  const SparseMatrix& stiffness() const { return stiffness_; }
+  const Inertia& inertia() const { return inertia_; }
+  const RowMatrix& contact() const { return contact_; }
+  const RowMatrix& tip() const { return tip_; }
+  const Eigen::VectorXd& support_shape() const { return shape_; }
+
+  Eigen::VectorXd to_model(const Eigen::VectorXd& nodal) const;    ///< coordinates of a displacement
+  Eigen::VectorXd to_nodal(const Eigen::VectorXd& model) const;
+  /// Coordinates of a load; no allocation. `in` and `out` may not overlap.
+  void load_to_model(const double* in, double* out) const;
+
+ private:
+  std::shared_ptr<const SemiDiscrete> problem_;
+  Eigen::MatrixXd modes_;       // Φ
+  int rows_ = 0;
+  SparseMatrix stiffness_;
+  Inertia inertia_;
+  RowMatrix contact_, tip_;
+  Eigen::VectorXd shape_;
+};
+
+}  // namespace ricochet

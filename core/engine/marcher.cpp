@@ -1,0 +1,641 @@
+#include <ricochet/engine/marcher.hpp>
+
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/quadratic_form.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Lanes are looked at this often when nobody observes them; the cause says so.
+constexpr long long check_interval = 16;
+
+// Energy beyond this multiple of the scene's own scale counts as divergence.
+constexpr double divergence_factor = 1e9;
+
+double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
+  if (load.size() == 0 || load.isZero(0)) return 0;
+  QuasiDefinite spd;
+  spd.A = stiffness;
+  BandLdlt ldlt;
+  if (ldlt.factorise(spd)) return 0;
+  Block x(ldlt.rows(), 1, ldlt.half_width());
+  BandStep step;
+  step.solve_rows = ldlt.rows();
+  step.solve_width = ldlt.half_width();
+  step.factor = ldlt.factor();
+  step.z = x.data();
+  Eigen::VectorXd rhs = load;
+  step.b = rhs.data();
+  lane_kernels(1).band_step(step);
+  double energy = 0;
+  for (int i = 0; i < load.size(); ++i) energy += 0.5 * load[i] * x.data()[i];
+  return energy;
+}
+
+// The largest energy that the scene's data mention: initial state, static response to the loads, rest on a stop, clamp speed.
+double energy_scale(const Program& program) {
+  const SemiDiscrete& problem = *program.problem;
+  const QuadraticForm mass = QuadraticForm::of(problem.inertia), stiffness(problem.stiffness);
+  double scale = 0;
+  for (const LaneSpec& lane : program.lanes) {
+    scale = std::max(scale, 0.5 * (stiffness(lane.position.data()) + mass(lane.velocity.data())));
+    const double push = lane.amplitude * problem.support.pulsation * problem.support.pulsation;
+    scale = std::max(scale, push * push * static_energy(problem.stiffness, problem.support_shape));
+    const double speed = lane.amplitude * problem.support.pulsation;
+    scale = std::max(scale, 0.5 * speed * speed * problem.support_shape.lpNorm<1>());
+    for (int i = 0; i < problem.points(); ++i) {
+      const double reach = std::min(std::abs(lane.lower[i]), std::abs(lane.upper[i]));
+      if (!std::isfinite(reach)) continue;
+      const Eigen::VectorXd row = problem.contact.row(i).transpose();
+      const double compliance = 2 * static_energy(problem.stiffness, row);
+      if (compliance > 0) scale = std::max(scale, 0.5 * reach * reach / compliance);
+    }
+  }
+  if (program.load) {
+    Eigen::VectorXd load(problem.dofs());
+    problem.load->assemble(0.0, load.data());
+    if (load.allFinite()) scale = std::max(scale, static_energy(problem.stiffness, load));
+  }
+  return scale;
+}
+
+}  // namespace
+
+// Columns of W = H S⁻¹ Hᵀ and the responses S⁻¹Hᵀ e_j, kept once computed.
+class Marcher::StageDelassus final : public DelassusColumns {
+ public:
+  StageDelassus(StageOperator& op, const RowMatrix& contact, int rows)
+      : op_(op), contact_(contact), rows_(rows), points_(contact.rows()) {
+    const auto points = static_cast<std::size_t>(points_);
+    known_.assign(points, false);
+    columns_ = std::make_unique_for_overwrite<double[]>(points * points);
+    responses_ = std::make_unique_for_overwrite<double[]>(points * static_cast<std::size_t>(rows));
+    rhs_.assign(static_cast<std::size_t>(rows), 0.0);
+  }
+
+  const double* column(int j) override {
+    compute(j);
+    return columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
+  }
+  const double* response(int j) {
+    compute(j);
+    return responses_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(rows_);
+  }
+  int computed() const { return static_cast<int>(std::count(known_.begin(), known_.end(), true)); }
+
+ private:
+  void compute(int j) {
+    if (known_[static_cast<std::size_t>(j)]) return;
+    known_[static_cast<std::size_t>(j)] = true;
+    const auto first = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j)]);
+    const auto last = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j) + 1]);
+    std::fill(rhs_.begin(), rhs_.end(), 0.0);
+    for (std::size_t e = first; e < last; ++e) rhs_[static_cast<std::size_t>(contact_.index[e])] = contact_.value[e];
+    double* response = responses_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(rows_);
+    op_.solve_column(rhs_.data(), response);
+    double* out = columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(points_); ++i) {
+      double sum = 0;
+      for (auto e = static_cast<std::size_t>(contact_.start[i]); e < static_cast<std::size_t>(contact_.start[i + 1]); ++e)
+        sum += contact_.value[e] * response[contact_.index[e]];
+      out[i] = sum;
+    }
+  }
+
+  StageOperator& op_;
+  const RowMatrix& contact_;
+  int rows_, points_;
+  std::vector<bool> known_;
+  // Pages that no point ever asks for are never written, hence never paid for.
+  std::unique_ptr<double[]> columns_, responses_;
+  std::vector<double> rhs_;
+};
+
+// What a stage keeps between steps, and the constants of its loop.
+struct Marcher::StageState {
+  std::unique_ptr<StageDelassus> delassus;
+  std::array<Block, 3> effort;                    // p, p₋₁, p₋₂
+  std::array<const double*, 3> effort_pointers{};
+  Block free, rate, gap, gate_lower, gate_upper, approach;
+  std::uint32_t contact_lanes = 0;    // lanes with a non-zero effort
+  std::uint32_t closed_lanes = 0;     // lanes with a closed gate
+  std::vector<double> update;                     // slots × (slots + 1)
+  std::vector<double> measure_weights, rate_weights, gap_weights, approach_weights;
+  bool shifts_effort = false;
+};
+
+// F at the time levels that the current step needs, each assembled once.
+struct Marcher::LoadWindow {
+  struct Entry {
+    double level = std::numeric_limits<double>::quiet_NaN();
+    long long used = -1;
+    std::vector<double> value;
+  };
+  std::array<Entry, 5> entries;
+  std::vector<double> sum, nodal;
+  long long clock = 0;
+};
+
+Marcher::~Marcher() = default;
+Marcher::Marcher(Marcher&&) noexcept = default;
+
+Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_kernels(program_.width)) {
+  const MarchModel& model = *program_.model;
+  const SemiDiscrete& problem = *program_.problem;
+  const int rows = model.rows(), T = program_.width, points = problem.points();
+  const auto slot_count = program_.plan.slots.size();
+  stiffness_width_ = half_bandwidth(model.stiffness());
+  if (!model.inertia().factored()) stiffness_width_ = std::max(stiffness_width_, half_bandwidth(model.inertia().mass));
+  stiffness_rows_ = band_storage(model.stiffness(), stiffness_width_, T == 1);
+  blocks_.reserve(slot_count);
+  for (std::size_t j = 0; j < slot_count; ++j) blocks_.emplace_back(rows, T, stiffness_width_);
+  for (Block& block : blocks_) slots_.push_back(block.data());
+  slot_pointers_.assign(slots_.begin(), slots_.end());
+  combination_ = Block(rows, T, stiffness_width_);
+  elastic_ = Block(rows, T);
+  scale_ = Block(1, T);
+  offset_ = Block(1, T);
+  amplitude_ = Block(1, T);
+  cos_phase_ = Block(1, T);
+  sin_phase_ = Block(1, T);
+  outcome_.resize(static_cast<std::size_t>(T));
+  status_.resize(program_.lanes.size());
+  touched_.reserve(static_cast<std::size_t>(T));
+  scratch_.resize(static_cast<std::size_t>(std::max(rows, points)));
+  if (program_.contact) {
+    lower_ = Block(points, T);
+    upper_ = Block(points, T);
+    lower_.fill(-infinity);
+    upper_.fill(infinity);
+  }
+  for (int lane = 0; lane < lanes(); ++lane) {
+    const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+    const Eigen::VectorXd q = model.to_model(spec.position), v = model.to_model(spec.velocity);
+    for (std::size_t j = 0; j < slot_count; ++j)
+      for (int i = 0; i < rows; ++i)
+        blocks_[j].at(i, lane) = program_.plan.initial[j][0] * q[i] + program_.plan.initial[j][1] * v[i];
+    amplitude_.at(0, lane) = spec.amplitude;
+    cos_phase_.at(0, lane) = std::cos(spec.phase);
+    sin_phase_.at(0, lane) = std::sin(spec.phase);
+    phases_ = phases_ || spec.phase != 0;
+    if (program_.contact)
+      for (int i = 0; i < points; ++i) {
+        lower_.at(i, lane) = spec.lower[i];
+        upper_.at(i, lane) = spec.upper[i];
+      }
+  }
+  energy_bound_ = divergence_factor * energy_scale(program_);
+  if (energy_bound_ == 0) energy_bound_ = infinity;
+  if (program_.load) {
+    load_window_ = std::make_unique<LoadWindow>();
+    for (auto& entry : load_window_->entries) entry.value.resize(static_cast<std::size_t>(rows));
+    load_window_->sum.resize(static_cast<std::size_t>(rows));
+    load_window_->nodal.resize(static_cast<std::size_t>(rows));
+  }
+  if (program_.contact) {
+    std::vector<Parameters> parameters;
+    for (int lane = 0; lane < T; ++lane)
+      parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
+    program_.law->prepare(points, parameters);
+  }
+  const auto with_z = [&](Combination c) {
+    c.slots.resize(slot_count, 0.0);
+    c.slots.push_back(c.z);
+    return c.slots;
+  };
+  const auto make_state = [&](StageProgram& stage, const Stage& plan) {
+    auto state = std::make_unique<StageState>();
+    for (const Combination& c : plan.update) {
+      const std::vector<double> row = with_z(c);
+      state->update.insert(state->update.end(), row.begin(), row.end());
+    }
+    if (!program_.contact || !stage.reads_contact) return state;
+    state->delassus = std::make_unique<StageDelassus>(*stage.op, model.contact(), rows);
+    state->shifts_effort = stage.effort.size() > 1;
+    if (plan.work && plan.work->effort.size() > 1) state->shifts_effort = true;
+    for (int k = 0; k < (state->shifts_effort ? 3 : 1); ++k) {
+      state->effort[static_cast<std::size_t>(k)] = Block(points, T);
+      state->effort_pointers[static_cast<std::size_t>(k)] = state->effort[static_cast<std::size_t>(k)].data();
+    }
+    state->free = Block(points, T);
+    state->measure_weights = with_z(stage.measure);
+    if (stage.compliance && program_.law->reads_rate()) {
+      state->rate = Block(points, T);
+      state->rate_weights = with_z(stage.compliance->rate);
+    }
+    if (stage.gate) {
+      state->gap = Block(points, T);
+      state->approach = Block(points, T);
+      state->gate_lower = Block(points, T);
+      state->gate_upper = Block(points, T);
+      state->gap_weights = with_z(stage.gate->predictor);
+      state->approach_weights = with_z(stage.gate->approach);
+    }
+    if (program_.eager_delassus)
+      for (int j = 0; j < points; ++j) state->delassus->column(j);
+    return state;
+  };
+  for (std::size_t k = 0; k < program_.start.size(); ++k)
+    start_states_.push_back(make_state(program_.start[k], program_.plan.start[k]));
+  for (std::size_t k = 0; k < program_.stages.size(); ++k)
+    stage_states_.push_back(make_state(program_.stages[k], program_.plan.stages[k]));
+}
+
+bool Marcher::any_running() const {
+  return std::any_of(status_.begin(), status_.end(), [](const LaneStatus& status) { return status.running; });
+}
+
+double Marcher::support(int lane, double t) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  return spec.amplitude * std::sin(program_.problem->support.pulsation * t + spec.phase);
+}
+
+double Marcher::support_rate(int lane, double t) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const double omega = program_.problem->support.pulsation;
+  return spec.amplitude * omega * std::cos(omega * t + spec.phase);
+}
+
+double Marcher::support_levels(int lane, double t, const Levels& levels) const {
+  double sum = 0;
+  for (const Level& level : levels) sum += level.weight * support(lane, t + level.at * program_.h);
+  return sum;
+}
+
+// Σ_k w_k A sin(ω(t+c_k h)+ψ), or its rate, for every lane: two numbers per step, whatever the number of lanes.
+void Marcher::support_offsets(const Levels& levels, double* out, bool rate) const {
+  const double omega = program_.problem->support.pulsation;
+  double along = 0, across = 0;
+  for (const Level& level : levels) {
+    along += level.weight * std::cos(omega * level.at * program_.h);
+    across += level.weight * std::sin(omega * level.at * program_.h);
+  }
+  double s = sine_ * along + cosine_ * across, c = cosine_ * along - sine_ * across;
+  if (rate) {
+    std::swap(s, c);
+    s *= omega;
+    c *= -omega;
+  }
+  for (int lane = 0; lane < program_.width; ++lane)
+    out[lane] = amplitude_.at(0, lane) *
+                (phases_ ? s * cos_phase_.at(0, lane) + c * sin_phase_.at(0, lane) : s);
+}
+
+const double* Marcher::distributed_load(const Levels& levels, double t) {
+  if (!program_.load) return nullptr;
+  LoadWindow& window = *load_window_;
+  std::fill(window.sum.begin(), window.sum.end(), 0.0);
+  for (const Level& level : levels) {
+    const double key = program_.load_constant ? 0.0 : t / program_.h + level.at;
+    auto found = std::find_if(window.entries.begin(), window.entries.end(),
+                              [&](const auto& entry) { return std::abs(entry.level - key) < 1e-6; });
+    if (found == window.entries.end()) {
+      found = std::min_element(window.entries.begin(), window.entries.end(),
+                               [](const auto& a, const auto& b) { return a.used < b.used; });
+      found->level = key;
+      program_.problem->load->assemble(t + level.at * program_.h, window.nodal.data());
+      program_.model->load_to_model(window.nodal.data(), found->value.data());
+    }
+    found->used = ++window.clock;
+    for (std::size_t i = 0; i < window.sum.size(); ++i) window.sum[i] += level.weight * found->value[i];
+  }
+  return window.sum.data();
+}
+
+void Marcher::start(StepObserver* observer) {
+  const double omega = program_.problem->support.pulsation;
+  sine_ = std::sin(omega * time());
+  cosine_ = std::cos(omega * time());
+  for (std::size_t k = 0; k < program_.start.size(); ++k)
+    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer);
+  // The first step's past effort is the start's, where there is one.
+  if (!start_states_.empty())
+    for (auto& state : stage_states_) {
+      StageState& last = *start_states_.back();
+      if (!state->delassus || !last.delassus) continue;
+      std::copy_n(last.effort[0].data(), last.effort[0].size(), state->effort[0].data());
+      state->contact_lanes = last.contact_lanes;
+    }
+  if (program_.plan.start_advances) {
+    ++step_;
+    if (observer) observer->step_done(*this);
+  }
+  check_lanes();
+}
+
+long long Marcher::march(long long steps, StepObserver* observer) {
+  const double omega = program_.problem->support.pulsation;
+  for (long long n = 0; n < steps; ++n) {
+    if (program_.support) {
+      sine_ = std::sin(omega * time());
+      cosine_ = std::cos(omega * time());
+    }
+    for (std::size_t k = 0; k < program_.stages.size(); ++k)
+      run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer);
+    ++step_;
+    if (observer) observer->step_done(*this);
+    if (step_ % check_interval == 0) {
+      check_lanes();
+      if (!any_running()) return n + 1;
+    }
+  }
+  return steps;
+}
+
+void Marcher::combine_for(const StageProgram& program) {
+  if (combined_for_ == &program) return;
+  kernels_.combine(static_cast<long>(combination_.size()), slot_count(), slot_pointers_.data(),
+                   program.folded.stiffness_history.data(), combination_.data());
+  combined_for_ = &program;
+}
+
+void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer) {
+  const double* z = elastic_.data();
+  if (program.op) {
+    FreeStepInput input;
+    input.slots = slot_pointers_.data();
+    if (program.op->keeps_combination()) {
+      combine_for(program);
+      input.k = combination_.data();
+    }
+    if (program_.support) {
+      support_offsets(plan.load, scale_.data(), false);
+      const double omega = program_.problem->support.pulsation;
+      for (int lane = 0; lane < program_.width; ++lane) scale_.data()[lane] *= omega * omega;
+      input.scale = scale_.data();
+    }
+    input.load = distributed_load(plan.load, time());
+    program.op->free_step(input);
+    if (state.delassus) contact(program, state, program.op->unknown());
+    z = program.op->unknown();
+  } else {
+    // Nothing to solve: z = 0.
+    elastic_.fill(0.0);
+  }
+  if (observer) {
+    StageView view;
+    view.stage = index;
+    view.plan = &plan;
+    view.time = time();
+    view.slots = slot_pointers_.data();
+    view.z = z;
+    if (state.delassus) {
+      view.effort = state.effort_pointers.data();
+      view.outcome = outcome_.data();
+      view.contact_lanes = state.contact_lanes;
+    }
+    observer->stage_solved(*this, view);
+  }
+  const StageProgram* next = nullptr;
+  const bool last = index + 1 == static_cast<int>(program_.stages.size());
+  const StageProgram& following = program_.stages[last ? 0 : static_cast<std::size_t>(index) + 1];
+  if (following.op && following.op->keeps_combination() && &program >= program_.stages.data() &&
+      &program < program_.stages.data() + program_.stages.size())
+    next = &following;
+  kernels_.update(static_cast<long>(combination_.size()), slot_count(), slots_.data(), z, state.update.data(),
+                  next ? next->folded.stiffness_history.data() : nullptr, combination_.data());
+  combined_for_ = next;
+  // The unknown of a lane that froze during this stage was whatever stopped it.
+  for (; frozen_now_ != 0; frozen_now_ &= frozen_now_ - 1) clear_lane(std::countr_zero(frozen_now_));
+}
+
+// Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
+void Marcher::open_gates(StageProgram& program, StageState& state) {
+  const VelocityGate& gate = *program.gate;
+  const int points = lower_.rows(), T = program_.width;
+  std::vector<const double*>& slots = slot_pointers_;
+  const double* offset = nullptr;
+  const auto measure = [&](const std::vector<double>& weights, const Levels& levels, bool rate, Block& out) {
+    if (program_.support) {
+      support_offsets(levels, offset_.data(), rate);
+      offset = offset_.data();
+    }
+    kernels_.measure(program_.model->contact().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
+  };
+  measure(state.gap_weights, gate.predictor_bound, false, state.gap);
+  state.closed_lanes = 0;
+  for (int lane = 0; lane < T; ++lane) {
+    bool closed = false;
+    for (int i = 0; i < points; ++i)
+      closed |= (state.gap.at(i, lane) <= lower_.at(i, lane)) | (state.gap.at(i, lane) >= upper_.at(i, lane));
+    state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
+  }
+  if (state.closed_lanes == 0) return;
+  measure(state.approach_weights, gate.approach_bound, true, state.approach);
+  for (int i = 0; i < points; ++i)
+    for (int lane = 0; lane < T; ++lane) {
+      const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
+      state.gate_lower.at(i, lane) = gap <= lower_.at(i, lane) ? -gate.restitution * std::min(speed, 0.0) : -infinity;
+      state.gate_upper.at(i, lane) = gap >= upper_.at(i, lane) ? -gate.restitution * std::max(speed, 0.0) : infinity;
+    }
+}
+
+std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state, const double* z) {
+  const bool gated = program.gate.has_value();
+  if (gated) {
+    open_gates(program, state);
+    if (state.closed_lanes == 0 && state.contact_lanes == 0) return 0;
+    if (state.closed_lanes == 0) {
+      state.gate_lower.fill(-infinity);
+      state.gate_upper.fill(infinity);
+    }
+  }
+  std::array<const double*, 5> slots{};
+  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
+  slots[static_cast<std::size_t>(slot_count())] = z;
+  const double* offset = nullptr;
+  if (program_.support) {
+    support_offsets(program.measure_levels, offset_.data(), gated);
+    offset = offset_.data();
+  }
+  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(), offset,
+                   state.free.data());
+  if (state.rate.rows() > 0) {
+    if (program_.support) support_offsets(program.compliance->rate_bound, offset_.data(), true);
+    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(), offset,
+                     state.rate.data());
+  }
+  const Block& lower = gated ? state.gate_lower : lower_;
+  const Block& upper = gated ? state.gate_upper : upper_;
+  return kernels_.outside(lower_.rows(), state.free.data(), lower.data(), upper.data());
+}
+
+bool Marcher::finite_measure(const StageState& state, int lane) const {
+  for (int i = 0; i < state.free.rows(); ++i)
+    if (!std::isfinite(state.free.at(i, lane))) return false;
+  return true;
+}
+
+void Marcher::contact(StageProgram& program, StageState& state, double* z) {
+  const int points = lower_.rows(), rows = program_.model->rows(), T = program_.width;
+  const auto size = state.effort[0].size();
+  const auto correct = [&](const double* effort) {
+    for (int j = 0; j < points; ++j) {
+      const double* p = effort + static_cast<std::size_t>(j) * static_cast<std::size_t>(T);
+      if (std::any_of(p, p + T, [](double x) { return x != 0; }))
+        kernels_.add_column(rows, state.delassus->response(j), p, z);
+    }
+  };
+  if (state.shifts_effort) {
+    std::copy_n(state.effort[1].data(), size, state.effort[2].data());
+    std::copy_n(state.effort[0].data(), size, state.effort[1].data());
+    for (std::size_t k = 1; k < program.effort.size(); ++k) {
+      if (program.effort[k] == 0) continue;
+      for (std::size_t e = 0; e < size; ++e) state.free.data()[e] = program.effort[k] * state.effort[k].data()[e];
+      correct(state.free.data());
+    }
+  }
+  std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
+  if (mask == 0) return;
+  touched_.clear();
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    if (lane >= lanes() || !status_[static_cast<std::size_t>(lane)].running) continue;
+    if (finite_measure(state, lane))
+      touched_.push_back(lane);
+    else
+      freeze(lane, "the displacement at a contact point is not finite");
+  }
+  ReducedProblem problem;
+  problem.points = points;
+  problem.lanes = T;
+  problem.delassus = state.delassus.get();
+  problem.reach = program.measure_z * program.effort[0];
+  problem.free = state.free.data();
+  problem.lower = program.gate ? state.gate_lower.data() : lower_.data();
+  problem.upper = program.gate ? state.gate_upper.data() : upper_.data();
+  problem.rate_reach = program.compliance ? program.compliance->rate.z * program.effort[0] : 0.0;
+  problem.rate_free = state.rate.rows() > 0 ? state.rate.data() : nullptr;
+  problem.effort = state.effort[0].data();
+  problem.touched = touched_;
+  problem.outcome = outcome_.data();
+  program_.law->solve(problem);
+  state.contact_lanes = 0;
+  for (const int lane : touched_) {
+    bool active = false, finite = true;
+    for (int i = 0; i < points; ++i) {
+      const double p = state.effort[0].at(i, lane);
+      active = active || p != 0;
+      finite = finite && std::isfinite(p);
+    }
+    const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
+    if (!outcome.converged || !finite) {
+      for (int i = 0; i < points; ++i) state.effort[0].at(i, lane) = 0;
+      freeze(lane, finite ? fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)",
+                                        outcome.residual, outcome.iterations)
+                          : "a contact effort is not finite");
+      continue;
+    }
+    if (active) state.contact_lanes |= 1u << lane;
+  }
+  if (program.effort[0] == 1.0) {
+    if (state.contact_lanes != 0) correct(state.effort[0].data());
+  } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
+    for (std::size_t e = 0; e < size; ++e) state.free.data()[e] = program.effort[0] * state.effort[0].data()[e];
+    correct(state.free.data());
+  }
+}
+
+void Marcher::check_lanes() {
+  BandStep step;
+  step.rows = program_.model->rows();
+  step.product_width = stiffness_width_;
+  step.K = stiffness_rows_.data();
+  step.k = slots_[0];
+  step.b = elastic_.data();
+  kernels_.band_step(step);
+  for (int lane = 0; lane < lanes(); ++lane) {
+    if (!status_[static_cast<std::size_t>(lane)].running) continue;
+    double energy = 0;
+    for (int i = 0; i < step.rows; ++i) energy += 0.5 * blocks_[0].at(i, lane) * elastic_.at(i, lane);
+    bool finite = std::isfinite(energy);
+    for (std::size_t j = 1; j < blocks_.size() && finite; ++j)
+      for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
+    if (!finite)
+      freeze(lane, fmt::format("the state is not finite (lanes are checked every {} steps)", check_interval));
+    else if (energy > energy_bound_)
+      freeze(lane, fmt::format("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", energy,
+                               energy_bound_, divergence_factor));
+  }
+}
+
+void Marcher::freeze(int lane, const std::string& cause) {
+  LaneStatus& status = status_[static_cast<std::size_t>(lane)];
+  if (!status.running) return;
+  status.running = false;
+  status.step = step_;
+  status.time = time();
+  status.cause = cause;
+  // At rest in a still frame without stops: the lane stays there, and costs its neighbours nothing.
+  frozen_now_ |= 1u << lane;
+  clear_lane(lane);
+  for (auto* states : {&start_states_, &stage_states_})
+    for (auto& state : *states) {
+      for (Block& effort : state->effort)
+        for (int i = 0; i < effort.rows(); ++i) effort.at(i, lane) = 0;
+      state->contact_lanes &= ~(1u << lane);
+    }
+  amplitude_.at(0, lane) = 0;
+  for (int i = 0; i < lower_.rows(); ++i) {
+    lower_.at(i, lane) = -infinity;
+    upper_.at(i, lane) = infinity;
+  }
+}
+
+void Marcher::clear_lane(int lane) {
+  for (Block& block : blocks_)
+    for (int i = 0; i < block.rows(); ++i) block.at(i, lane) = 0;
+  combined_for_ = nullptr;
+}
+
+Eigen::VectorXd Marcher::position(int lane) const {
+  Eigen::VectorXd q(program_.model->rows());
+  for (int i = 0; i < q.size(); ++i) q[i] = blocks_[0].at(i, lane);
+  return program_.model->to_nodal(q);
+}
+
+double Marcher::tip(int lane) const {
+  const RowMatrix& row = program_.model->tip();
+  double sum = support(lane, time());
+  for (std::size_t e = 0; e < row.index.size(); ++e) sum += row.value[e] * blocks_[0].at(row.index[e], lane);
+  return sum;
+}
+
+double Marcher::depth(int lane, int point, double relative, double support) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  return std::max(spec.lower[point] - (relative + support), relative + support - spec.upper[point]);
+}
+
+double Marcher::penetration(int lane) const {
+  if (!program_.contact) return 0;
+  const RowMatrix& rows = program_.model->contact();
+  const double phi = support(lane, time());
+  double deepest = 0;
+  for (int j = 0; j < rows.rows(); ++j) {
+    double sum = 0;
+    for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
+      sum += rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
+    deepest = std::max(deepest, depth(lane, j, sum, phi));
+  }
+  return deepest;
+}
+
+int Marcher::delassus_columns() const {
+  int columns = 0;
+  for (const auto& state : stage_states_)
+    if (state->delassus) columns += state->delassus->computed();
+  return columns;
+}
+
+}  // namespace ricochet

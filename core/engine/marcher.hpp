@@ -1,0 +1,131 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <ricochet/engine/compile.hpp>
+
+namespace ricochet {
+
+/// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
+struct LaneStatus {
+  bool running = true;
+  long long step = 0;       ///< when it stopped
+  double time = 0;
+  std::string cause;
+};
+
+/// What an observer sees while a step is made. Blocks are rows × T or points × T.
+struct StageView {
+  int stage = 0;
+  const Stage* plan = nullptr;
+  double time = 0;                        ///< when the step begins, s
+  const double* const* slots = nullptr;   ///< before the stage
+  const double* z = nullptr;              ///< the stage's unknown, efforts included
+  const double* const* effort = nullptr;  ///< p, p₋₁, p₋₂ (null beyond what the plan weights); null: no contact
+  const LaneOutcome* outcome = nullptr;   ///< per lane, of the law
+  std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
+};
+
+class Marcher;
+
+/// Looks at every step of a block; a march without an observer pays nothing for it.
+class StepObserver {
+ public:
+  virtual ~StepObserver() = default;
+  /// The stage has found z and p; the slots are not yet updated.
+  virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
+  /// The step is complete.
+  virtual void step_done(Marcher& marcher) = 0;
+};
+
+/// The one time loop. Allocates in its constructor only.
+class Marcher {
+ public:
+  explicit Marcher(Program program);
+  ~Marcher();
+  Marcher(Marcher&&) noexcept;
+
+  /// Applies the start rule; call once, before march().
+  void start(StepObserver* observer = nullptr);
+  /// Makes up to `steps` steps; returns early (with how many it made) only when no lane runs any more.
+  long long march(long long steps, StepObserver* observer = nullptr);
+
+  long long step() const { return step_; }
+  double time() const { return static_cast<double>(step_) * program_.h; }
+  int lanes() const { return static_cast<int>(program_.lanes.size()); }
+  int width() const { return program_.width; }
+  const Program& program() const { return program_; }
+  const LaneStatus& status(int lane) const { return status_[static_cast<std::size_t>(lane)]; }
+  bool any_running() const;
+
+  /// Slot j in model coordinates, rows × T.
+  const double* slot(int j) const { return slots_[static_cast<std::size_t>(j)]; }
+  const double* const* slots() const { return slot_pointers_.data(); }
+  int slot_count() const { return static_cast<int>(slots_.size()); }
+  /// w at the end of the last step, nodal coordinates.
+  Eigen::VectorXd position(int lane) const;
+  /// φ at time t for a lane, and its rate.
+  double support(int lane, double t) const;
+  double support_rate(int lane, double t) const;
+  /// Σ weight φ(t + at·h).
+  double support_levels(int lane, double t, const Levels& levels) const;
+  /// Absolute displacement of the tip at the end of the last step.
+  double tip(int lane) const;
+  /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
+  double penetration(int lane) const;
+  /// The same at w = q − increment/2 and so on: one contact point's depth (> 0 beyond a stop) for a given H w.
+  double depth(int lane, int point, double relative, double support) const;
+  /// Σ φ_k F(t + c_k h) of the distributed load in model coordinates (n); null when there is none.
+  const double* distributed_load(const Levels& levels, double t);
+  /// Number of Delassus columns computed so far in the stages.
+  int delassus_columns() const;
+  const ContactLaw& law() const { return *program_.law; }
+  ContactLaw& law() { return *program_.law; }
+
+  /// Stops a lane now, with its cause (used by audits that see more than the loop does).
+  void freeze(int lane, const std::string& cause);
+  /// Energy (J) above which a lane counts as diverged; stated with the cause.
+  double energy_bound() const { return energy_bound_; }
+
+ private:
+  class StageDelassus;
+  struct StageState;
+  struct LoadWindow;
+  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
+  void contact(StageProgram& program, StageState& state, double* z);
+  std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
+  void open_gates(StageProgram& program, StageState& state);
+  void check_lanes();
+  void clear_lane(int lane);
+  void combine_for(const StageProgram& program);
+  bool finite_measure(const StageState& state, int lane) const;
+  void support_offsets(const Levels& levels, double* out, bool rate) const;
+
+  Program program_;
+  const LaneKernels& kernels_;
+  std::vector<Block> blocks_;
+  std::vector<double*> slots_;
+  std::vector<const double*> slot_pointers_;
+  Block combination_;                     // Σ β^K_j x_j of the stage to come
+  const StageProgram* combined_for_ = nullptr;
+  std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
+  Block scale_, offset_, lower_, upper_, amplitude_, cos_phase_, sin_phase_;
+  bool phases_ = false;
+  std::vector<int> touched_;
+  std::vector<LaneOutcome> outcome_;
+  std::vector<LaneStatus> status_;
+  std::uint32_t frozen_now_ = 0;          // lanes that froze since the last update of the slots
+  std::unique_ptr<LoadWindow> load_window_;
+  std::vector<double> scratch_;
+  Block elastic_;
+  std::vector<double> stiffness_rows_;
+  int stiffness_width_ = 0;
+  long long step_ = 0;
+  double energy_bound_ = 0;
+  double sine_ = 0, cosine_ = 1;
+};
+
+}  // namespace ricochet

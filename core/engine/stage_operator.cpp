@@ -1,0 +1,310 @@
+#include <ricochet/engine/stage_operator.hpp>
+
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/sparse_ldlt.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+namespace {
+
+bool any(const std::vector<double>& weights) {
+  return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
+}
+
+// S as (1) of band_ldlt.hpp: the factored mass enters through its border, scaled so that both blocks have the same units.
+QuasiDefinite system(const MarchModel& model, const FoldedStage& stage) {
+  QuasiDefinite matrix;
+  matrix.A = stage.stiffness * model.stiffness();
+  const Inertia& inertia = model.inertia();
+  if (!inertia.factored())
+    matrix.A += stage.mass * inertia.mass;
+  else if (stage.mass != 0) {
+    matrix.G = std::sqrt(stage.mass) * inertia.coupling;
+    matrix.Cv = inertia.velocity_mass;
+  }
+  return matrix;
+}
+
+// What band and sparse operators share: the right-hand side by band products, and M x of a factored mass through the border:
+// with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
+class Assembly {
+ public:
+  Assembly(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : kernels_(lane_kernels(lanes)),
+        rows_(model.rows()),
+        slots_(static_cast<int>(stage.mass_history.size())),
+        mass_weights_(stage.mass_history),
+        shape_(model.support_shape().data()) {
+    const Inertia& inertia = model.inertia();
+    const bool by_diagonals = lanes == 1;
+    width_ = half_bandwidth(model.stiffness());
+    border_ = inertia.factored() && stage.mass != 0 ? static_cast<int>(inertia.coupling.rows()) : 0;
+    if (!inertia.factored()) width_ = std::max(width_, half_bandwidth(inertia.mass));
+    if (any(stage.stiffness_history)) K_ = band_storage(model.stiffness(), width_, by_diagonals);
+    if (any(stage.mass_history)) {
+      m_ = Block(rows_, lanes, width_);
+      if (!inertia.factored()) {
+        M_ = band_storage(inertia.mass, width_, by_diagonals);
+      } else {
+        coupling_ = RowMatrix::from(inertia.coupling);
+        for (double& value : coupling_.value) value /= std::sqrt(stage.mass);
+      }
+    }
+    b_ = Block(rows_ + border_, lanes);
+  }
+
+  int border() const { return border_; }
+  bool mass_through_border() const { return coupling_.rows() > 0; }
+  bool keeps_combination() const { return !K_.empty(); }
+  Block& right_hand_side() { return b_; }
+
+  BandStep describe(const FreeStepInput& input) {
+    if (m_.rows() > 0) {
+      kernels_.combine(static_cast<long>(m_.size()), slots_, input.slots, mass_weights_.data(), m_.data());
+      if (mass_through_border()) {
+        const double one = 1;
+        const double* m = m_.data();
+        kernels_.measure(coupling_.view(), 1, &m, &one, nullptr, b_.row(rows_));
+      }
+    }
+    BandStep step;
+    step.rows = rows_;
+    step.product_width = width_;
+    step.K = K_.empty() ? nullptr : K_.data();
+    step.k = input.k;
+    step.M = M_.empty() ? nullptr : M_.data();
+    step.m = m_.data();
+    step.shape = input.scale ? shape_ : nullptr;
+    step.scale = input.scale;
+    step.load = input.load;
+    step.b = b_.data();
+    return step;
+  }
+
+ private:
+  const LaneKernels& kernels_;
+  int rows_, slots_, width_ = 0, border_ = 0;
+  std::vector<double> mass_weights_, K_, M_;
+  RowMatrix coupling_;
+  const double* shape_;
+  Block m_, b_;
+};
+
+/// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved border.
+class BandOperator final : public StageOperator {
+ public:
+  BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : assembly_(model, stage, lanes), kernels_(lane_kernels(lanes)), lanes_(lanes), rows_(model.rows()) {}
+
+  std::optional<std::string> factorise(const QuasiDefinite& matrix) {
+    if (auto wrong = ldlt_.factorise(matrix)) return wrong;
+    from_ = ldlt_.order();
+    if (!assembly_.mass_through_border())
+      for (int& row : from_)
+        if (row >= rows_) row = -1;
+    place_.assign(static_cast<std::size_t>(rows_), 0);
+    for (int r = 0; r < ldlt_.rows(); ++r)
+      if (const int unknown = ldlt_.order()[static_cast<std::size_t>(r)]; unknown < rows_)
+        place_[static_cast<std::size_t>(unknown)] = r;
+    solution_ = Block(ldlt_.rows(), lanes_, ldlt_.half_width());
+    column_ = Block(ldlt_.rows(), 1, ldlt_.half_width());
+    if (!ldlt_.natural()) unknown_ = Block(rows_, lanes_);
+    return std::nullopt;
+  }
+
+  bool keeps_combination() const override { return assembly_.keeps_combination(); }
+
+  void free_step(const FreeStepInput& input) override {
+    BandStep step = assembly_.describe(input);
+    use_factor(step, solution_.data());
+    kernels_.band_step(step);
+    if (ldlt_.natural()) return;
+    const auto lanes = static_cast<std::size_t>(lanes_);
+    for (int i = 0; i < rows_; ++i)
+      std::copy_n(solution_.row(place_[static_cast<std::size_t>(i)]), lanes, unknown_.row(i));
+  }
+
+  double* unknown() override { return ldlt_.natural() ? solution_.data() : unknown_.data(); }
+
+  void solve_column(const double* rhs, double* x) override {
+    // −1 in from_ (no mass on the right-hand side) or a row beyond rhs: the border's part is zero.
+    column_from_ = ldlt_.order();
+    for (int& row : column_from_)
+      if (row >= rows_) row = -1;
+    BandStep step;
+    use_factor(step, column_.data());
+    step.from = column_from_.data();
+    // The right-hand side is given: no product, no shape; b is read only.
+    step.rows = 0;
+    step.b = const_cast<double*>(rhs);
+    lane_kernels(1).band_step(step);
+    for (int i = 0; i < rows_; ++i) x[i] = column_.data()[place_[static_cast<std::size_t>(i)]];
+  }
+
+ private:
+  void use_factor(BandStep& step, double* z) const {
+    step.solve_rows = ldlt_.rows();
+    step.solve_width = ldlt_.half_width();
+    step.factor = ldlt_.factor();
+    step.from = ldlt_.natural() ? nullptr : from_.data();
+    step.z = z;
+  }
+
+  Assembly assembly_;
+  const LaneKernels& kernels_;
+  int lanes_, rows_;
+  BandLdlt ldlt_;
+  std::vector<int> from_, place_, column_from_;
+  Block solution_, unknown_, column_;
+};
+
+/// CHOLMOD's simplicial L D Lᵀ, one lane at a time (so that lanes stay independent of their number).
+class SparseOperator final : public StageOperator {
+ public:
+  SparseOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : assembly_(model, stage, lanes), kernels_(lane_kernels(lanes)), lanes_(lanes), rows_(model.rows()) {}
+
+  std::optional<std::string> factorise(const QuasiDefinite& matrix) {
+    const SparseMatrix whole = matrix.assemble(order_);
+    if (!ldlt_.factorise(whole)) return "the matrix of the step is singular (CHOLMOD: " + ldlt_.reason() + ")";
+    rhs_.resize(order_.size());
+    x_.resize(order_.size());
+    unknown_ = Block(rows_, lanes_);
+    return std::nullopt;
+  }
+
+  bool keeps_combination() const override { return assembly_.keeps_combination(); }
+
+  void free_step(const FreeStepInput& input) override {
+    kernels_.band_step(assembly_.describe(input));
+    const Block& b = assembly_.right_hand_side();
+    const int known = assembly_.mass_through_border() ? b.rows() : rows_;
+    for (int lane = 0; lane < lanes_; ++lane) {
+      solve([&](int unknown) { return unknown < known ? b.at(unknown, lane) : 0.0; },
+            [&](int unknown, double value) { unknown_.at(unknown, lane) = value; });
+    }
+  }
+
+  double* unknown() override { return unknown_.data(); }
+
+  void solve_column(const double* rhs, double* x) override {
+    solve([&](int unknown) { return unknown < rows_ ? rhs[unknown] : 0.0; },
+          [&](int unknown, double value) { x[unknown] = value; });
+  }
+
+ private:
+  template <class Read, class Write>
+  void solve(Read read, Write write) {
+    for (std::size_t r = 0; r < order_.size(); ++r) rhs_[r] = read(order_[r]);
+    ldlt_.solve(rhs_.data(), x_.data());
+    for (std::size_t r = 0; r < order_.size(); ++r)
+      if (order_[r] < rows_) write(order_[r], x_[r]);
+  }
+
+  Assembly assembly_;
+  const LaneKernels& kernels_;
+  int lanes_, rows_;
+  SparseLdlt ldlt_;
+  std::vector<int> order_;
+  std::vector<double> rhs_, x_;
+  Block unknown_;
+};
+
+/// Modal coordinates: S, K and M are diagonal, one multiplication per slot and mode.
+class ModalOperator final : public StageOperator {
+ public:
+  ModalOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : kernels_(lane_kernels(lanes)), rows_(model.rows()), slots_(static_cast<int>(stage.mass_history.size())), lanes_(lanes) {
+    const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
+    zero_scale_ = Block(1, lanes);
+    unknown_ = Block(rows_, lanes);
+    for (int i = 0; i < rows_; ++i) {
+      const double inverse = 1 / (stage.mass * M[i] + stage.stiffness * K[i]);
+      inverse_.push_back(inverse);
+      for (std::size_t j = 0; j < stage.mass_history.size(); ++j)
+        coefficient_.push_back((stage.mass_history[j] * M[i] + stage.stiffness_history[j] * K[i]) * inverse);
+      coefficient_.push_back(model.support_shape()[i] * inverse);
+    }
+  }
+
+  std::optional<std::string> check() const {
+    for (const double inverse : inverse_)
+      if (!std::isfinite(inverse) || inverse <= 0) return std::string("the matrix of the step is singular on a mode");
+    return std::nullopt;
+  }
+
+  bool keeps_combination() const override { return false; }
+
+  void free_step(const FreeStepInput& input) override {
+    kernels_.diagonal_step(rows_, slots_, coefficient_.data(), input.slots,
+                           input.scale ? input.scale : zero_scale_.data(), unknown_.data());
+    if (!input.load) return;
+    for (int i = 0; i < rows_; ++i) {
+      const double push = input.load[i] * inverse_[static_cast<std::size_t>(i)];
+      for (int lane = 0; lane < lanes_; ++lane) unknown_.at(i, lane) += push;
+    }
+  }
+
+  double* unknown() override { return unknown_.data(); }
+
+  void solve_column(const double* rhs, double* x) override {
+    for (int i = 0; i < rows_; ++i) x[i] = rhs[i] * inverse_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  const LaneKernels& kernels_;
+  int rows_, slots_, lanes_;
+  std::vector<double> coefficient_, inverse_;
+  Block unknown_, zero_scale_;
+};
+
+template <class Operator>
+OperatorOrRefusal factorised(std::unique_ptr<Operator> made, const QuasiDefinite& matrix) {
+  if (const auto wrong = made->factorise(matrix)) return Refusal{*wrong};
+  return std::unique_ptr<StageOperator>(std::move(made));
+}
+
+}  // namespace
+
+const char* operator_name(OperatorKind kind) {
+  switch (kind) {
+    case OperatorKind::automatic: return "automatic";
+    case OperatorKind::diagonal: return "diagonal";
+    case OperatorKind::modal: return "modal";
+    case OperatorKind::band: return "band";
+    case OperatorKind::sparse: break;
+  }
+  return "sparse";
+}
+
+bool FoldedStage::uses_mass() const { return any(mass_history); }
+bool FoldedStage::uses_stiffness() const { return any(stiffness_history); }
+
+FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
+  FoldedStage folded;
+  folded.mass = stage.matrix.M + damping.mass * stage.matrix.C;
+  folded.stiffness = stage.matrix.K + damping.stiffness * stage.matrix.C;
+  folded.mass_history.assign(static_cast<std::size_t>(slots), 0.0);
+  folded.stiffness_history.assign(static_cast<std::size_t>(slots), 0.0);
+  for (std::size_t j = 0; j < stage.history.size(); ++j) {
+    folded.mass_history[j] = stage.history[j].M + damping.mass * stage.history[j].C;
+    folded.stiffness_history[j] = stage.history[j].K + damping.stiffness * stage.history[j].C;
+  }
+  return folded;
+}
+
+OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
+  if (kind == OperatorKind::modal) {
+    auto modal = std::make_unique<ModalOperator>(model, stage, lanes);
+    if (const auto wrong = modal->check()) return Refusal{*wrong};
+    return std::unique_ptr<StageOperator>(std::move(modal));
+  }
+  if (model.inertia().factored() && stage.mass < 0) return Refusal{"the step weights a factored mass negatively"};
+  const QuasiDefinite matrix = system(model, stage);
+  if (kind == OperatorKind::sparse) return factorised(std::make_unique<SparseOperator>(model, stage, lanes), matrix);
+  return factorised(std::make_unique<BandOperator>(model, stage, lanes), matrix);
+}
+
+}  // namespace ricochet
