@@ -18,7 +18,7 @@ std::string overview() {
   std::string text =
       "Ricochet: is this what the beam does, or what the numerical method does?\n\nUsage: ricochet COMMAND …\n\n";
   for (const Subcommand& command : subcommands())
-    text += fmt::format("  {:<9} {:<34} {}\n", command.name, command.usage, command.summary);
+    text += fmt::format("  {:<9} {:<46} {}\n", command.name, command.usage, command.summary);
   text +=
       "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\n"
       "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed, 4 plugin missing or incompatible,\n"

@@ -45,11 +45,13 @@ std::string plain(const nlohmann::ordered_json& value) {
 }
 
 std::string plain_seconds(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.2g} µs", seconds * 1e6);
-  if (seconds < 1) return fmt::format("{:.2g} ms", seconds * 1e3);
-  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
-  const double minutes = std::floor(seconds / 60);
-  if (minutes < 100) return fmt::format("{:.0f} min {:.0f} s", minutes, std::floor(seconds - 60 * minutes));
+  // Two digits, never in scientific notation.
+  const auto two = [](double value) { return fmt::format(value < 9.95 ? "{:.1f}" : "{:.0f}", value); };
+  if (seconds < 1e-3) return two(seconds * 1e6) + " µs";
+  if (seconds < 1) return two(seconds * 1e3) + " ms";
+  if (seconds < 99.5) return two(seconds) + " s";
+  const double whole = std::round(seconds), minutes = std::floor(whole / 60);
+  if (minutes < 100) return fmt::format("{:.0f} min {:.0f} s", minutes, whole - 60 * minutes);
   return fmt::format("{:.0f} h {:.0f} min", std::floor(minutes / 60), minutes - 60 * std::floor(minutes / 60));
 }
 
