@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <variant>
 
 #include "runners/store/store_error.hpp"
@@ -49,9 +49,10 @@ std::string content_hash(std::string_view content) {
 std::string file_hash(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw StoreError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw StoreError(fmt::format("{}: read error", file.string()));
-  return content_hash(content);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  if (stream.bad() || content.bad()) throw StoreError(fmt::format("{}: read error", file.string()));
+  return content_hash(content.view());
 }
 
 const std::string& program_hash() {

@@ -6,7 +6,7 @@
 #include <ricochet/algebra/box_problem.hpp>
 #include <vector>
 
-#include "tests/algebra/allocations.hpp"
+#include "tests/allocations.hpp"
 
 using namespace ricochet;
 using Eigen::MatrixXd;

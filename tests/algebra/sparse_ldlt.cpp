@@ -8,7 +8,7 @@
 #include <random>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 
-#include "tests/algebra/allocations.hpp"
+#include "tests/allocations.hpp"
 
 using namespace ricochet;
 using Eigen::MatrixXd;

@@ -1,4 +1,4 @@
-#include "tests/algebra/allocations.hpp"
+#include "tests/allocations.hpp"
 
 #include <algorithm>
 #include <atomic>

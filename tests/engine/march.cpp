@@ -1,0 +1,114 @@
+// The time loop itself: no allocation, flat memory, lanes that diverge, refusals.
+#include "tests/allocations.hpp"
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+TEST_CASE("marching allocates nothing, observed or not") {
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = 1e-4;
+  scene.stops.place = StopsSpec::Place::nodes;
+  scene.support.amplitude = 0.02;
+  scene.load = Formula("0.1*x*sin(3*t)", "/scene/load");
+  const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular"});
+  const auto contact = GENERATE(Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e5}}},
+                                Choice{"augmented-lagrangian", {{"augmentation", 1e5}}});
+  const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean"});
+  const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal, OperatorKind::sparse);
+  CompileOptions options;
+  options.kind = kind;
+  Marcher beam = marcher(scene, 8, {mass, contact, time}, 1e-4, options);
+  EnergyAudit audit(beam);
+  beam.start(&audit);
+  beam.march(100, &audit);
+  const long before = allocations();
+  beam.march(1500, &audit);
+  beam.march(500);
+  INFO(mass.name << " " << contact.name << " " << time.name << " " << operator_name(kind));
+  CHECK(allocations() == before);
+  CHECK(audit.contact(0).impacts > 0);
+}
+
+TEST_CASE("a lane that diverges is frozen with step, time and cause, and the others go on") {
+  // Central differences beyond the step limit of this mesh; one lane starts at rest and has nothing to amplify.
+  Methods methods{{"consistent"}, {"none"}, {"newmark-dumont-paoli", {{"beta", 0.0}}}};
+  SceneSpec scene = working_set();
+  const double length = 1.501 / 10;
+  const double limit = 0.0334014193 * length * length / std::sqrt(282.8125);
+  Marcher beam = marcher(scene, 10, methods, 1.5 * limit, {}, [](const LaneSpec& lane) {
+    LaneSpec still = lane;
+    still.position.setZero();
+    still.velocity.setZero();
+    return std::vector{lane, still};
+  });
+  beam.start();
+  CHECK(beam.march(5000) == 5000);
+  CHECK_FALSE(beam.status(0).running);
+  CHECK(beam.status(0).step > 0);
+  CHECK(beam.status(0).time == Approx(static_cast<double>(beam.status(0).step) * 1.5 * limit));
+  CHECK_FALSE(beam.status(0).cause.empty());
+  CHECK(beam.status(1).running);
+  CHECK(beam.tip(1) == 0.0);
+  CHECK(beam.tip(0) == 0.0);  // nothing that is not finite is left behind
+}
+
+TEST_CASE("central differences hold below the step limit of the consistent mass and fail above") {
+  Methods methods{{"consistent"}, {"none"}, {"newmark-dumont-paoli", {{"beta", 0.0}}}};
+  const double length = 1.501 / 20;
+  const double limit = 0.0334014193 * length * length / std::sqrt(282.8125);
+  for (const double factor : {0.99, 1.02}) {
+    Marcher beam = marcher(working_set(), 20, methods, factor * limit);
+    beam.start();
+    beam.march(20000);
+    CHECK(beam.status(0).running == (factor < 1));
+  }
+}
+
+TEST_CASE("an observed run stops at the step where its energy passes the bound") {
+  Methods methods{{"consistent"}, {"none"}, {"newmark-dumont-paoli", {{"beta", 0.0}}}};
+  const double length = 1.501 / 10;
+  const double h = 1.5 * 0.0334014193 * length * length / std::sqrt(282.8125);
+  Marcher beam = marcher(working_set(), 10, methods, h);
+  EnergyAudit audit(beam);
+  beam.start(&audit);
+  beam.march(5000, &audit);
+  CHECK_FALSE(beam.status(0).running);
+  CHECK(audit.energy(0).common() > beam.energy_bound());
+  CHECK(std::isfinite(audit.totals(0).last.common()));
+}
+
+TEST_CASE("combinations that do not apply are refused in a sentence") {
+  const auto problem = problem_of(working_set(), 4, {"singular"});
+  const auto refused = [&](const Choice& time, const Choice& contact) {
+    auto result = compiled(problem, {{"singular"}, contact, time}, 1e-4);
+    const auto* refusal = std::get_if<Refusal>(&result);
+    return refusal ? refusal->sentence : std::string();
+  };
+  CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.2}}}, {"signorini"}).find("use beta ≥ 0.25") != std::string::npos);
+  CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.0}}}, {"signorini"}).find("singular") != std::string::npos);
+  CHECK(refused({"newmark", {{"beta", 0.2}}}, {"signorini"}).find("gamma/2") != std::string::npos);
+  CHECK(refused({"newmark-dumont-paoli", {{"beta", 0.25}}}, {"signorini"}).empty());
+}
+
+TEST_CASE("a step that is singular is refused, not divided by") {
+  // β = 0 on a lumped mass without rotary inertia: S = M/h² has zero rows.
+  const auto problem = problem_of(working_set(), 4, {"lumped", {{"rotation", std::string("none")}}});
+  StepPlan plan = std::get<StepPlan>(plan_of({"newmark-dumont-paoli", {{"beta", 0.0}}}, 1e-4, {}));
+  for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {
+    CompileOptions options;
+    options.kind = kind;
+    auto result = compile(problem, plan, 1e-4, make(registry().contact("none"), {"none"}), {scene_lane(*problem, {})}, options);
+    REQUIRE(std::holds_alternative<Refusal>(result));
+    CHECK(std::get<Refusal>(result).sentence.find("singular") != std::string::npos);
+  }
+}
+
+TEST_CASE("an explicit step on a lumped mass needs no factor at all") {
+  Marcher beam = marcher(working_set(), 6, {{"lumped"}, {"none"}, {"newmark-dumont-paoli", {{"beta", 0.0}}}}, 1e-5, [] {
+    CompileOptions options;
+    options.kind = OperatorKind::band;
+    return options;
+  }());
+  CHECK(beam.program().kind == OperatorKind::diagonal);
+}

@@ -1,0 +1,97 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/energy_audit.hpp>
+#include <string>
+
+#include "tests/scene/working_set.hpp"
+
+/// \file
+/// From a scene and the names of three methods to a marcher, as a study would do it.
+namespace ricochet::testing {
+
+struct Choice {
+  std::string name;
+  std::map<std::string, ParameterValue> values = {};
+};
+
+struct Methods {
+  Choice mass{"singular"}, contact{"signorini"}, time{"newmark-dumont-paoli"};
+};
+
+inline Registry& registry() {
+  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Registry all = [] {
+    Registry opened;
+    catalogue.open_all(opened);
+    return opened;
+  }();
+  return all;
+}
+
+inline Parameters complete(const std::vector<ParameterSpec>& specs, std::map<std::string, ParameterValue> values) {
+  for (const auto& spec : specs)
+    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
+  return Parameters(values);
+}
+
+template <class Interface>
+std::unique_ptr<Interface> make(const Entry<Interface>* entry, const Choice& choice) {
+  REQUIRE(entry);
+  return entry->make(complete(entry->manual.parameters, choice.values));
+}
+
+inline std::shared_ptr<const SemiDiscrete> problem_of(const SceneSpec& scene, int elements, const Choice& mass) {
+  return std::make_shared<const SemiDiscrete>(
+      discretised(scene, elements, *make(registry().mass(mass.name), mass)));
+}
+
+inline PlanOrRefusal plan_of(const Choice& time, double h, const ProblemFacts& facts) {
+  return make(registry().time(time.name), time)->plan(h, facts);
+}
+
+using Lanes = std::function<std::vector<LaneSpec>(const LaneSpec&)>;
+inline std::vector<LaneSpec> one_lane(const LaneSpec& lane) {
+  return {lane};
+}
+
+inline ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& problem, const Methods& methods, double h,
+                                 const CompileOptions& options = {}, const Lanes& lanes = one_lane) {
+  const auto* entry = registry().contact(methods.contact.name);
+  auto law = make(entry, methods.contact);
+  auto plan = plan_of(methods.time, h, problem_facts(*problem, *law));
+  if (auto* refusal = std::get_if<Refusal>(&plan)) return *refusal;
+  const LaneSpec lane = scene_lane(*problem, complete(entry->manual.parameters, methods.contact.values));
+  return compile(problem, std::get<StepPlan>(plan), h, std::move(law), lanes(lane), options);
+}
+
+inline Marcher marcher(const SceneSpec& scene, int elements, const Methods& methods, double h,
+                       const CompileOptions& options = {}, const Lanes& lanes = one_lane) {
+  auto program = compiled(problem_of(scene, elements, methods.mass), methods, h, options, lanes);
+  INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
+  REQUIRE(std::holds_alternative<Program>(program));
+  return Marcher(std::move(std::get<Program>(program)));
+}
+
+/// Starts and marches until `duration` (a whole number of steps), under the audit.
+inline EnergyAudit audited(Marcher& made, double duration) {
+  EnergyAudit audit(made);
+  made.start(&audit);
+  made.march(std::llround(duration / made.program().h) - made.step(), &audit);
+  return audit;
+}
+
+/// Starts and marches without an observer.
+inline void run(Marcher& made, double duration) {
+  made.start();
+  made.march(std::llround(duration / made.program().h) - made.step());
+}
+
+inline double line_density(const SceneSpec& scene) {
+  const auto& beam = std::get<BeamSpec>(scene.structure);
+  return section_properties(beam.section, beam.young, beam.density).rhoS;
+}
+
+}  // namespace ricochet::testing
