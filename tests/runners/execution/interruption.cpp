@@ -8,9 +8,8 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cstdlib>
-#include <thread>
+#include <functional>
 
 #include "runners/store/csv.hpp"
 #include "runners/store/store.hpp"

@@ -3,9 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <mutex>
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/store/store.hpp"
