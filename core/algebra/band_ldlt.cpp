@@ -30,17 +30,15 @@ std::vector<double> band_storage(const SparseMatrix& matrix, int half_width, boo
 SparseMatrix QuasiDefinite::assemble(std::vector<int>& order) const {
   const int n = static_cast<int>(A.rows()), border = static_cast<int>(G.rows());
   std::vector<double> place(static_cast<std::size_t>(n + border), 0.0);
-  std::vector<int> entries(static_cast<std::size_t>(border), 0);
+  std::vector<double> largest(static_cast<std::size_t>(border), 0.0);
   for (int i = 0; i < n; ++i) place[static_cast<std::size_t>(i)] = i;
   for (int j = 0; j < G.outerSize(); ++j)
     for (SparseMatrix::InnerIterator it(G, j); it; ++it) {
-      place[static_cast<std::size_t>(n + it.row())] += j;
-      ++entries[static_cast<std::size_t>(it.row())];
+      double& so_far = largest[static_cast<std::size_t>(it.row())];
+      if (std::abs(it.value()) <= so_far) continue;
+      so_far = std::abs(it.value());
+      place[static_cast<std::size_t>(n + it.row())] = j + 0.5;
     }
-  for (int r = 0; r < border; ++r) {
-    double& mean = place[static_cast<std::size_t>(n + r)];
-    mean = mean / std::max(1, entries[static_cast<std::size_t>(r)]) + 0.75;
-  }
   order.resize(static_cast<std::size_t>(n + border));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {

@@ -51,12 +51,21 @@ RICOCHET_INLINE Vector4 loadu4(const double* from) {
   return *reinterpret_cast<const Unaligned4*>(from);
 }
 
+// In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused: this keeps
+// each step of the sum where it is written.
+template <int T, int W>
+RICOCHET_INLINE void keep_order([[maybe_unused]] V<T>* sum) {
+  if constexpr (T == 1 && W < 0) asm("" : "+x"(sum[0]));
+}
+
 template <int T, int W, bool Add>
 RICOCHET_INLINE void product_row(const double* a, int stride, const V<T>* in, const V<T>* out, V<T>* sum) {
-  for (int k = 0; k < Row<T>::count; ++k) sum[k] = Add ? out[k] + a[0] * in[k] : a[0] * in[k];
+  for (int k = 0; k < Row<T>::count; ++k) sum[k] = (Add ? out[k] : V<T>{}) + a[0] * in[k];
 #pragma GCC unroll 16
-  for (int s = 1; s < (W >= 0 ? 2 * W + 1 : stride); ++s)
+  for (int s = 1; s < (W >= 0 ? 2 * W + 1 : stride); ++s) {
     for (int k = 0; k < Row<T>::count; ++k) sum[k] += a[s] * in[s * Row<T>::count + k];
+    keep_order<T, W>(sum);
+  }
 }
 
 // Elementwise kernels do not see lanes: they run over whole blocks, four doubles at a time (blocks are padded to 64
@@ -70,7 +79,7 @@ RICOCHET_INLINE void combine_body(long size, const double* const* x, const doubl
     w[j] = weight[j];
   }
   for (long i = 0; i < size; i += 4) {
-    Vector4 sum = w[0] * load4(in[0] + i);
+    Vector4 sum = Vector4{} + w[0] * load4(in[0] + i);
 #pragma GCC unroll 4
     for (int j = 1; j < N; ++j) sum += w[j] * load4(in[j] + i);
     *reinterpret_cast<Vector4*>(out + i) = sum;
@@ -94,13 +103,13 @@ RICOCHET_INLINE void update_body(long size, double* const* x, const double* z, c
     old[N] = load4(z + i);
 #pragma GCC unroll 4
     for (int j = 0; j < N; ++j) {
-      fresh[j] = w[j][0] * old[0];
+      fresh[j] = Vector4{} + w[j][0] * old[0];
 #pragma GCC unroll 4
       for (int s = 1; s <= N; ++s) fresh[j] += w[j][s] * old[s];
       *reinterpret_cast<Vector4*>(slot[j] + i) = fresh[j];
     }
     if (Next) {
-      Vector4 sum = c[0] * fresh[0];
+      Vector4 sum = Vector4{} + c[0] * fresh[0];
 #pragma GCC unroll 4
       for (int j = 1; j < N; ++j) sum += c[j] * fresh[j];
       *reinterpret_cast<Vector4*>(combined + i) = sum;
@@ -116,15 +125,17 @@ RICOCHET_INLINE void product_body(int rows, int half_width, const double* band, 
   if constexpr (T == 1) {
     long i = 0;
     for (; i + 4 <= rows; i += 4) {
-      Vector4 sum = loadu4(band + i) * loadu4(x + i - w);
-      if (Add) sum = *reinterpret_cast<const Vector4*>(y + i) + loadu4(band + i) * loadu4(x + i - w);
+      Vector4 sum = (Add ? load4(y + i) : Vector4{}) + loadu4(band + i) * loadu4(x + i - w);
 #pragma GCC unroll 16
       for (int s = 1; s < stride; ++s) sum += loadu4(band + s * static_cast<long>(rows) + i) * loadu4(x + i - w + s);
       *reinterpret_cast<Vector4*>(y + i) = sum;
     }
     for (; i < rows; ++i) {
-      double sum = Add ? y[i] + band[i] * x[i - w] : band[i] * x[i - w];
-      for (int s = 1; s < stride; ++s) sum += band[s * static_cast<long>(rows) + i] * x[i - w + s];
+      double sum = (Add ? y[i] : 0.0) + band[i] * x[i - w];
+      for (int s = 1; s < stride; ++s) {
+        sum += band[s * static_cast<long>(rows) + i] * x[i - w + s];
+        asm("" : "+x"(sum));
+      }
       y[i] = sum;
     }
   } else {
@@ -139,8 +150,10 @@ RICOCHET_INLINE void product_body(int rows, int half_width, const double* band, 
 template <int T, int W>
 RICOCHET_INLINE void forward_row(const double* l, int w, const V<T>* above, V<T>* sum) {
 #pragma GCC unroll 8
-  for (int s = 0; s < (W >= 0 ? W : w); ++s)
+  for (int s = 0; s < (W >= 0 ? W : w); ++s) {
     for (int k = 0; k < Row<T>::count; ++k) sum[k] -= l[s] * above[s * Row<T>::count + k];
+    keep_order<T, W>(sum);
+  }
 }
 
 template <int T, int W>
@@ -151,11 +164,13 @@ RICOCHET_INLINE void backward(int rows, int half_width, const double* factor, do
     const double* u = factor + i * stride + w;
     V<T>* out = row<T>(z, i);
     V<T> sum[Row<T>::count];
-    for (int k = 0; k < Row<T>::count; ++k) sum[k] = out[k] * u[w];
+    for (int k = 0; k < Row<T>::count; ++k) sum[k] = V<T>{} + out[k] * u[w];
       // Farthest first: the row just finished is needed last.
 #pragma GCC unroll 8
-    for (int s = w; s >= 1; --s)
+    for (int s = w; s >= 1; --s) {
       for (int k = 0; k < Row<T>::count; ++k) sum[k] -= u[s - 1] * out[s * Row<T>::count + k];
+      keep_order<T, W>(sum);
+    }
     for (int k = 0; k < Row<T>::count; ++k) out[k] = sum[k];
   }
 }
@@ -223,7 +238,7 @@ RICOCHET_INLINE void solve_body(const BandStep& step) {
 template <int T>
 RICOCHET_INLINE void band_step_body(const BandStep& step) {
   if constexpr (T >= 2)
-    if (step.K && !step.M && !step.load && !step.from && step.product_width == 3 && step.solve_width == 3) {
+    if (step.factor && step.K && !step.M && !step.load && !step.from && step.product_width == 3 && step.solve_width == 3) {
       fused_forward<T, 3, 3>(step);
       return backward<T, 3>(step.rows, 3, step.factor, step.z);
     }
@@ -261,7 +276,7 @@ RICOCHET_INLINE void diagonal_body(int rows, const double* coefficient, const do
   for (long i = 0; i < rows; ++i) {
     const double* c = coefficient + i * (N + 1);
     for (int k = 0; k < Row<T>::count; ++k) {
-      V<T> sum = c[N] * a[k];
+      V<T> sum = V<T>{} + c[N] * a[k];
 #pragma GCC unroll 4
       for (int j = 0; j < N; ++j) sum += c[j] * row<T>(in[j], i)[k];
       row<T>(z, i)[k] = sum;
@@ -285,7 +300,7 @@ RICOCHET_INLINE void measure_body(const LaneRows& matrix, const double* const* x
       const long at = matrix.index[e];
       const double value = matrix.value[e];
       for (int k = 0; k < Row<T>::count; ++k) {
-        V<T> sum = w[0] * row<T>(in[0], at)[k];
+        V<T> sum = V<T>{} + w[0] * row<T>(in[0], at)[k];
 #pragma GCC unroll 8
         for (int j = 1; j < N; ++j) sum += w[j] * row<T>(in[j], at)[k];
         total[k] += value * sum;

@@ -100,10 +100,11 @@ class BandOperator final : public StageOperator {
 
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
     if (auto wrong = ldlt_.factorise(matrix)) return wrong;
-    from_ = ldlt_.order();
-    if (!assembly_.mass_through_border())
-      for (int& row : from_)
-        if (row >= rows_) row = -1;
+    from_ = column_from_ = ldlt_.order();
+    // The border's part of the right-hand side is zero, unless M x goes through it.
+    for (int& row : column_from_)
+      if (row >= rows_) row = -1;
+    if (!assembly_.mass_through_border()) from_ = column_from_;
     place_.assign(static_cast<std::size_t>(rows_), 0);
     for (int r = 0; r < ldlt_.rows(); ++r)
       if (const int unknown = ldlt_.order()[static_cast<std::size_t>(r)]; unknown < rows_)
@@ -129,10 +130,6 @@ class BandOperator final : public StageOperator {
   double* unknown() override { return ldlt_.natural() ? solution_.data() : unknown_.data(); }
 
   void solve_column(const double* rhs, double* x) override {
-    // −1 in from_ (no mass on the right-hand side) or a row beyond rhs: the border's part is zero.
-    column_from_ = ldlt_.order();
-    for (int& row : column_from_)
-      if (row >= rows_) row = -1;
     BandStep step;
     use_factor(step, column_.data());
     step.from = column_from_.data();

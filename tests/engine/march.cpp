@@ -25,8 +25,9 @@ TEST_CASE("marching allocates nothing, observed or not") {
   const long before = allocations();
   beam.march(1500, &audit);
   beam.march(500);
+  const long after = allocations();  // the macros below allocate
   INFO(mass.name << " " << contact.name << " " << time.name << " " << operator_name(kind));
-  CHECK(allocations() == before);
+  CHECK(after == before);
   CHECK(audit.contact(0).impacts > 0);
 }
 

@@ -54,7 +54,8 @@ inline ricochet::CaseRecord fake_result(const ricochet::StudyCase& one) {
 /// What a run is given, and what it said: messages and summary go to files of the scratch folder.
 class FakeRun {
  public:
-  explicit FakeRun(const ScratchFolder& scratch) : said_(scratch / "said.txt"), told_(scratch / "told.txt") {
+  explicit FakeRun(const ScratchFolder& scratch) : FakeRun(scratch.path()) {}
+  explicit FakeRun(const std::filesystem::path& scratch) : said_(scratch / "said.txt"), told_(scratch / "told.txt") {
     runner.plan = [](const ricochet::StudyCase&) { return ricochet::CasePlan{}; };
     runner.run = [this](const ricochet::StudyCase& one, const std::atomic<bool>&) {
       ++runs;

@@ -39,8 +39,7 @@ Study child_study(const std::string& scenario) {
 
 int child_run(const std::string& scenario, const std::filesystem::path& out) {
   std::atomic<int> begun{0};
-  const ScratchFolder scratch;
-  FakeRun fake(scratch);
+  FakeRun fake(out.parent_path());  // the parent's folder: a killed child removes nothing
   StudyRunner runner = fake.runner;
   runner.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
     constexpr int before = 5;

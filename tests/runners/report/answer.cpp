@@ -74,7 +74,7 @@ TEST_CASE("the answer's figures are those of the results", "[report]") {
         if (name == "work_of_damping") value = -0.4;
     const std::string damped = answer_html(CaseView(results));
     CHECK(damped.find("closest to its starting energy") == std::string::npos);
-    CHECK(damped.find("damping −0.4 to −0.4 J") != std::string::npos);
+    CHECK(damped.find("damping −0.4 to −0.4 J. What went") != std::string::npos);
     CHECK(damped.find("Contact took") != std::string::npos);
   }
   SECTION("from rest there is no ratio, and none is made up") {
