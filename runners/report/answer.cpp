@@ -88,14 +88,6 @@ std::string unfinished_sentence(const Cases& cases) {
   return out.empty() ? "" : " Without a result: " + out + ".";
 }
 
-/// Whether something other than contact changes the energy: then its start is no reference.
-bool conservative(const CaseView& view) {
-  for (const CaseRecord* record : view.with_status("done"))
-    for (const char* work : {"work_of_damping", "work_of_loads"})
-      if (CaseView::measure(*record, work).value_or(0) != 0) return false;
-  return true;
-}
-
 std::string with_ratio(const CaseView& view, const CaseRecord& record) {
   const std::string label = view.label(record, view.varying_without({"step"}));
   return fmt::format("<strong>{}</strong>, which ends at {} of its start",
@@ -173,7 +165,7 @@ std::string work_sentence(const CaseView& view) {
   add("damping", "work_of_damping");
   add("loads and support", "work_of_loads");
   return "<p>Not only contact changes the energy here. Work over the run, by case: " + parts +
-         " (negative: taken out of the beam). What went at contact is measured apart and said for each mass.</p>\n";
+         ". What went at contact is measured apart and said for each mass.</p>\n";
 }
 
 /// What contact took, where the ratio alone does not say it.
@@ -269,16 +261,18 @@ std::string matrix(const CaseView& view) {
       steps.push_back(*step);
   std::sort(steps.rbegin(), steps.rend());
   if (steps.empty()) return "";
+  const std::vector<CaseGroup> groups = view.group(view.all(), view.varying_without({"step"}));
   std::string out = fmt::format(
-      "<div class=\"scroll\"><table class=\"matrix\"><caption>Energy at the end over energy at the start, E(T)/E(0). "
+      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>Energy at the end over energy at the start, E(T)/E(0). "
       "Columns: step h (s), coarse to fine. {}</caption>\n<thead><tr><th scope=\"col\">method</th>",
+      groups.size() > 24 ? " tall" : "",
       keeps
           ? "Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, where it falls."
           : "Order: of the moves between neighbouring steps, from the three finest, where they shrink.");
   for (const double step : steps) out += "<th scope=\"col\" class=\"number\">" + exact_text(step) + "</th>";
   out +=
       "<th scope=\"col\" class=\"number\">order</th><th scope=\"col\">as the step shrinks</th></tr></thead>\n<tbody>\n";
-  for (const CaseGroup& group : view.group(view.all(), view.varying_without({"step"}))) {
+  for (const CaseGroup& group : groups) {
     std::vector<double> at, ratios;
     double noise = 0;
     out += fmt::format("<tr><th scope=\"row\">{}{}</th>", swatch(view.colour(*group.cases.front())),
@@ -358,6 +352,13 @@ std::string effects(const CaseView& view) {
 }
 
 }  // namespace
+
+bool conservative(const CaseView& view) {
+  for (const CaseRecord* record : view.with_status("done"))
+    for (const char* work : {"work_of_damping", "work_of_loads"})
+      if (CaseView::measure(*record, work).value_or(0) != 0) return false;
+  return true;
+}
 
 std::string answer_html(const CaseView& view) {
   const Cases done = view.with_status("done");

@@ -26,6 +26,9 @@ double noise_of(const CaseRecord& record);
 /// A step counts as gaining energy above this share of the starting energy.
 inline constexpr double step_gain_threshold = 1e-9;
 
+/// Whether nothing but contact changes the energy of the finished cases: then its start is the reference.
+bool conservative(const CaseView& view);
+
 /// The section "Answer" as HTML: sentences and tables made of measured figures only.
 std::string answer_html(const CaseView& view);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/report/answer.hpp"
 #include "runners/report/figures.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/options.hpp"
@@ -278,7 +279,7 @@ std::vector<std::string> axis_columns(const CaseView& view) {
 }  // namespace
 
 std::vector<Figure> axis_figures(const CaseView& view) {
-  const std::vector<Subject> subjects = {
+  std::vector<Subject> subjects = {
       {"final-energy",
        "Energy at the end",
        "One colour per mass matrix. Where the modulus of the change is shown, full marks lost energy and hollow marks "
@@ -288,8 +289,11 @@ std::vector<Figure> axis_figures(const CaseView& view) {
         {"E(T) (J)", {"energy at the end E(T)", "J"}, true, energy_end}}},
       {"penetration",
        "Deepest penetration",
-       "The largest distance by which a contact point passed its stop, over every step.",
+       "The largest distance by which a contact point passed its stop, over every step. 2⁻⁵² of the stop's own "
+       "position is round-off.",
        {{"deepest penetration (m)", {"deepest penetration", "m"}, true, penetration}}}};
+  // Where damping or loads work, the change from the start says little: the ratio comes first.
+  if (!conservative(view)) std::swap(subjects[0].values[0], subjects[0].values[1]);
   std::vector<Figure> out;
   for (const Subject& subject : subjects)
     for (const std::string& column : axis_columns(view))

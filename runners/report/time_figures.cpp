@@ -234,6 +234,7 @@ class Maker {
     }
     Interval time = Interval::nothing();
     for (const Drawn& d : facet) time.include({d.t.front(), d.t.back()});
+    if (time.low > 0 && time.low < 0.01 * time.high) time.low = 0;
     Json x = value_axis(out.x, time, false);
     out.option = base_option(std::move(x), std::move(y), true, false);
     std::string unseen;
