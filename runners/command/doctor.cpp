@@ -73,7 +73,7 @@ void print_plugins(const Catalogue& catalogue, const std::vector<fs::path>& extr
     std::error_code ignored;
     std::vector<fs::path> here;
     for (const fs::path& file : files)
-      if (file.parent_path() == folder && std::find(extra.begin(), extra.end(), file) == extra.end())
+      if (folder / file.filename() == file && std::find(extra.begin(), extra.end(), file) == extra.end())
         here.push_back(file);
     out << "plugins in " << folder.string() << (fs::is_directory(folder, ignored) ? "" : ": no such folder")
         << (here.empty() ? ": none" : "") << "\n";

@@ -27,16 +27,24 @@ bool has_axis(const StudyCase& study_case, const std::string& axis) {
                      [&](const auto& item) { return item.first == axis; });
 }
 
-// Axes that tell cases apart become columns; the others are said once.
+// Axes with more than one value become columns; the others are said once.
 void split_axes(const Study& study, std::vector<std::string>& varying, std::string& same) {
   for (const std::string& axis : study.columns) {
     std::set<std::string> values;
-    for (const StudyCase& study_case : study.cases)
-      values.insert(has_axis(study_case, axis) ? axis_value(study_case, axis).dump() : std::string());
+    bool everywhere = true;
+    Json value;
+    for (const StudyCase& study_case : study.cases) {
+      if (!has_axis(study_case, axis)) {
+        everywhere = false;
+        continue;
+      }
+      value = axis_value(study_case, axis);
+      values.insert(value.dump());
+    }
     if (values.size() > 1)
       varying.push_back(axis);
     else
-      same += (same.empty() ? "" : ", ") + axis + " " + plain(axis_value(study.cases.front(), axis));
+      same += (same.empty() ? "" : ", ") + axis + " " + plain(value) + (everywhere ? "" : " (where it applies)");
   }
 }
 
@@ -119,7 +127,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
     out << study.name << (study.question.empty() ? "" : ": " + study.question) << "\n"
         << fmt::format("kind {}, {} cases, duration {} s\n", study.kind, study.cases.size(),
                        study.cases.front().duration);
-    if (!same.empty()) out << "the same in all: " << same << "\n";
+    if (!same.empty()) out << "the same throughout: " << same << "\n";
     out << "\n" << table.text();
     print_grouped("left out:", left_out, static_cast<std::size_t>(costs.runnable), out);
     print_grouped("notes:", notes, static_cast<std::size_t>(costs.runnable), out);

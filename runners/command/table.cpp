@@ -46,7 +46,9 @@ std::string plain(const nlohmann::ordered_json& value) {
 
 std::string plain_seconds(double seconds) {
   // Two digits, never in scientific notation.
-  const auto two = [](double value) { return value < 9.95 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value); };
+  const auto two = [](double value) {
+    return value < 9.95 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
+  };
   if (seconds < 1e-3) return two(seconds * 1e6) + " µs";
   if (seconds < 1) return two(seconds * 1e3) + " ms";
   if (seconds < 99.5) return two(seconds) + " s";
