@@ -45,9 +45,11 @@ struct OperatorWeights {
 };
 
 /// Velocity-level closure: which sides take part in the box problem, and how fast they rebound.
-/// A side is *closed* when the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h) (gap test).
-/// On a closed side, with w⁻ = H·approach − (bound rate at the approach levels), the bound on y is
-/// (bound rate at the measure's levels) − e·w⁻ if w⁻ goes towards that side (approach test), else the bound rate alone.
+/// Gap test: the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h). Approach test: with
+/// w⁻ = H·approach − (bound rate at the approach levels), w⁻ does not leave that side (up to 1e-10 of the largest speed the lane has
+/// shown at its stops, so that a point at rest on a stop stays in contact whatever its round-off). A side that passes both has the
+/// bound −e·w⁻ on y, relative to the bound's rate at the measure's levels; any other has none. Then every effort meets
+/// w⁻ + w⁺ = (1−e)w⁻ against it: contact never gives energy, for 0 ≤ e ≤ 1.
 struct VelocityGate {
   Combination predictor;
   Levels predictor_bound;

@@ -128,6 +128,7 @@ struct Marcher::StageState {
   std::array<Block, 3> effort;                    // p, p₋₁, p₋₂
   std::array<const double*, 3> effort_pointers{};
   Block free, rate, gap, gate_lower, gate_upper, approach;
+  Block fastest;                      // largest speed seen at a closed point, per lane
   std::uint32_t contact_lanes = 0;    // lanes with a non-zero effort
   std::uint32_t closed_lanes = 0;     // lanes with a closed gate
   std::vector<double> update;                     // slots × (slots + 1)
@@ -237,6 +238,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     if (stage.gate) {
       state->gap = Block(points, T);
       state->approach = Block(points, T);
+      state->fastest = Block(1, T);
       state->gate_lower = Block(points, T);
       state->gate_upper = Block(points, T);
       state->gap_weights = with_z(stage.gate->predictor);
@@ -433,12 +435,25 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
   }
   if (state.closed_lanes == 0) return;
   measure(state.approach_weights, gate.approach_bound, true, state.approach);
-  for (int i = 0; i < points; ++i)
-    for (int lane = 0; lane < T; ++lane) {
+  for (int lane = 0; lane < T; ++lane) {
+    if (!((state.closed_lanes >> lane) & 1u)) continue;
+    double& fastest = state.fastest.at(0, lane);
+    for (int i = 0; i < points; ++i) fastest = std::max(fastest, std::abs(state.approach.at(i, lane)));
+    const double still = 1e-10 * fastest;
+    for (int i = 0; i < points; ++i) {
       const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
-      state.gate_lower.at(i, lane) = gap <= lower_.at(i, lane) ? -gate.restitution * std::min(speed, 0.0) : -infinity;
-      state.gate_upper.at(i, lane) = gap >= upper_.at(i, lane) ? -gate.restitution * std::max(speed, 0.0) : infinity;
+      const bool lower = gap <= lower_.at(i, lane) && speed <= still;
+      const bool upper = gap >= upper_.at(i, lane) && speed >= -still;
+      state.gate_lower.at(i, lane) = lower ? -gate.restitution * std::min(speed, 0.0) : -infinity;
+      state.gate_upper.at(i, lane) = upper ? -gate.restitution * std::max(speed, 0.0) : infinity;
     }
+  }
+  for (int i = 0; i < points; ++i)
+    for (int lane = 0; lane < T; ++lane)
+      if (!((state.closed_lanes >> lane) & 1u)) {
+        state.gate_lower.at(i, lane) = -infinity;
+        state.gate_upper.at(i, lane) = infinity;
+      }
 }
 
 std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state, const double* z) {

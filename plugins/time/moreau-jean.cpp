@@ -9,7 +9,7 @@ using namespace ricochet;
 ///     (M/h + θC + hθ²K) z = (1−θ)F(t) + θF(t+h) − C v − K(q + θh v) + Hᵀp
 ///     v ← v + z,   q ← q + h v + hθ z,   y = H v_{n+1} on the sides that the gap test finds closed
 ///
-/// Gap test at q + (h/2)v. On a closed side that is approached, v⁺ rebounds with −e v⁻ (relative to the stop); else it only may not enter.
+/// Gap test at q + (h/2)v, approach test on v. On a side that passes both, v⁺ may not fall below −e v⁻ (relative to the stop).
 /// Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
 class MoreauJean final : public TimeScheme {
  public:
@@ -39,7 +39,7 @@ class MoreauJean final : public TimeScheme {
     plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};
     plan.facts.order = theta_ == 0.5 ? 2 : 1;
     plan.facts.restitution = Restitution::exact;
-    plan.facts.contact_never_gains = e_ == 0;
+    plan.facts.contact_never_gains = true;
     return plan;
   }
 
@@ -53,8 +53,8 @@ void register_all(Registry& registry) {
        .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
        .text = "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
                "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
-               "approaches its stop; a closed point that does not approach is only kept from entering. Positions may pass "
-               "the stop by O(h).",
+               "does not leave its stop; other points are free. With both tests contact never gives energy, for any e in "
+               "[0, 1] and any mass. Positions may pass the stop by O(h).",
        .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and Brogliato (2008), ch. 10",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
                       real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient")}},

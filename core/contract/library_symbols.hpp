@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ricochet {
+
+/// The names, beginning with `prefix`, of the symbols that a shared library defines for others, read from the file's
+/// dynamic symbol table: none of its code runs, and a stripped library still tells them. Throws std::runtime_error with
+/// a reason ("not a shared library", "damaged: …", "built for another processor") when the file has no such table to
+/// read; whatever bytes the file holds, nothing outside of it is read. Source: System V ABI, chapters 4 and 5.
+std::vector<std::string> exported_symbols(const std::filesystem::path& file, std::string_view prefix);
+
+}  // namespace ricochet

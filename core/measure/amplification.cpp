@@ -1,0 +1,39 @@
+#include <ricochet/measure/amplification.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+
+namespace ricochet {
+
+Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k) {
+  const auto slots = static_cast<Eigen::Index>(plan.slots.size());
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Identity(slots, slots);
+  for (const Stage& stage : plan.stages) {
+    const double s = stage.matrix.M * m + stage.matrix.C * c + stage.matrix.K * k;
+    Eigen::RowVectorXd unknown = Eigen::RowVectorXd::Zero(slots);
+    if (stage.matrix.M != 0 || stage.matrix.C != 0 || stage.matrix.K != 0) {
+      if (s == 0) return Eigen::MatrixXd::Constant(slots, slots, std::numeric_limits<double>::infinity());
+      for (std::size_t j = 0; j < stage.history.size(); ++j) {
+        const OperatorWeights& w = stage.history[j];
+        unknown[static_cast<Eigen::Index>(j)] = (w.M * m + w.C * c + w.K * k) / s;
+      }
+    }
+    Eigen::MatrixXd step = Eigen::MatrixXd::Zero(slots, slots);
+    for (Eigen::Index j = 0; j < slots; ++j) {
+      const Combination& update = stage.update[static_cast<std::size_t>(j)];
+      for (std::size_t i = 0; i < update.slots.size(); ++i) step(j, static_cast<Eigen::Index>(i)) = update.slots[i];
+      step.row(j) += update.z * unknown;
+    }
+    whole = step * whole;
+  }
+  return whole;
+}
+
+Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, double k) {
+  Eigen::VectorXcd roots = amplification(plan, m, c, k).eigenvalues();
+  std::sort(roots.begin(), roots.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+  return roots;
+}
+
+}  // namespace ricochet

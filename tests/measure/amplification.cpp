@@ -1,0 +1,75 @@
+// What a plan does to one mode, against the closed forms of its scheme.
+#include <ricochet/measure/amplification.hpp>
+
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+StepPlan plan(const Choice& time, double h) {
+  auto made = plan_of(time, h, {});
+  REQUIRE(std::holds_alternative<StepPlan>(made));
+  return std::get<StepPlan>(made);
+}
+
+std::vector<Choice> all_schemes() {
+  std::vector<Choice> schemes;
+  for (const double beta : {0.0, 0.1, 0.2, 0.25, 0.3, 0.5}) schemes.push_back({"newmark-dumont-paoli", {{"beta", beta}}});
+  for (const double beta : {0.0, 0.1, 0.25, 0.3})
+    for (const double gamma : {0.5, 0.6}) schemes.push_back({"newmark", {{"beta", beta}, {"gamma", gamma}}});
+  for (const double theta : {0.5, 0.7, 1.0}) schemes.push_back({"moreau-jean", {{"theta", theta}}});
+  return schemes;
+}
+
+}  // namespace
+
+TEST_CASE("Dumont–Paoli on the kernel of a singular mass has the roots of its polynomial") {
+  const double h = 1e-3;
+  for (const double beta : {0.25, 0.3, 0.4, 0.5})
+    for (const double alpha : {0.0, 1e-4, 1e-2}) {
+      // (β+a) r² + (1−2β) r + (β−a) = 0 with a = α/(2h).
+      const double a = alpha / (2 * h);
+      const auto roots = amplification_roots(plan({"newmark-dumont-paoli", {{"beta", beta}}}, h), 0, alpha, 1);
+      REQUIRE(roots.size() == 2);
+      for (const auto& r : roots)
+        CHECK(std::abs((beta + a) * r * r + (1 - 2 * beta) * r + (beta - a)) < 1e-12);
+      if (alpha == 0)
+        // β = ¼ is a double root, known to the square root of round-off only.
+        CHECK(std::abs(roots[0]) == Approx(1).margin(beta == 0.25 ? 1e-7 : 1e-13));
+      else if (beta == 0.25)
+        CHECK(std::abs(roots[0] + 1.0) < 1e-7);  // the sawtooth that no viscosity damps
+      else
+        CHECK(std::abs(roots[0]) < 1);
+    }
+}
+
+TEST_CASE("each scheme is stable up to the limit that it declares and not beyond") {
+  const double h = 1e-3;
+  for (const Choice& scheme : all_schemes()) {
+    const StepPlan step = plan(scheme, h);
+    const auto radius = [&](double frequency) {
+      return std::abs(amplification_roots(step, 1, 0, frequency * frequency / (h * h))[0]);
+    };
+    INFO(scheme.name);
+    // A step of these schemes has roots of modulus one or less; 1e-6 is far below the growth of any instability here.
+    if (step.facts.stability_limit) {
+      CHECK(radius(0.99 * *step.facts.stability_limit) <= 1 + 1e-6);
+      CHECK(radius(1.01 * *step.facts.stability_limit) > 1 + 1e-6);
+    } else {
+      for (const double frequency : {0.01, 1.0, 10.0, 1e3}) CHECK(radius(frequency) <= 1 + 1e-6);
+    }
+  }
+}
+
+TEST_CASE("viscosity damps every mode of a stable step") {
+  const double h = 1e-3;
+  for (const Choice& scheme : all_schemes()) {
+    const StepPlan step = plan(scheme, h);
+    if (step.facts.stability_limit) continue;
+    INFO(scheme.name);
+    for (const double frequency : {1.0, 100.0, 3000.0})
+      CHECK(std::abs(amplification_roots(step, 1, 1e-4 * frequency * frequency, frequency * frequency)[0]) < 1);
+  }
+}
