@@ -157,6 +157,7 @@
       const heading = description.title === "all cases" ? this.description.title : this.description.title + ": " + description.title;
       option.title = { text: heading, left: 12, top: 8, textStyle: { fontSize: 14, fontWeight: "normal", color: "#222" } };
       Object.assign(option.legend, { show: true, type: "plain", left: 12, top: 32, itemWidth: 34, textStyle: { fontSize: 11 } });
+      option.series.forEach((s) => { if (s.showSymbol === false) s.symbol = "none"; });   // the legend shows symbols even where the curve has none
       const names = Array.from(new Set(option.series.map((s) => s.name))).filter((name) => name !== "stops");
       option.legend.data = names;
       option.grid.top = 58 + 20 * Math.ceil(names.reduce((sum, name) => sum + 60 + 6.2 * name.length, 0) / 860);
