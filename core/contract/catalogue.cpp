@@ -1,13 +1,11 @@
-#include <ricochet/contract/catalogue.hpp>
-
-#include <ricochet/contract/abi.hpp>
-
-#include <boost/dll/library_info.hpp>
+#include <algorithm>
+#include <array>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
-
-#include <algorithm>
 #include <cstdlib>
+#include <ricochet/contract/abi.hpp>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/contract/library_symbols.hpp>
 #include <sstream>
 
 namespace ricochet {
@@ -17,14 +15,11 @@ namespace {
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
 
-std::vector<std::string> marked_symbols(const fs::path& file) {
-  boost::dll::library_info info(file.string());
-  return info.symbols("ricochet");
-}
+constexpr std::array roles = {Role::mass, Role::contact, Role::time};
 
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+  for (const Role role : roles) {
     const std::string prefix = std::string(role_name(role)) + "__";
     if (!symbol.starts_with(prefix)) continue;
     std::string name(symbol.substr(prefix.size()));
@@ -32,6 +27,22 @@ std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symb
     return std::pair(role, name);
   }
   return std::nullopt;
+}
+
+using Methods = std::vector<std::pair<Role, std::string>>;
+
+// "time-central-difference.so" is meant to provide the time scheme central-difference.
+Methods meant_by_name(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  for (const Role role : roles) {
+    const std::string prefix = std::string(role_name(role)) + "-";
+    if (stem.size() > prefix.size() && stem.starts_with(prefix)) return {{role, stem.substr(prefix.size())}};
+  }
+  return {};
+}
+
+std::string text(Role role, const std::string& name) {
+  return std::string(role_name(role)) + " '" + name + "'";
 }
 
 // Libraries stay open for the life of the process: methods made from them may outlive any catalogue.
@@ -74,30 +85,36 @@ Catalogue Catalogue::standard(const std::vector<fs::path>& files) {
 }
 
 void Catalogue::look_at(const fs::path& file, bool insist) {
+  Methods methods;
   const auto refuse = [&](const std::string& reason) {
     if (insist) throw PluginError(file.string() + ": " + reason);
-    unusable_.push_back({file, reason});
+    unusable_.push_back({file, reason, methods.empty() ? meant_by_name(file) : methods});
   };
-  std::vector<std::string> symbols;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return refuse("no such file");
+  std::vector<std::string> symbols;
   try {
-    symbols = marked_symbols(file);
-  } catch (const std::exception&) {
-    return refuse("not a shared library of this system, or damaged");
+    symbols = exported_symbols(file, "ricochet_");
+  } catch (const std::exception& error) {
+    return refuse(error.what());
   }
-  const auto tag = std::find_if(symbols.begin(), symbols.end(), [](const auto& s) { return s.starts_with(abi_prefix); });
-  if (tag == symbols.end())
-    return refuse("a shared library, but no Ricochet plugin (it carries no ABI tag; does it end with RICOCHET_PLUGIN?)");
-  if (const auto wrong = abi_mismatch(*tag))
-    return refuse("built for another ABI: " + *wrong + "; rebuild it against this version of Ricochet");
+  std::string strange;
   for (const std::string& symbol : symbols) {
     if (!symbol.starts_with(provides_prefix)) continue;
     if (const auto method = parse_provides(symbol))
-      provided_.push_back({method->first, method->second, file});
+      methods.push_back(*method);
     else
-      return refuse("provides a role that this version does not know: " + symbol);
+      strange = symbol;
   }
+  const auto tag =
+      std::find_if(symbols.begin(), symbols.end(), [](const auto& s) { return s.starts_with(abi_prefix); });
+  if (tag == symbols.end())
+    return refuse(
+        "a shared library, but no Ricochet plugin (it carries no ABI tag; does it end with RICOCHET_PLUGIN?)");
+  if (const auto wrong = abi_mismatch(*tag))
+    return refuse("built for another ABI: " + *wrong + "; rebuild it against this version of Ricochet");
+  if (!strange.empty()) return refuse("provides a role that this version does not know: " + strange);
+  for (const auto& [role, name] : methods) provided_.push_back({role, name, file});
 }
 
 std::vector<std::string> Catalogue::names(Role role) const {
@@ -109,53 +126,103 @@ std::vector<std::string> Catalogue::names(Role role) const {
   return result;
 }
 
-bool Catalogue::require(Role role, const std::string& name, Registry& registry) {
-  if (registry.manual(role, name)) return true;
+const Unusable* Catalogue::unusable_provider(Role role, const std::string& name) const {
+  for (const Unusable& file : unusable_)
+    if (std::find(file.meant.begin(), file.meant.end(), std::pair(role, name)) != file.meant.end()) return &file;
+  return nullptr;
+}
+
+const Provided* Catalogue::first_provider(Role role, const std::string& name) const {
   const auto found = std::find_if(provided_.begin(), provided_.end(),
                                   [&](const Provided& method) { return method.role == role && method.name == name; });
-  if (found == provided_.end()) return false;
-  const fs::path file = found->file;
-  open(file, registry);
-  if (!registry.manual(role, name))
-    throw PluginError(file.string() + ": says that it provides " + role_name(role) + " '" + name +
-                      "' but does not register it");
+  return found == provided_.end() ? nullptr : &*found;
+}
+
+bool Catalogue::require(Role role, const std::string& name, Registry& registry) {
+  if (registry.manual(role, name)) return true;
+  const Provided* method = first_provider(role, name);
+  if (!method) return false;
+  open(method->file, registry);
   return true;
 }
 
 void Catalogue::open_all(Registry& registry) {
-  for (const Provided& method : std::vector<Provided>(provided_)) {
+  for (const Provided& method : provided_) {
+    const auto known = [&](const Unusable& unusable) { return unusable.file == method.file; };
+    if (std::any_of(unusable_.begin(), unusable_.end(), known)) continue;
     try {
       require(method.role, method.name, registry);
     } catch (const PluginError& error) {
       const std::string prefix = method.file.string() + ": ";
       std::string reason = error.what();
       if (reason.starts_with(prefix)) reason.erase(0, prefix.size());
-      unusable_.push_back({method.file, reason});
+      Methods methods;
+      for (const Provided& other : provided_)
+        if (other.file == method.file) methods.emplace_back(other.role, other.name);
+      unusable_.push_back({method.file, reason, methods});
     }
   }
 }
 
 void Catalogue::open(const fs::path& file, Registry& registry) {
+  const std::string place = file.string() + ": ";
   boost::dll::shared_library library;
   try {
     library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   } catch (const std::exception& error) {
-    throw PluginError(file.string() + ": cannot be loaded: " + error.what());
+    throw PluginError(place + "cannot be loaded: " + error.what());
   }
-  // Kept open even when registering fails: what was registered before may hold its code.
+  // Kept open even when registering fails: an exception, or a copy of what was registered, may hold its code.
   open_libraries().push_back(library);
-  registry.set_current_file(file.string());
+  if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
+  Registry found;
   try {
-    library.get<void(Registry&)>("ricochet_register")(registry);
+    library.get<void(Registry&)>("ricochet_register")(found);
   } catch (const PluginError& error) {
-    throw PluginError(file.string() + ": " + error.what());
+    throw PluginError(place + error.what());
   } catch (const std::exception& error) {
-    throw PluginError(file.string() + ": failed while registering: " + error.what());
+    throw PluginError(place + "failed while registering: " + error.what());
   } catch (...) {
-    throw PluginError(file.string() + ": failed while registering, with an exception that says nothing");
+    throw PluginError(place + "failed while registering, with an exception that says nothing");
+  }
+  adopt(file, found, registry);
+}
+
+void Catalogue::adopt(const fs::path& file, const Registry& from, Registry& registry) const {
+  std::string missing, more;
+  Methods mine;
+  for (const Provided& method : provided_) {
+    if (method.file != file) continue;
+    if (!from.manual(method.role, method.name))
+      missing += (missing.empty() ? "" : ", ") + text(method.role, method.name);
+    mine.emplace_back(method.role, method.name);
+  }
+  for (const Role role : roles)
+    for (const std::string& name : from.names(role))
+      if (std::find(mine.begin(), mine.end(), std::pair(role, name)) == mine.end())
+        more += (more.empty() ? "" : ", ") + text(role, name);
+  if (!missing.empty())
+    throw PluginError(file.string() + ": says that it provides " + missing + " but does not register it" +
+                      (more.empty() ? "" : "; it registers " + more));
+  if (!more.empty())
+    throw PluginError(file.string() + ": registers " + more + " without saying so; add RICOCHET_PROVIDES(role, name)");
+  registry.set_current_file(file.string());
+  for (const auto& [role, name] : mine) {
+    // Whichever file is opened first, a method comes from its first provider.
+    if (registry.manual(role, name) || first_provider(role, name)->file != file) continue;
+    switch (role) {
+      case Role::mass:
+        registry.add_mass(from.mass(name)->manual, from.mass(name)->make);
+        break;
+      case Role::contact:
+        registry.add_contact(from.contact(name)->manual, from.contact(name)->make);
+        break;
+      case Role::time:
+        registry.add_time(from.time(name)->manual, from.time(name)->make);
+        break;
+    }
   }
   registry.set_current_file("");
-  opened_.push_back(file);
 }
 
 }  // namespace ricochet

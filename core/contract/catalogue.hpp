@@ -1,9 +1,9 @@
 #pragma once
 #include <filesystem>
-#include <string>
-#include <vector>
-
 #include <ricochet/contract/registry.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace ricochet {
 
@@ -18,10 +18,13 @@ struct Provided {
 struct Unusable {
   std::filesystem::path file;
   std::string reason;
+  /// What it would provide if it could serve: by its symbols, or, where they tell nothing, by a file name ROLE-NAME.so.
+  std::vector<std::pair<Role, std::string>> meant = {};
 };
 
 /// The plugin libraries found, and the act of opening one. Search order: the install folder, then RICOCHET_PLUGIN_PATH
-/// (colon-separated folders), then single files. The first provider of a (role, name) wins; later ones are listed as shadowed.
+/// (colon-separated folders), then single files. The first provider of a (role, name) wins; later ones are listed as
+/// shadowed.
 class Catalogue {
  public:
   /// `installed`: the folder of our own plugins; `files`: from --plugin.
@@ -35,10 +38,12 @@ class Catalogue {
   const std::vector<Unusable>& unusable() const { return unusable_; }
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
   std::vector<std::string> names(Role role) const;
+  /// The unusable file that is meant to provide the method, or null.
+  const Unusable* unusable_provider(Role role, const std::string& name) const;
 
-  /// Opens the library that provides the method and lets it register, unless it is there already. Returns false when no
-  /// file provides it. Throws PluginError (naming the file) when it does not load, throws while it registers, or does not
-  /// register what it said.
+  /// Opens the library that provides the method and lets it register what it provides first, unless the method is there
+  /// already. Returns false when no file provides it. Throws PluginError (naming the file) when it does not load,
+  /// throws while it registers, or does not register exactly what it says; the registry is then as it was before.
   bool require(Role role, const std::string& name, Registry& registry);
   /// Opens everything (for `describe` without a name and for `schema`); failures go to unusable().
   void open_all(Registry& registry);
@@ -48,6 +53,8 @@ class Catalogue {
  private:
   void look_at(const std::filesystem::path& file, bool insist);
   void open(const std::filesystem::path& file, Registry& registry);
+  void adopt(const std::filesystem::path& file, const Registry& from, Registry& registry) const;
+  const Provided* first_provider(Role role, const std::string& name) const;
   std::vector<std::filesystem::path> folders_;
   std::vector<Provided> provided_;
   std::vector<Unusable> unusable_;

@@ -162,8 +162,12 @@ std::string stage_text(const Stage& stage, const StepPlan& plan) {
 
 std::optional<std::string> check_plan(const StepPlan& plan) {
   Checker check(plan.slots.size());
-  check.demand(!plan.slots.empty(), "a plan needs at least the slot q");
+  check.demand(!plan.slots.empty() && plan.slots.front() == "q", "the first slot of a plan is the position q");
   check.demand(plan.initial.size() == plan.slots.size(), "a plan says for each slot how it starts");
+  for (const auto& [position, velocity] : plan.initial) {
+    check.number(position, "initial");
+    check.number(velocity, "initial");
+  }
   check.demand(!plan.stages.empty() && plan.stages.size() <= 3, "a plan has one to three stages");
   for (const Stage& stage : plan.start) check.stage(stage, "start");
   for (std::size_t k = 0; k < plan.stages.size(); ++k) check.stage(plan.stages[k], fmt::format("stage {}", k + 1));
@@ -174,6 +178,8 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   }
   check.combination(plan.velocity, "velocity");
   check.demand(plan.velocity.z == 0, "velocity combines slots after the step, not z");
+  check.demand(std::isfinite(plan.facts.order) && plan.facts.order > 0, "facts: the order is positive");
+  check.demand(!plan.facts.stability_limit || *plan.facts.stability_limit > 0, "facts: the stability limit is positive");
   return check.wrong;
 }
 

@@ -32,10 +32,17 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   message += names.empty() ? " (no " + std::string(role_phrase(role)) +
                                  " was found at all; `ricochet doctor` shows the plugin folders)"
                            : " (found: " + quoted_list(names) + ")";
-  if (catalogue.unusable().empty()) throw InputError(pointer, message);
-  // It may well be in a file that was found but cannot serve: then the file is the fault, not the study.
-  message = "at " + pointer + ": " + message + "; these files were found and cannot serve:";
-  for (const Unusable& file : catalogue.unusable()) message += "\n  " + file.file.string() + ": " + file.reason;
+  // Where a file that cannot serve is meant for this method, or tells nothing of itself and no name is near, the file
+  // is the fault, not the study.
+  const Unusable* meant = catalogue.unusable_provider(role, name);
+  std::vector<const Unusable*> suspects;
+  for (const Unusable& file : catalogue.unusable())
+    if (meant ? &file == meant : file.meant.empty()) suspects.push_back(&file);
+  if (suspects.empty() || (!meant && !nearest_name(name, names).empty())) throw InputError(pointer, message);
+  message =
+      "at " + pointer + ": " + message +
+      (suspects.size() == 1 ? "; this file was found and cannot serve:" : "; these files were found and cannot serve:");
+  for (const Unusable* file : suspects) message += "\n  " + file->file.string() + ": " + file->reason;
   throw PluginError(message);
 }
 

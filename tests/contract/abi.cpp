@@ -1,0 +1,55 @@
+#include <catch2/catch.hpp>
+#include <ricochet/contract/abi.hpp>
+#include <string>
+
+using namespace ricochet;
+
+namespace {
+
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+  const std::size_t at = text.find(part);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, part.size(), by);
+}
+
+std::string mismatch(const std::string& tag) {
+  return abi_mismatch(tag).value_or("none");
+}
+
+}  // namespace
+
+TEST_CASE("the tag is a symbol name that tells the four fields in order") {
+  const std::string tag = abi_tag();
+  CHECK(tag.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos);
+  std::size_t before = 0;
+  for (const char* field : {"ricochet_abi__contract_", "__eigen_", "__align_", "__cxx11_"}) {
+    const std::size_t at = tag.find(field);
+    REQUIRE(at != std::string::npos);
+    CHECK(at >= before);
+    before = at;
+  }
+  CHECK(tag.find("__align_" + std::to_string(EIGEN_MAX_ALIGN_BYTES)) != std::string::npos);
+  CHECK_FALSE(abi_mismatch(tag).has_value());
+}
+
+TEST_CASE("each field that differs is named with what was expected and what was found") {
+  const std::string tag = "ricochet_abi__contract_1__eigen_3_4__align_32_16__cxx11_1";
+  REQUIRE(mismatch(tag) == "none");
+  CHECK(mismatch(replaced(tag, "contract_1", "contract_99")) == "contract: expected 1, found 99");
+  CHECK(mismatch(replaced(tag, "eigen_3_4", "eigen_3_3")) == "eigen: expected 3.4, found 3.3");
+  CHECK(mismatch(replaced(tag, "align_32_16", "align_64_16")) == "align: expected 32.16, found 64.16");
+  CHECK(mismatch(replaced(tag, "align_32_16", "align_32_32")) == "align: expected 32.16, found 32.32");
+  CHECK(mismatch(replaced(tag, "cxx11_1", "cxx11_0")) == "cxx11: expected 1, found 0");
+}
+
+TEST_CASE("the first field that differs is the one told") {
+  CHECK(mismatch("ricochet_abi__contract_2__eigen_4_0__align_64_64__cxx11_0") == "contract: expected 1, found 2");
+}
+
+TEST_CASE("a tag with fields missing or added does not fit") {
+  CHECK(mismatch("ricochet_abi__contract_1__eigen_3_4__align_32_16") == "cxx11: expected 1, found nothing");
+  CHECK(mismatch("ricochet_abi__") == "contract: expected 1, found nothing");
+  CHECK(mismatch("") == "contract: expected 1, found nothing");
+  CHECK(mismatch("ricochet_abi__eigen_3_4") == "contract: expected 1, found nothing");
+  CHECK(mismatch(abi_tag() + "__cuda_12") == "cuda: a field that this program does not know");
+}

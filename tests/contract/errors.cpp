@@ -1,0 +1,41 @@
+#include <catch2/catch.hpp>
+#include <ricochet/contract/errors.hpp>
+
+using namespace ricochet;
+
+TEST_CASE("the nearest name is the one a person meant") {
+  const std::vector<std::string> names = {"newmark", "newmark-dumont-paoli", "moreau-jean", "penalty"};
+  const auto [word, meant] = GENERATE(table<std::string, std::string>({{"newmrak", "newmark"},
+                                                                       {"newmark", "newmark"},
+                                                                       {"nwmark", "newmark"},
+                                                                       {"newmarkk", "newmark"},
+                                                                       {"newmark-dumont", "newmark-dumont-paoli"},
+                                                                       {"moreau", "moreau-jean"},
+                                                                       {"moreau_jean", "moreau-jean"},
+                                                                       {"penlaty", "penalty"}}));
+  CHECK(nearest_name(word, names) == meant);
+}
+
+TEST_CASE("a word that is like nothing has no nearest name") {
+  const std::vector<std::string> names = {"length", "young", "density"};
+  CHECK(nearest_name("xqzvb", names).empty());
+  CHECK(nearest_name("", names).empty());
+  CHECK(nearest_name("length", {}).empty());
+}
+
+TEST_CASE("a swap of neighbours costs less than two substitutions") {
+  // "hieght" is one swap from "height" and two substitutions from "hiegxy".
+  CHECK(nearest_name("hieght", {"hiegxy", "height"}) == "height");
+}
+
+TEST_CASE("among equals the first is named") {
+  CHECK(nearest_name("ab1", {"ab2", "ab3"}) == "ab2");
+  CHECK(nearest_name("ab1", {"ab3", "ab2"}) == "ab3");
+}
+
+TEST_CASE("errors carry what a person needs to act") {
+  const InputError input("/scene/structure/lenght", "unknown key");
+  CHECK(input.pointer() == "/scene/structure/lenght");
+  CHECK(std::string(input.what()) == "unknown key");
+  CHECK(std::string(PluginError("time-x.so: no").what()) == "time-x.so: no");
+}

@@ -1,0 +1,210 @@
+// The arrows of the house, read from the sources: who may include whom, and that nobody knows a method by name.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cctype>
+#include <map>
+#include <ricochet/contract/catalogue.hpp>
+#include <set>
+
+#include "tests/runners/scratch_folder.hpp"
+
+using namespace ricochet;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path root = RICOCHET_SOURCE_DIR;
+
+struct Source {
+  std::string name;  ///< from the root
+  std::string text;
+};
+
+std::vector<Source> sources(const std::string& folder) {
+  std::vector<Source> result;
+  for (auto item = fs::recursive_directory_iterator(root / folder); item != fs::recursive_directory_iterator();
+       ++item) {
+    if (item->path().filename() == "node_modules") {
+      item.disable_recursion_pending();
+      continue;
+    }
+    const std::set<std::string> code = {".cpp", ".hpp", ".js", ".in"};
+    if (code.count(item->path().extension().string()))
+      result.push_back({fs::relative(item->path(), root).string(), read_text(item->path())});
+  }
+  std::sort(result.begin(), result.end(), [](const Source& a, const Source& b) { return a.name < b.name; });
+  return result;
+}
+
+// "<fmt/format.h>" or "\"runners/study/study.hpp\"", as they are spelled.
+std::vector<std::string> includes(const Source& source) {
+  std::vector<std::string> result;
+  std::size_t at = 0;
+  while (at < source.text.size()) {
+    std::size_t end = source.text.find('\n', at);
+    if (end == std::string::npos) end = source.text.size();
+    std::string line = source.text.substr(at, end - at);
+    at = end + 1;
+    line.erase(std::remove_if(line.begin(), line.end(), [](unsigned char c) { return std::isspace(c); }), line.end());
+    if (!line.starts_with("#include")) continue;
+    const std::size_t close = line.find_first_of(">\"", 9);
+    REQUIRE(close != std::string::npos);
+    result.push_back(line.substr(8, close - 7));
+  }
+  return result;
+}
+
+/// A string literal and the last characters of code before it.
+struct Literal {
+  std::string text, before;
+};
+
+// The string literals of C++ and JavaScript, comments left out.
+std::vector<Literal> literals(const std::string& text) {
+  std::vector<Literal> result;
+  std::string before;
+  const auto from = [&](std::size_t at, const std::string& end) {
+    const std::size_t found = text.find(end, at);
+    return found == std::string::npos ? text.size() : found;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (text.compare(i, 2, "//") == 0) {
+      i = from(i, "\n");
+    } else if (text.compare(i, 2, "/*") == 0) {
+      i = from(i + 2, "*/") + 1;
+    } else if (c == '"' && before.ends_with("R")) {
+      const std::size_t open = from(i, "(");
+      const std::size_t close = from(open, ")" + text.substr(i + 1, open - i - 1) + "\"");
+      result.push_back({text.substr(open + 1, close - open - 1), before});
+      i = close + open - i;
+      before.clear();
+    } else if (c == '"' ||
+               (c == '\'' && (before.empty() || !std::isalnum(static_cast<unsigned char>(before.back()))))) {
+      std::string literal;
+      for (++i; i < text.size() && text[i] != c && text[i] != '\n'; ++i) {
+        if (text[i] == '\\') ++i;
+        if (i < text.size()) literal += text[i];
+      }
+      result.push_back({literal, before});
+      before.clear();
+    } else if (!std::isspace(static_cast<unsigned char>(c))) {
+      before += c;
+      if (before.size() > 8) before.erase(0, 1);
+    }
+  }
+  return result;
+}
+
+bool has_word(const std::string& text, const std::string& word) {
+  const auto inside = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !inside(text[at - 1])) && (end == text.size() || !inside(text[end]))) return true;
+  }
+  return false;
+}
+
+std::set<std::string> method_names() {
+  const Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  std::set<std::string> names;
+  for (const Provided& method : catalogue.provided()) names.insert(method.name);
+  return names;
+}
+
+// Folder "core/contract" or "runners/study" of an include, "" for libraries.
+std::string layer_of(const std::string& include) {
+  for (const auto& [prefix, layer] :
+       std::map<std::string, std::string>{{"<ricochet/", "core/"}, {"\"runners/", "runners/"}})
+    if (include.starts_with(prefix)) {
+      const std::size_t slash = include.find('/', prefix.size());
+      return layer + include.substr(prefix.size(), slash - prefix.size());
+    }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the scanner of this test sees literals and not comments") {
+  const auto found = literals(R"x(a == "one"; // "two"
+    /* "three" */ f("fo\"ur", 'c', 1'000, R"(fi"ve)");)x");
+  std::vector<std::string> texts;
+  for (const Literal& literal : found) texts.push_back(literal.text);
+  CHECK(texts == std::vector<std::string>{"one", "fo\"ur", "c", "fi\"ve"});
+  CHECK(found[0].before == "a==");
+  CHECK(has_word("use penalty here", "penalty"));
+  CHECK_FALSE(has_word("penalty-like", "penalty"));
+  CHECK_FALSE(has_word("newmark-dumont-paoli", "newmark"));
+  REQUIRE(sources("core").size() > 20);
+  REQUIRE(sources("plugins").size() >= 10);
+  REQUIRE(sources("runners").size() > 20);
+  REQUIRE(method_names().size() >= 10);
+}
+
+TEST_CASE("plugins include the contract, algebra helpers, the standard library, Eigen and fmt, and nothing else") {
+  for (const Source& source : sources("plugins"))
+    for (const std::string& include : includes(source)) {
+      INFO(source.name << " includes " << include);
+      const bool standard = include[0] == '<' && include.find_first_of("/.") == std::string::npos;
+      CHECK((standard || include.starts_with("<ricochet/contract/") || include.starts_with("<ricochet/algebra/") ||
+             include.starts_with("<Eigen/") || include.starts_with("<fmt/")));
+    }
+}
+
+TEST_CASE("core and runners include no plugin, and core no runner") {
+  for (const std::string folder : {"core", "runners"})
+    for (const Source& source : sources(folder))
+      for (const std::string& include : includes(source)) {
+        INFO(source.name << " includes " << include);
+        CHECK(include.find("plugins/") == std::string::npos);
+        if (folder == "core") {
+          CHECK(include[0] == '<');
+          CHECK(include.find("runners/") == std::string::npos);
+        }
+      }
+}
+
+TEST_CASE("layers include what lies below them") {
+  const std::set<std::string> contract = {"core/contract"};
+  const std::map<std::string, std::set<std::string>> allowed = {
+      {"core/contract", contract},
+      {"core/algebra", {"core/contract", "core/algebra"}},
+      {"core/scene", {"core/contract", "core/algebra", "core/scene"}},
+      {"core/engine", {"core/contract", "core/algebra", "core/scene", "core/engine"}},
+      {"core/measure", {"core/contract", "core/algebra", "core/scene", "core/engine", "core/measure"}},
+      {"runners/study", {"core/contract", "core/scene", "runners/study"}},
+      {"runners/store", {"runners/study", "runners/store"}},
+      {"runners/report", {"runners/study", "runners/store", "runners/report"}},
+  };
+  for (const std::string folder : {"core", "runners"})
+    for (const Source& source : sources(folder)) {
+      const auto rule = allowed.find(fs::path(source.name).parent_path().string());
+      if (rule == allowed.end()) continue;
+      for (const std::string& include : includes(source)) {
+        const std::string layer = layer_of(include);
+        INFO(source.name << " includes " << include);
+        CHECK((layer.empty() || rule->second.count(layer)));
+      }
+    }
+}
+
+TEST_CASE("core and runners know no method by name") {
+  // These are words of every day as well; they may stand in a sentence.
+  const std::set<std::string> ordinary = {"consistent", "lumped", "none", "penalty", "singular"};
+  // "none" is also what ECharts calls no symbol, what a table shows for no value, and a projection of the initial
+  // state: it may stand alone where nothing is decided by it.
+  const auto decides = [](const std::string& before) {
+    return before.ends_with("==") || before.ends_with("!=") || before.ends_with("compare(") ||
+           before.ends_with("count(") || before.ends_with("find(") || before.ends_with("case") ||
+           before.ends_with("contains(");
+  };
+  const std::set<std::string> names = method_names();
+  for (const std::string folder : {"core", "runners"})
+    for (const Source& source : sources(folder))
+      for (const Literal& literal : literals(source.text))
+        for (const std::string& name : names) {
+          const bool exact = literal.text == name && (name != "none" || decides(literal.before));
+          const bool named = !ordinary.count(name) && has_word(literal.text, name);
+          if (exact || named) FAIL_CHECK(source.name << " names the method " << name << ": \"" << literal.text << '"');
+        }
+}
