@@ -86,6 +86,27 @@ RICOCHET_INLINE void combine_body(long size, const double* const* x, const doubl
   }
 }
 
+// d ← d + z, q ← q + d: what two-slot increment schemes do, without the multiplications by one and zero.
+template <bool Next>
+RICOCHET_INLINE void update_increments(long size, double* const* x, const double* z, const double* next, double* combined) {
+  double *q = x[0], *d = x[1];
+  const double of_q = Next ? next[0] : 0, of_d = Next ? next[1] : 0;
+  for (long i = 0; i < size; i += 4) {
+    const Vector4 increment = load4(d + i) + load4(z + i), position = load4(q + i) + increment;
+    *reinterpret_cast<Vector4*>(d + i) = increment;
+    *reinterpret_cast<Vector4*>(q + i) = position;
+    if (Next) {
+      Vector4 sum = Vector4{} + of_q * position;
+      sum += of_d * increment;
+      *reinterpret_cast<Vector4*>(combined + i) = sum;
+    }
+  }
+}
+
+RICOCHET_INLINE bool only_increments(int count, const double* w) {
+  return count == 2 && w[0] == 1 && w[1] == 1 && w[2] == 1 && w[3] == 0 && w[4] == 1 && w[5] == 1;
+}
+
 template <int N, bool Next>
 RICOCHET_INLINE void update_body(long size, double* const* x, const double* z, const double* weight, const double* next,
                                  double* combined) {
@@ -333,6 +354,19 @@ RICOCHET_INLINE std::uint32_t outside_body(int rows, const double* y, const doub
   }
 }
 
+// Four vector sums: enough to hide the latency of an addition.
+RICOCHET_INLINE double triple_product_body(long size, const double* a, const double* x, const double* y) {
+  Vector4 sum[4] = {};
+  long i = 0;
+  for (; i + 16 <= size; i += 16)
+    for (int k = 0; k < 4; ++k) sum[k] += loadu4(a + i + 4 * k) * (loadu4(x + i + 4 * k) * loadu4(y + i + 4 * k));
+  for (; i + 4 <= size; i += 4) sum[0] += loadu4(a + i) * (loadu4(x + i) * loadu4(y + i));
+  const Vector4 all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  double total = (all[0] + all[1]) + (all[2] + all[3]);
+  for (; i < size; ++i) total += a[i] * (x[i] * y[i]);
+  return total;
+}
+
 RICOCHET_INLINE void combine_any(long size, int count, const double* const* x, const double* weight, double* out) {
   switch (count) {
     case 1:
@@ -348,6 +382,7 @@ RICOCHET_INLINE void combine_any(long size, int count, const double* const* x, c
 template <bool Next>
 RICOCHET_INLINE void update_any(long size, int count, double* const* x, const double* z, const double* weight,
                                 const double* next, double* combined) {
+  if (only_increments(count, weight)) return update_increments<Next>(size, x, z, next, combined);
   switch (count) {
     case 1:
       return update_body<1, Next>(size, x, z, weight, next, combined);
@@ -415,7 +450,11 @@ RICOCHET_INLINE void measure_any(const LaneRows& matrix, int count, const double
     TARGET static std::uint32_t outside(int n, const double* y, const double* l, const double* u) {                    \
       return outside_body<T>(n, y, l, u);                                                                              \
     }                                                                                                                  \
-    static constexpr LaneKernels table{combine, update, band_step, diagonal_step, measure, add_column, outside};       \
+    TARGET static double triple_product(long n, const double* a, const double* x, const double* y) {                   \
+      return triple_product_body(n, a, x, y);                                                                          \
+    }                                                                                                                  \
+    static constexpr LaneKernels table{combine, update,  band_step, diagonal_step, measure, add_column,                 \
+                                       outside, triple_product};                                                       \
   };
 // clang-format on
 

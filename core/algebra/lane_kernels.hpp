@@ -56,6 +56,8 @@ struct LaneKernels {
   void (*add_column)(int rows, const double* column, const double* scale, double* z);
   /// Bit l set: lane l has some i with y[i] < lower[i] or y[i] > upper[i], or y[i] not a number.
   std::uint32_t (*outside)(int rows, const double* y, const double* lower, const double* upper);
+  /// Σ_i a[i] x[i] y[i] over contiguous vectors: one diagonal of a quadratic form, whatever T.
+  double (*triple_product)(long size, const double* a, const double* x, const double* y);
 };
 
 /// Kernels for T lanes on this processor; `baseline` asks for those of the plain x86-64 instruction set (for tests).

@@ -1,22 +1,10 @@
 #include <algorithm>
+#include <stdexcept>
 #include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/algebra/quadratic_form.hpp>
 
 namespace ricochet {
-namespace {
-
-// Four independent sums, so that the compiler may keep them in one vector register without being allowed to reorder.
-double dot_shifted(const double* a, const double* x, const double* y, long n) {
-  double sum[4] = {0, 0, 0, 0};
-  long i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (int k = 0; k < 4; ++k) sum[k] += a[i + k] * (x[i + k] * y[i + k]);
-  for (; i < n; ++i) sum[0] += a[i] * (x[i] * y[i]);
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
-}  // namespace
-
 QuadraticForm::QuadraticForm(const SparseMatrix& matrix)
     : rows_(static_cast<int>(matrix.rows())), width_(half_bandwidth(matrix)) {
   diagonals_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(width_ + 1), 0.0);
@@ -72,17 +60,18 @@ double QuadraticForm::operator()(const double* x) const {
 }
 
 double QuadraticForm::operator()(const double* x, const double* y) const {
+  const LaneKernels& kernels = lane_kernels(1);
   if (!start_.empty()) {
     reduce(x, first_);
     if (x != y) reduce(y, second_);
     const std::vector<double>& other = x == y ? first_ : second_;
-    return dot_shifted(inverse_pivot_.data(), first_.data(), other.data(), static_cast<long>(first_.size()));
+    return kernels.triple_product(static_cast<long>(first_.size()), inverse_pivot_.data(), first_.data(), other.data());
   }
-  double sum = dot_shifted(diagonals_.data(), x, y, rows_);
+  double sum = kernels.triple_product(rows_, diagonals_.data(), x, y);
   for (int s = 1; s <= width_; ++s) {
     const double* a = diagonals_.data() + static_cast<std::size_t>(s) * static_cast<std::size_t>(rows_);
-    const double upper = dot_shifted(a, x, y + s, rows_ - s);
-    sum += x == y ? 2 * upper : upper + dot_shifted(a, y, x + s, rows_ - s);
+    const double upper = kernels.triple_product(rows_ - s, a, x, y + s);
+    sum += x == y ? 2 * upper : upper + kernels.triple_product(rows_ - s, a, y, x + s);
   }
   return sum;
 }

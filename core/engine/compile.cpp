@@ -50,6 +50,16 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   program.folded = fold(stage, whole.problem->damping, static_cast<int>(slots));
   if (whole.contact)
     if (auto refusal = read_contact(program, stage, *whole.law, slots)) return refusal;
+  const auto phase = [&](const Levels& levels) {
+    return PhaseWeights(levels, whole.problem->support.pulsation, whole.h);
+  };
+  program.load_phase = phase(stage.load);
+  program.measure_phase = phase(program.measure_levels);
+  if (program.compliance) program.rate_phase = phase(program.compliance->rate_bound);
+  if (program.gate) {
+    program.predictor_phase = phase(program.gate->predictor_bound);
+    program.approach_phase = phase(program.gate->approach_bound);
+  }
   if (!program.folded.solves()) return std::nullopt;
   auto made = make_operator(whole.kind, *whole.model, program.folded, whole.width);
   if (auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
@@ -91,6 +101,13 @@ void say_what_is_left_out(Program& program) {
 }
 
 }  // namespace
+
+PhaseWeights::PhaseWeights(const Levels& levels, double pulsation, double h) {
+  for (const Level& level : levels) {
+    along += level.weight * std::cos(pulsation * level.at * h);
+    across += level.weight * std::sin(pulsation * level.at * h);
+  }
+}
 
 LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law) {
   LaneSpec lane;

@@ -36,6 +36,13 @@ struct CompileOptions {
 /// What the facts of a scheme need to know about a problem.
 ProblemFacts problem_facts(const SemiDiscrete& problem, const ContactLaw& law);
 
+/// Σ_k w_k sin(ω(t + c_k h)) = along·sin ωt + across·cos ωt: what a weighted set of time levels does to a harmonic motion.
+struct PhaseWeights {
+  double along = 0, across = 0;
+  PhaseWeights() = default;
+  PhaseWeights(const Levels& levels, double pulsation, double h);
+};
+
 /// What will run: one stage of the plan with everything that is constant worked out.
 struct StageProgram {
   FoldedStage folded;
@@ -47,6 +54,7 @@ struct StageProgram {
   std::vector<double> effort = {1.0};              ///< π
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;     ///< the one the law reads, with its rate
+  PhaseWeights load_phase, measure_phase, rate_phase, predictor_phase, approach_phase;
 };
 
 /// A compiled scene × methods, ready to march a block of lanes.

@@ -276,14 +276,9 @@ double Marcher::support_levels(int lane, double t, const Levels& levels) const {
 }
 
 // Σ_k w_k A sin(ω(t+c_k h)+ψ), or its rate, for every lane: two numbers per step, whatever the number of lanes.
-void Marcher::support_offsets(const Levels& levels, double* out, bool rate) const {
+void Marcher::support_offsets(const PhaseWeights& phase, double* out, bool rate) const {
   const double omega = program_.problem->support.pulsation;
-  double along = 0, across = 0;
-  for (const Level& level : levels) {
-    along += level.weight * std::cos(omega * level.at * program_.h);
-    across += level.weight * std::sin(omega * level.at * program_.h);
-  }
-  double s = sine_ * along + cosine_ * across, c = cosine_ * along - sine_ * across;
+  double s = sine_ * phase.along + cosine_ * phase.across, c = cosine_ * phase.along - sine_ * phase.across;
   if (rate) {
     std::swap(s, c);
     s *= omega;
@@ -372,7 +367,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
       input.k = combination_.data();
     }
     if (program_.support) {
-      support_offsets(plan.load, scale_.data(), false);
+      support_offsets(program.load_phase, scale_.data(), false);
       const double omega = program_.problem->support.pulsation;
       for (int lane = 0; lane < program_.width; ++lane) scale_.data()[lane] *= omega * omega;
       input.scale = scale_.data();
@@ -418,14 +413,14 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
   const int points = lower_.rows(), T = program_.width;
   std::vector<const double*>& slots = slot_pointers_;
   const double* offset = nullptr;
-  const auto measure = [&](const std::vector<double>& weights, const Levels& levels, bool rate, Block& out) {
+  const auto measure = [&](const std::vector<double>& weights, const PhaseWeights& phase, bool rate, Block& out) {
     if (program_.support) {
-      support_offsets(levels, offset_.data(), rate);
+      support_offsets(phase, offset_.data(), rate);
       offset = offset_.data();
     }
     kernels_.measure(program_.model->contact().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
   };
-  measure(state.gap_weights, gate.predictor_bound, false, state.gap);
+  measure(state.gap_weights, program.predictor_phase, false, state.gap);
   state.closed_lanes = 0;
   for (int lane = 0; lane < T; ++lane) {
     bool closed = false;
@@ -434,7 +429,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
     state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
   }
   if (state.closed_lanes == 0) return;
-  measure(state.approach_weights, gate.approach_bound, true, state.approach);
+  measure(state.approach_weights, program.approach_phase, true, state.approach);
   for (int lane = 0; lane < T; ++lane) {
     if (!((state.closed_lanes >> lane) & 1u)) continue;
     double& fastest = state.fastest.at(0, lane);
@@ -471,13 +466,13 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
   slots[static_cast<std::size_t>(slot_count())] = z;
   const double* offset = nullptr;
   if (program_.support) {
-    support_offsets(program.measure_levels, offset_.data(), gated);
+    support_offsets(program.measure_phase, offset_.data(), gated);
     offset = offset_.data();
   }
   kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(), offset,
                    state.free.data());
   if (state.rate.rows() > 0) {
-    if (program_.support) support_offsets(program.compliance->rate_bound, offset_.data(), true);
+    if (program_.support) support_offsets(program.rate_phase, offset_.data(), true);
     kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(), offset,
                      state.rate.data());
   }

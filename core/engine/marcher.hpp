@@ -102,7 +102,7 @@ class Marcher {
   void clear_lane(int lane);
   void combine_for(const StageProgram& program);
   bool finite_measure(const StageState& state, int lane) const;
-  void support_offsets(const Levels& levels, double* out, bool rate) const;
+  void support_offsets(const PhaseWeights& phase, double* out, bool rate) const;
 
   Program program_;
   const LaneKernels& kernels_;

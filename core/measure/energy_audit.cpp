@@ -8,7 +8,15 @@
 namespace ricochet {
 namespace {
 
-double weight_of(const std::vector<double>& slots, std::size_t j) { return j < slots.size() ? slots[j] : 0.0; }
+// out += w · lane of x; the stride is written out for one lane, where the loop then vectorises.
+void accumulate(double w, const double* x, std::size_t stride, std::size_t lane, std::vector<double>& out) {
+  if (w == 0) return;
+  const std::size_t rows = out.size();
+  if (stride == 1)
+    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
+  else
+    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i * stride + lane];
+}
 
 }  // namespace
 
@@ -33,17 +41,9 @@ EnergyAudit::EnergyAudit(const Marcher& marcher)
 void EnergyAudit::combine(const double* const* slots, const double* z, const Combination& c, int lane,
                           std::vector<double>& out) const {
   const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
-  const std::size_t rows = out.size();
-  if (c.z != 0)
-    for (std::size_t i = 0; i < rows; ++i) out[i] = c.z * z[i * T + l];
-  else
-    std::fill(out.begin(), out.end(), 0.0);
-  for (std::size_t j = 0; j < c.slots.size(); ++j) {
-    const double w = c.slots[j];
-    if (w == 0) continue;
-    const double* x = slots[j];
-    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i * T + l];
-  }
+  std::fill(out.begin(), out.end(), 0.0);
+  accumulate(c.z, z, T, l, out);
+  for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
 }
 
 double EnergyAudit::contact_row(const std::vector<double>& x, int point) const {
@@ -58,16 +58,11 @@ double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
   double energy = 0;
   for (const QuadraticTerm& term : marcher.program().plan.energy) {
     if (term.coefficient == 0) continue;
-    Combination c;
     const bool mass = term.matrix == QuadraticTerm::Matrix::M;
     std::fill(first_.begin(), first_.end(), 0.0);
-    for (int j = 0; j < marcher.slot_count(); ++j) {
-      const double w = weight_of(term.slots, static_cast<std::size_t>(j));
-      if (w == 0) continue;
-      const double* x = marcher.slot(j);
-      for (std::size_t i = 0; i < first_.size(); ++i)
-        first_[i] += w * x[i * static_cast<std::size_t>(T_) + static_cast<std::size_t>(lane)];
-    }
+    for (std::size_t j = 0; j < term.slots.size(); ++j)
+      accumulate(term.slots[j], marcher.slot(static_cast<int>(j)), static_cast<std::size_t>(T_),
+                 static_cast<std::size_t>(lane), first_);
     energy += term.coefficient * (mass ? mass_(first_.data()) : stiffness_(first_.data()));
   }
   return energy;

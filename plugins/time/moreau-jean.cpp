@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include <fmt/format.h>
+
 namespace {
 
 using namespace ricochet;
@@ -15,7 +17,15 @@ class MoreauJean final : public TimeScheme {
  public:
   MoreauJean(double theta, double restitution) : theta_(theta), e_(restitution) {}
 
-  PlanOrRefusal plan(double h, const ProblemFacts&) const override {
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    const bool massless_contact = facts.contact && facts.mass_kernel_dimension > 0;
+    if (massless_contact && e_ > 0)
+      return Refusal{fmt::format("restitution = {:g} has nothing to act on at a contact point without mass (singular mass): its "
+                                 "velocity is not a state; use restitution 0, or a regular mass",
+                                 e_)};
+    if (massless_contact && theta_ == 0.5 && !facts.damped)
+      return Refusal{"theta = 0.5 leaves the root −1 on the kernel of a singular mass: the velocity of a contact point "
+                     "changes sign at every step and the approach test never holds; use theta > 0.5, damping, or a regular mass"};
     StepPlan plan;
     plan.slots = {"q", "v"};
     plan.initial = {{1, 0}, {0, 1}};
@@ -39,7 +49,8 @@ class MoreauJean final : public TimeScheme {
     plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};
     plan.facts.order = theta_ == 0.5 ? 2 : 1;
     plan.facts.restitution = Restitution::exact;
-    plan.facts.contact_never_gains = true;
+    plan.facts.needs_regular_mass = e_ > 0 || theta_ == 0.5;
+    plan.facts.contact_never_gains = theta_ == 0.5;
     return plan;
   }
 
@@ -53,8 +64,9 @@ void register_all(Registry& registry) {
        .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
        .text = "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
                "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
-               "does not leave its stop; other points are free. With both tests contact never gives energy, for any e in "
-               "[0, 1] and any mass. Positions may pass the stop by O(h).",
+               "does not leave its stop; other points are free. With both tests contact never gives energy (θ = ½, any e in "
+               "[0, 1]). Positions may pass the stop by O(h). Contact points without mass have no velocity to restitute: "
+               "refused for e > 0, and for θ = ½ without damping.",
        .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and Brogliato (2008), ch. 10",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
                       real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient")}},

@@ -28,7 +28,8 @@ TEST_CASE("the balance of energy closes to round-off, with damping, loads, a mov
                              Choice{"newmark", {{"beta", 0.3}}}, Choice{"moreau-jean", {{"restitution", 0.7}}});
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
   // Newmark needs equilibrium at t = 0, which these data do not have on the kernel of a singular mass.
-  if (time.name == "newmark" && mass.name == "singular") return;
+  if (mass.name == "singular" && time.name == "newmark") return;
+  if (mass.name == "singular" && time.name == "moreau-jean") return;  // refused with e > 0
   CompileOptions options;
   options.kind = kind;
   const double h = 1e-4;

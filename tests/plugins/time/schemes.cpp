@@ -6,7 +6,7 @@ using namespace ricochet::testing;
 
 namespace {
 
-// Exact tip displacement of the undamped or damped semi-discrete beam that starts in a static shape with a static velocity.
+// Exact tip displacement of the semi-discrete beam, damped or not, that starts on its first mode.
 class ModalSolution {
  public:
   explicit ModalSolution(const SemiDiscrete& problem) : alpha_(problem.damping.stiffness) {
@@ -14,10 +14,13 @@ class ModalSolution {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K, M);
     pulsation_ = eigen.eigenvalues().cwiseSqrt();
     const Eigen::MatrixXd modes = eigen.eigenvectors();
-    start_ = modes.transpose() * M * problem.position;
-    speed_ = modes.transpose() * M * problem.velocity;
     tip_ = (problem.tip * modes).transpose();
+    position = 0.05 / tip_[0] * modes.col(0);
+    velocity = 0.4 * pulsation_[0] * position;
+    start_ = modes.transpose() * M * position;
+    speed_ = modes.transpose() * M * velocity;
   }
+  Eigen::VectorXd position, velocity;
   double tip(double t) const {
     double sum = 0;
     for (int i = 0; i < pulsation_.size(); ++i) {
@@ -35,15 +38,6 @@ class ModalSolution {
   Eigen::VectorXd pulsation_, start_, speed_, tip_;
 };
 
-SceneSpec first_mode_scene(double alpha) {
-  SceneSpec scene = working_set();
-  beam_of(scene).damping.stiffness = alpha;
-  // The static shape under a tip load: nearly the first mode, so that orders show at moderate steps.
-  scene.initial.displacement = Formula("0.01*x^2*(4.503-x)", "/scene/initial/displacement", "x");
-  scene.initial.velocity = Formula("0.1*x^2*(4.503-x)", "/scene/initial/velocity", "x");
-  return scene;
-}
-
 }  // namespace
 
 TEST_CASE("without contact each scheme has the order in h that it declares") {
@@ -52,13 +46,18 @@ TEST_CASE("without contact each scheme has the order in h that it declares") {
       GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.25}}}, Choice{"newmark-dumont-paoli", {{"beta", 0.5}}},
                Choice{"newmark-dumont-paoli", {{"beta", 0.5}, {"start", std::string("first-order")}}}, Choice{"newmark"},
                Choice{"newmark", {{"beta", 0.36}, {"gamma", 0.7}}}, Choice{"moreau-jean"}, Choice{"moreau-jean", {{"theta", 0.8}}});
-  const SceneSpec scene = first_mode_scene(alpha);
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = alpha;
   const Choice mass{"consistent"};
   const ModalSolution exact(*problem_of(scene, 4, mass));
   std::vector<double> log_h, log_error;
   double declared = 0;
   for (const double h : {2e-4, 1e-4, 5e-5, 2.5e-5}) {
-    Marcher beam = marcher(scene, 4, {mass, {"none"}, time}, h);
+    Marcher beam = marcher(scene, 4, {mass, {"none"}, time}, h, {}, [&](LaneSpec lane) {
+      lane.position = exact.position;
+      lane.velocity = exact.velocity;
+      return std::vector{lane};
+    });
     declared = beam.program().plan.facts.order;
     double worst = 0;
     beam.start();
@@ -107,18 +106,26 @@ TEST_CASE("Newmark (¼, ½) with Signorini conditions gains energy, more as the 
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;
   const double density = line_density(scene);
-  std::vector<double> ends;
-  for (const double h : {1e-3, 1e-4, 1e-5}) {
-    Marcher beam = marcher(scene, 10, {{"consistent"}, {"signorini"}, {"newmark"}}, h);
-    const EnergyAudit audit = audited(beam, 0.4);
-    CHECK(audit.totals(0).largest_step_gain > 0.01 * audit.totals(0).scheme_start);
-    ends.push_back(audit.energy(0).scheme / density);
+  std::vector<double> medians;
+  for (const double step : {1e-3, 1e-4, 1e-5}) {
+    // One run is a draw (a 1 % change of the step may double the gain): the median of five neighbours is not.
+    std::vector<double> ends;
+    for (const double factor : {0.98, 0.99, 1.0, 1.01, 1.02}) {
+      Marcher beam = marcher(scene, 10, {{"consistent"}, {"signorini"}, {"newmark"}}, factor * step);
+      EnergyAudit audit(beam);
+      beam.start(&audit);
+      beam.march(std::llround(0.4 / (factor * step)), &audit);
+      CHECK(audit.totals(0).largest_step_gain > 0.01 * audit.totals(0).scheme_start);
+      ends.push_back(audit.energy(0).scheme / density);
+    }
+    std::sort(ends.begin(), ends.end());
+    medians.push_back(ends[2]);
   }
-  INFO(ends[0] << " " << ends[1] << " " << ends[2]);
-  // Started from 3.61; the values themselves are not repeatable between programs, the growth is.
-  CHECK(ends[0] > 3.61);
-  CHECK(ends[1] > 3.61);
-  CHECK(ends[2] > 2 * 3.61);
+  INFO(medians[0] << " " << medians[1] << " " << medians[2]);
+  // Started from 3.61.
+  CHECK(medians[0] > 1.2 * 3.61);
+  CHECK(medians[1] > 1.2 * 3.61);
+  CHECK(medians[2] > 2 * 3.61);
 }
 
 TEST_CASE("with projected data the singular mass keeps the energy and the consistent mass does not") {
@@ -161,7 +168,7 @@ TEST_CASE("Moreau–Jean rebounds with exactly −e v⁻ where the point has mas
 }
 
 TEST_CASE("Moreau–Jean gains energy in no step, whatever e") {
-  const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular"});
+  const auto mass = GENERATE(Choice{"consistent"}, Choice{"lumped"});
   const double e = GENERATE(0.0, 0.5, 1.0);
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;
@@ -169,6 +176,20 @@ TEST_CASE("Moreau–Jean gains energy in no step, whatever e") {
   const EnergyAudit audit = audited(beam, 0.4);
   CHECK(audit.contact(0).impacts > 0);
   CHECK(audit.totals(0).largest_step_gain <= 1e-9 * audit.totals(0).scheme_start);
+}
+
+TEST_CASE("Moreau–Jean refuses what it cannot do with a contact point without mass") {
+  const auto refusal = [](const Choice& time, double alpha) {
+    SceneSpec scene = working_set();
+    beam_of(scene).damping.stiffness = alpha;
+    auto result = compiled(problem_of(scene, 6, {"singular"}), {{"singular"}, {"signorini"}, time}, 1e-4);
+    const auto* refused = std::get_if<Refusal>(&result);
+    return refused ? refused->sentence : std::string();
+  };
+  CHECK(refusal({"moreau-jean", {{"restitution", 0.5}}}, 1e-4).find("restitution = 0.5") != std::string::npos);
+  CHECK(refusal({"moreau-jean"}, 0).find("theta = 0.5") != std::string::npos);
+  CHECK(refusal({"moreau-jean"}, 1e-4).empty());
+  CHECK(refusal({"moreau-jean", {{"theta", 0.6}}}, 0).empty());
 }
 
 TEST_CASE("a beam at rest on its stop stays there") {

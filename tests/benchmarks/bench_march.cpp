@@ -1,0 +1,143 @@
+// Nanoseconds per lane-step of the reference scene: N = 50, α = 1e-4, forced, contact happening; stops at all nodes for each mass
+// and operator, and at the tip. Medians of interleaved rounds with their spread, beside the FMA peak of the core in the same run.
+//
+//     bench_march [--rounds N]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <ctime>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/engine/cost_model.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/energy_audit.hpp>
+
+#include "tests/benchmarks/fma_peak.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+SceneSpec scene(StopsSpec::Place place) {
+  BeamSpec beam;
+  beam.length = 1.501;
+  beam.young = 2e11;
+  beam.density = 8000;
+  beam.section.outer_diameter = 0.01;
+  beam.section.wall = 0.0005;
+  beam.damping.stiffness = 1e-4;
+  SceneSpec made;
+  made.structure = beam;
+  made.stops.lower = Formula(-0.1);
+  made.stops.upper = Formula(0.1);
+  made.stops.place = place;
+  made.support = {0.09, 10, 0};
+  return made;
+}
+
+Parameters defaults(const PluginManual& manual, std::map<std::string, ParameterValue> values = {}) {
+  for (const ParameterSpec& spec : manual.parameters)
+    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
+  return Parameters(values);
+}
+
+// Processor time of this thread: what others do on the machine counts only where they share the core.
+double thread_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
+struct Case {
+  std::string name;
+  StopsSpec::Place place;
+  std::string mass, velocity;
+  OperatorKind kind;
+  int lanes;
+  std::vector<double> nanoseconds;
+  std::unique_ptr<Marcher> marcher;
+  std::unique_ptr<EnergyAudit> audit;
+  long long contact_steps = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int rounds = 7;
+  if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[2]));
+  Catalogue catalogue = Catalogue::standard();
+  Registry registry;
+  catalogue.open_all(registry);
+  if (!registry.time("newmark-dumont-paoli") || !registry.contact("signorini")) {
+    fmt::print(stderr, "bench_march: plugins not found beside the program\n");
+    return 4;
+  }
+  std::vector<Case> cases;
+  const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity, OperatorKind kind,
+                       bool audited = false) {
+    for (const int lanes : {1, 8, 16, 32}) {
+      if (audited && lanes > 1) continue;
+      Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, 0};
+      const auto* mass_entry = registry.mass(mass);
+      std::map<std::string, ParameterValue> values;
+      if (!velocity.empty()) values["velocity"] = velocity;
+      auto problem = std::make_shared<const SemiDiscrete>(
+          std::get<SemiDiscrete>(discretise(scene(place), 50, *mass_entry->make(defaults(mass_entry->manual, values)))));
+      auto law = registry.contact("signorini")->make({});
+      const auto* time = registry.time("newmark-dumont-paoli");
+      const double h = 2 * 3.14159265358979324 / 10 / 6000;
+      auto plan = time->make(defaults(time->manual, {{"beta", 0.5}}))->plan(h, problem_facts(*problem, *law));
+      std::vector<LaneSpec> specs;
+      for (int k = 0; k < lanes; ++k) {
+        specs.push_back(scene_lane(*problem, {}));
+        specs.back().amplitude = 0.088 + 0.0005 * k;
+      }
+      CompileOptions options;
+      options.kind = kind;
+      auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), specs, options);
+      one.name += fmt::format(" ({})", operator_name(std::get<Program>(program).kind));
+      one.marcher = std::make_unique<Marcher>(std::move(std::get<Program>(program)));
+      if (audited) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
+      one.marcher->start(one.audit.get());
+      one.marcher->march(24000, one.audit.get());  // into the impacting regime
+      cases.push_back(std::move(one));
+    }
+  };
+  const auto nodes = StopsSpec::Place::nodes, tip = StopsSpec::Place::tip;
+  add("consistent, all nodes", nodes, "consistent", "", OperatorKind::band);
+  add("lumped, all nodes", nodes, "lumped", "", OperatorKind::band);
+  add("singular P0, all nodes", nodes, "singular", "P0", OperatorKind::band);
+  add("singular P1, all nodes", nodes, "singular", "P1", OperatorKind::band);
+  add("singular P1, tip", tip, "singular", "P1", OperatorKind::automatic);
+  add("consistent, tip", tip, "consistent", "", OperatorKind::automatic);
+  add("consistent, tip, band", tip, "consistent", "", OperatorKind::band);
+  add("consistent, all nodes, energy audit", nodes, "consistent", "", OperatorKind::band, true);
+  add("consistent, sparse", nodes, "consistent", "", OperatorKind::sparse);
+
+  double peak = 0;
+  for (int round = 0; round < rounds; ++round) {
+    peak = std::max(peak, fma_peak());
+    for (Case& one : cases) {
+      const long long steps = std::max(1500, 6000 / one.lanes * 2);
+      const double start = thread_nanoseconds();
+      one.marcher->march(steps, one.audit.get());
+      const double elapsed = thread_nanoseconds() - start;
+      one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
+    }
+  }
+  fmt::print("reference scene: N = 50, alpha = 1e-4, forced at 10 rad/s, 6000 steps per period, Signorini\n");
+  fmt::print("kernels: {}; FMA peak {:.1f} per ns; {} interleaved rounds, median [fastest, slowest]\n\n", lane_instruction_set(),
+             peak, rounds);
+  fmt::print("{:<44} {:>5} {:>12} {:>22} {:>16} {:>10}\n", "case", "lanes", "ns/lane-step", "spread", "at peak, 2000 FMA", "ratio");
+  for (Case& one : cases) {
+    std::sort(one.nanoseconds.begin(), one.nanoseconds.end());
+    const double median = one.nanoseconds[one.nanoseconds.size() / 2];
+    // Multiply-adds of one band step at n = 100: product 7, substitution 7, combination and update 7 per row, rounded.
+    const double ideal = peak > 0 ? 2000 / peak : 0;
+    fmt::print("{:<44} {:>5} {:>12.1f} {:>22} {:>16.1f} {:>10.2f}\n", one.name, one.lanes, median,
+               fmt::format("[{:.1f}, {:.1f}]", one.nanoseconds.front(), one.nanoseconds.back()), ideal,
+               ideal > 0 ? median / ideal : 0);
+    for (int lane = 0; lane < one.lanes; ++lane)
+      if (!one.marcher->status(lane).running) fmt::print("  lane {} stopped: {}\n", lane, one.marcher->status(lane).cause);
+  }
+}
