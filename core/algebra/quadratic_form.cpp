@@ -8,6 +8,20 @@ namespace ricochet {
 QuadraticForm::QuadraticForm(const SparseMatrix& matrix)
     : rows_(static_cast<int>(matrix.rows())), width_(half_bandwidth(matrix)) {
   diagonals_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(width_ + 1), 0.0);
+  QuasiDefinite definite;
+  definite.A = matrix;
+  BandLdlt ldlt;
+  if (rows_ > 0 && width_ > 0 && !ldlt.factorise(definite)) {
+    const int w = ldlt.half_width(), stride = 2 * w + 1;
+    for (int i = 0; i < rows_; ++i) {
+      pivot_.push_back(1 / ldlt.factor()[i * stride + 2 * w]);
+      for (int s = 1; s <= w && i + s < rows_; ++s)
+        diagonals_[static_cast<std::size_t>(s * rows_ + i)] = ldlt.factor()[i * stride + w + s - 1];
+    }
+    first_.resize(static_cast<std::size_t>(rows_));
+    second_.resize(static_cast<std::size_t>(rows_));
+    return;
+  }
   for (int j = 0; j < matrix.outerSize(); ++j)
     for (SparseMatrix::InnerIterator it(matrix, j); it; ++it)
       if (it.row() <= j && it.value() != 0)
@@ -55,6 +69,14 @@ void QuadraticForm::reduce(const double* x, std::vector<double>& out) const {
   }
 }
 
+void QuadraticForm::strain(const double* x, std::vector<double>& out) const {
+  std::copy_n(x, rows_, out.data());
+  for (int s = 1; s <= width_; ++s) {
+    const double* l = diagonals_.data() + static_cast<std::size_t>(s) * static_cast<std::size_t>(rows_);
+    for (int i = 0; i + s < rows_; ++i) out[static_cast<std::size_t>(i)] += l[i] * x[i + s];
+  }
+}
+
 double QuadraticForm::operator()(const double* x) const {
   return (*this)(x, x);
 }
@@ -66,6 +88,11 @@ double QuadraticForm::operator()(const double* x, const double* y) const {
     if (x != y) reduce(y, second_);
     const std::vector<double>& other = x == y ? first_ : second_;
     return kernels.triple_product(static_cast<long>(first_.size()), inverse_pivot_.data(), first_.data(), other.data());
+  }
+  if (!pivot_.empty()) {
+    strain(x, first_);
+    if (x != y) strain(y, second_);
+    return kernels.triple_product(rows_, pivot_.data(), first_.data(), x == y ? first_.data() : second_.data());
   }
   double sum = kernels.triple_product(rows_, diagonals_.data(), x, y);
   for (int s = 1; s <= width_; ++s) {

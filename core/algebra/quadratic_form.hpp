@@ -19,8 +19,10 @@ class QuadraticForm {
 
  private:
   void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x
+  void strain(const double* x, std::vector<double>& out) const;  // Lᵀ x
   int rows_ = 0, width_ = 0;
-  std::vector<double> diagonals_;  // (w+1) × n: A[i, i+s]
+  std::vector<double> diagonals_;  // (w+1) × n: A[i, i+s], or L[i+s, i]
+  std::vector<double> pivot_;      // D of A, empty when A is not definite
   // Factored form: B by rows, C_v = L D Lᵀ.
   std::vector<int> start_, index_;
   std::vector<double> value_, lower_, inverse_pivot_;
