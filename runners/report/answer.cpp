@@ -74,7 +74,7 @@ std::string gain_sentence(const CaseView& view, const Cases& cases) {
     return fmt::format(" No step gains more than {} of the starting energy (largest: {} of it).",
                        number_text(step_gain_threshold), number_text(e.high, 2));
   return fmt::format(" In {} of {} single steps gain energy, at most {} of the starting energy in one step{}.",
-                     gaining.size(), count_text(with.size(), "case", "cases"), percent_text(e.high),
+                     gaining.size(), count_text(with.size(), "case", "cases"), share_text(e.high),
                      in_case(view, *e.highest));
 }
 
@@ -176,7 +176,7 @@ std::string contact_sentence(const Cases& cases) {
     return dissipated && start && *start > 0 ? std::optional(*dissipated / *start) : std::nullopt;
   });
   if (lost.count == 0) return "";
-  return fmt::format(" Contact took {} to {} of the starting energy.", percent_text(lost.low), percent_text(lost.high));
+  return fmt::format(" Contact took {} to {} of the starting energy.", share_text(lost.low), share_text(lost.high));
 }
 
 /// One sentence per mass matrix.

@@ -124,6 +124,10 @@ std::string percent_text(double ratio) {
   return text + " %";
 }
 
+std::string share_text(double share) {
+  return number_text(100 * share, 3) + " %";
+}
+
 std::string count_text(size_t count, std::string_view singular, std::string_view plural) {
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }

@@ -38,4 +38,6 @@ TEST_CASE("a ratio near one shows how near", "[report]") {
   CHECK(percent_text(1 + 3e-9) == "100.00000030 %");
   CHECK(percent_text(4.8865) == "488.65 %");
   CHECK(percent_text(3e7) == "3e9 %");
+  CHECK(share_text(0.05) == "5 %");
+  CHECK(share_text(2.4e-9) == "2.4e-7 %");
 }
