@@ -1,9 +1,11 @@
 #pragma once
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <ricochet/contract/catalogue.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy_audit.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/scene/working_set.hpp"
@@ -21,8 +23,17 @@ struct Methods {
   Choice mass{"singular"}, contact{"signorini"}, time{"newmark-dumont-paoli"};
 };
 
+/// Our plugins, and those of RICOCHET_PLUGIN_PATH: whoever puts a plugin there has subscribed to the conformance suite.
 inline Registry& registry() {
-  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Catalogue catalogue = [] {
+    std::vector<std::filesystem::path> folders;
+    if (const char* path = std::getenv("RICOCHET_PLUGIN_PATH")) {
+      std::istringstream parts{std::string(path)};
+      for (std::string part; std::getline(parts, part, ':');)
+        if (!part.empty()) folders.emplace_back(part);
+    }
+    return Catalogue(RICOCHET_PLUGIN_DIR, folders, {});
+  }();
   static Registry all = [] {
     Registry opened;
     catalogue.open_all(opened);
@@ -44,8 +55,7 @@ std::unique_ptr<Interface> make(const Entry<Interface>* entry, const Choice& cho
 }
 
 inline std::shared_ptr<const SemiDiscrete> problem_of(const SceneSpec& scene, int elements, const Choice& mass) {
-  return std::make_shared<const SemiDiscrete>(
-      discretised(scene, elements, *make(registry().mass(mass.name), mass)));
+  return std::make_shared<const SemiDiscrete>(discretised(scene, elements, *make(registry().mass(mass.name), mass)));
 }
 
 inline PlanOrRefusal plan_of(const Choice& time, double h, const ProblemFacts& facts) {

@@ -1,9 +1,21 @@
 #pragma once
 #include <cstddef>
-#include <cstdint>
+#include <new>
 #include <vector>
 
 namespace ricochet {
+
+/// Storage that starts on 64 bytes, wherever it is copied or moved to.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
+  void deallocate(T* memory, std::size_t) { ::operator delete(memory, std::align_val_t(64)); }
+  friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+};
 
 /// rows × lanes doubles, lanes contiguous, starting on 64 bytes, with at least `border` zero rows before and after.
 /// Allocates once, when constructed.
@@ -19,8 +31,8 @@ class Block {
   int rows() const { return rows_; }
   int lanes() const { return lanes_; }
   std::size_t size() const { return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(lanes_); }
-  double* data() { return storage_.data() + shift() + lead_; }
-  const double* data() const { return storage_.data() + shift() + lead_; }
+  double* data() { return storage_.data() + lead_; }
+  const double* data() const { return storage_.data() + lead_; }
   double* row(int i) { return data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(lanes_); }
   const double* row(int i) const { return data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(lanes_); }
   double& at(int i, int lane) { return row(i)[lane]; }
@@ -31,14 +43,9 @@ class Block {
 
  private:
   static std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
-  // The storage moves with the block, so the first aligned element is found anew.
-  std::size_t shift() const {
-    const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
-    return (64 - address % 64) % 64 / sizeof(double);
-  }
   int rows_ = 0, lanes_ = 0;
   std::size_t lead_ = 0;
-  std::vector<double> storage_;
+  std::vector<double, CacheLineAllocator<double>> storage_;
 };
 
 }  // namespace ricochet

@@ -51,8 +51,8 @@ RICOCHET_INLINE Vector4 loadu4(const double* from) {
   return *reinterpret_cast<const Unaligned4*>(from);
 }
 
-// In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused: this keeps
-// each step of the sum where it is written.
+// In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused: this
+// keeps each step of the sum where it is written.
 template <int T, int W>
 RICOCHET_INLINE void keep_order([[maybe_unused]] V<T>* sum) {
   if constexpr (T == 1 && W < 0) asm("" : "+x"(sum[0]));
@@ -88,7 +88,8 @@ RICOCHET_INLINE void combine_body(long size, const double* const* x, const doubl
 
 // d ← d + z, q ← q + d: what two-slot increment schemes do, without the multiplications by one and zero.
 template <bool Next>
-RICOCHET_INLINE void update_increments(long size, double* const* x, const double* z, const double* next, double* combined) {
+RICOCHET_INLINE void update_increments(long size, double* const* x, const double* z, const double* next,
+                                       double* combined) {
   double *q = x[0], *d = x[1];
   const double of_q = Next ? next[0] : 0, of_d = Next ? next[1] : 0;
   for (long i = 0; i < size; i += 4) {
@@ -259,7 +260,8 @@ RICOCHET_INLINE void solve_body(const BandStep& step) {
 template <int T>
 RICOCHET_INLINE void band_step_body(const BandStep& step) {
   if constexpr (T >= 2)
-    if (step.factor && step.K && !step.M && !step.load && !step.from && step.product_width == 3 && step.solve_width == 3) {
+    if (step.factor && step.K && !step.M && !step.load && !step.from && step.product_width == 3 &&
+        step.solve_width == 3) {
       fused_forward<T, 3, 3>(step);
       return backward<T, 3>(step.rows, 3, step.factor, step.z);
     }

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <stdexcept>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/algebra/quadratic_form.hpp>
+#include <stdexcept>
 
 namespace ricochet {
 QuadraticForm::QuadraticForm(const SparseMatrix& matrix)

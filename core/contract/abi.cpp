@@ -1,5 +1,4 @@
 #include <ricochet/contract/abi.hpp>
-
 #include <vector>
 
 #define RICOCHET_TEXT_(x) #x
@@ -27,7 +26,9 @@ std::vector<std::pair<std::string, std::string>> fields(std::string_view tag) {
 
 }  // namespace
 
-std::string abi_tag() { return RICOCHET_TEXT(RICOCHET_ABI_SYMBOL); }
+std::string abi_tag() {
+  return RICOCHET_TEXT(RICOCHET_ABI_SYMBOL);
+}
 
 std::optional<std::string> abi_mismatch(std::string_view plugin_tag) {
   const auto expected = fields(abi_tag()), found = fields(plugin_tag);

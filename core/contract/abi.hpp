@@ -5,8 +5,9 @@
 #include <string_view>
 
 /// \file
-/// The ABI tag of a plugin: the *name* of a symbol, so that a host reads it from the file's symbol table before any code
-/// of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++ string ABI.
+/// The ABI tag of a plugin: the *name* of a symbol, so that a host reads it from the file's symbol table before any
+/// code of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++
+/// string ABI.
 #ifndef RICOCHET_ABI_CONTRACT
 #define RICOCHET_ABI_CONTRACT 1
 #endif
@@ -17,8 +18,8 @@
   ricochet_abi__contract_##contract##__eigen_##world##_##major##__align_##align##_##static_align##__cxx11_##cxx11
 #define RICOCHET_ABI_JOIN(contract, world, major, align, static_align, cxx11) \
   RICOCHET_ABI_JOIN_(contract, world, major, align, static_align, cxx11)
-#define RICOCHET_ABI_SYMBOL                                                                                      \
-  RICOCHET_ABI_JOIN(RICOCHET_ABI_CONTRACT, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MAX_ALIGN_BYTES,      \
+#define RICOCHET_ABI_SYMBOL                                                                                 \
+  RICOCHET_ABI_JOIN(RICOCHET_ABI_CONTRACT, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MAX_ALIGN_BYTES, \
                     EIGEN_MAX_STATIC_ALIGN_BYTES, _GLIBCXX_USE_CXX11_ABI)
 
 namespace ricochet {

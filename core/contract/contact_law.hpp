@@ -1,9 +1,8 @@
 #pragma once
 #include <optional>
-#include <span>
-
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/step_plan.hpp>
+#include <span>
 
 namespace ricochet {
 
@@ -18,8 +17,8 @@ class DelassusColumns {
 /// How a law's work on one lane ended.
 struct LaneOutcome {
   bool converged = true;
-  int iterations = 0;       ///< pivoting or augmentation iterations of this solve
-  double residual = 0;      ///< complementarity residual, in units of the measure
+  int iterations = 0;   ///< pivoting or augmentation iterations of this solve
+  double residual = 0;  ///< complementarity residual, in units of the measure
 };
 
 /// What a law sees of one stage: a block of lanes, affine in p with the same W. Blocks are m × lanes, lanes contiguous.
@@ -35,9 +34,9 @@ struct ReducedProblem {
   const double* upper = nullptr;
   double rate_reach = 0;
   const double* rate_free = nullptr;
-  double* effort = nullptr;            ///< in: last step's p; out: p. Lanes not in `touched` are zero on entry and left alone
-  std::span<const int> touched;        ///< lanes where a free measure passes a bound, or that were in contact
-  LaneOutcome* outcome = nullptr;      ///< per lane
+  double* effort = nullptr;      ///< in: last step's p; out: p. Lanes not in `touched` are zero on entry and left alone
+  std::span<const int> touched;  ///< lanes where a free measure passes a bound, or that were in contact
+  LaneOutcome* outcome = nullptr;  ///< per lane
 };
 
 /// A contact law: it never knows the scheme, nor the scheme the law.

@@ -1,6 +1,5 @@
-#include <ricochet/contract/errors.hpp>
-
 #include <algorithm>
+#include <ricochet/contract/errors.hpp>
 
 namespace ricochet {
 namespace {

@@ -21,10 +21,10 @@ struct FiniteElementSpace {
     int dof = 0;
     double mass = 0;  ///< kg
   };
-  std::string structure;             ///< "beam", "bar", "oscillator": for sentences only
+  std::string structure;  ///< "beam", "bar", "oscillator": for sentences only
   Basis basis = Basis::hermite;
-  int dofs = 0;                      ///< n
-  std::vector<Element> elements;     ///< ordered in x
+  int dofs = 0;                   ///< n
+  std::vector<Element> elements;  ///< ordered in x
   std::vector<PointMass> point_masses;
   bool left_fixed = false, right_fixed = false;  ///< displacement imposed at the ends: velocities vanish there too
 

@@ -1,8 +1,7 @@
-#include <ricochet/contract/parameters.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/parameters.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -75,9 +74,15 @@ double Parameters::real(const std::string& key) const {
     if (const auto* whole = std::get_if<long long>(&found->second)) return static_cast<double>(*whole);
   return get<double>(values_, key);
 }
-long long Parameters::integer(const std::string& key) const { return get<long long>(values_, key); }
-bool Parameters::flag(const std::string& key) const { return get<bool>(values_, key); }
-const std::string& Parameters::word(const std::string& key) const { return get<std::string>(values_, key); }
+long long Parameters::integer(const std::string& key) const {
+  return get<long long>(values_, key);
+}
+bool Parameters::flag(const std::string& key) const {
+  return get<bool>(values_, key);
+}
+const std::string& Parameters::word(const std::string& key) const {
+  return get<std::string>(values_, key);
+}
 
 std::optional<std::string> check_parameter(const ParameterSpec& spec, const ParameterValue& value) {
   const auto out_of_range = [&](double x) -> std::optional<std::string> {
@@ -95,7 +100,8 @@ std::optional<std::string> check_parameter(const ParameterSpec& spec, const Para
     case ParameterSpec::Type::boolean:
       if (std::holds_alternative<bool>(value)) return std::nullopt;
       return std::string("expected true or false");
-    case ParameterSpec::Type::word: break;
+    case ParameterSpec::Type::word:
+      break;
   }
   const auto* word = std::get_if<std::string>(&value);
   if (word)

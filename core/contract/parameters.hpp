@@ -27,12 +27,12 @@ struct ParameterSpec {
   enum class Type { real, integer, boolean, word };
   std::string key;
   Type type = Type::real;
-  std::string unit;                          ///< SI, "1" when dimensionless
-  std::optional<ParameterValue> fallback;    ///< default; absent means the study must give it
-  Range range;                               ///< for real and integer
-  std::vector<std::string> words;            ///< for word
-  std::string text;                          ///< one sentence of manual, with the symbol of the equation
-  bool per_lane = false;                     ///< may differ between lanes that share one factorisation
+  std::string unit;                        ///< SI, "1" when dimensionless
+  std::optional<ParameterValue> fallback;  ///< default; absent means the study must give it
+  Range range;                             ///< for real and integer
+  std::vector<std::string> words;          ///< for word
+  std::string text;                        ///< one sentence of manual, with the symbol of the equation
+  bool per_lane = false;                   ///< may differ between lanes that share one factorisation
 };
 
 ParameterSpec real_parameter(std::string key, std::string unit, std::optional<double> fallback, Range range,

@@ -1,8 +1,6 @@
-#include <ricochet/contract/registry.hpp>
-
-#include <ricochet/contract/errors.hpp>
-
 #include <algorithm>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/registry.hpp>
 
 namespace ricochet {
 namespace {
@@ -17,9 +15,12 @@ auto* find(Map& map, const std::string& name) {
 
 const char* role_name(Role role) {
   switch (role) {
-    case Role::mass: return "mass";
-    case Role::contact: return "contact";
-    case Role::time: break;
+    case Role::mass:
+      return "mass";
+    case Role::contact:
+      return "contact";
+    case Role::time:
+      break;
   }
   return "time";
 }
@@ -34,7 +35,8 @@ void Registry::check(Role role, const PluginManual& manual) const {
   for (const ParameterSpec& spec : manual.parameters)
     if (spec.fallback)
       if (const auto wrong = check_parameter(spec, *spec.fallback))
-        throw PluginError("the default of parameter '" + spec.key + "' of '" + manual.name + "' does not fit: " + *wrong);
+        throw PluginError("the default of parameter '" + spec.key + "' of '" + manual.name +
+                          "' does not fit: " + *wrong);
 }
 
 void Registry::add_mass(PluginManual manual, std::function<std::unique_ptr<MassStrategy>(const Parameters&)> make) {
@@ -53,9 +55,15 @@ void Registry::add_time(PluginManual manual, std::function<std::unique_ptr<TimeS
   time_.emplace(name, Entry<TimeScheme>{std::move(manual), std::move(make), current_file_});
 }
 
-const Entry<MassStrategy>* Registry::mass(const std::string& name) const { return find(mass_, name); }
-const Entry<ContactLaw>* Registry::contact(const std::string& name) const { return find(contact_, name); }
-const Entry<TimeScheme>* Registry::time(const std::string& name) const { return find(time_, name); }
+const Entry<MassStrategy>* Registry::mass(const std::string& name) const {
+  return find(mass_, name);
+}
+const Entry<ContactLaw>* Registry::contact(const std::string& name) const {
+  return find(contact_, name);
+}
+const Entry<TimeScheme>* Registry::time(const std::string& name) const {
+  return find(time_, name);
+}
 
 const PluginManual* Registry::manual(Role role, const std::string& name) const {
   switch (role) {
@@ -75,9 +83,12 @@ const PluginManual* Registry::manual(Role role, const std::string& name) const {
 std::string Registry::file(Role role, const std::string& name) const {
   const auto of = [](const auto* entry) { return entry ? entry->file : std::string(); };
   switch (role) {
-    case Role::mass: return of(mass(name));
-    case Role::contact: return of(contact(name));
-    case Role::time: break;
+    case Role::mass:
+      return of(mass(name));
+    case Role::contact:
+      return of(contact(name));
+    case Role::time:
+      break;
   }
   return of(time(name));
 }
@@ -88,9 +99,15 @@ std::vector<std::string> Registry::names(Role role) const {
     for (const auto& [name, entry] : map) result.push_back(name);
   };
   switch (role) {
-    case Role::mass: collect(mass_); break;
-    case Role::contact: collect(contact_); break;
-    case Role::time: collect(time_); break;
+    case Role::mass:
+      collect(mass_);
+      break;
+    case Role::contact:
+      collect(contact_);
+      break;
+    case Role::time:
+      collect(time_);
+      break;
   }
   return result;
 }

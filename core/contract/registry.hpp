@@ -2,13 +2,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <string>
-#include <vector>
-
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/time_scheme.hpp>
+#include <string>
+#include <vector>
 
 namespace ricochet {
 
@@ -17,10 +16,10 @@ const char* role_name(Role role);
 
 /// The manual of a plugin, registered together with its factory so that it cannot drift.
 struct PluginManual {
-  std::string name;                        ///< [a-z0-9-]+
-  std::string summary;                     ///< one line
-  std::string text;                        ///< one paragraph
-  std::string source;                      ///< author, year, equation
+  std::string name;     ///< [a-z0-9-]+
+  std::string summary;  ///< one line
+  std::string text;     ///< one paragraph
+  std::string source;   ///< author, year, equation
   std::vector<ParameterSpec> parameters;
 };
 
@@ -29,7 +28,7 @@ template <class Interface>
 struct Entry {
   PluginManual manual;
   std::function<std::unique_ptr<Interface>(const Parameters&)> make;
-  std::string file;                        ///< library it came from
+  std::string file;  ///< library it came from
 };
 
 /// All methods known to this process, by role and name. Core registers none itself.

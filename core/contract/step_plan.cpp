@@ -1,8 +1,7 @@
-#include <ricochet/contract/step_plan.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/step_plan.hpp>
 
 namespace ricochet {
 namespace {
@@ -88,8 +87,10 @@ void append_term(std::string& text, double weight, const std::string& symbol) {
   if (weight == 0) return;
   const bool first = text.empty();
   const double size = std::abs(weight);
-  if (weight < 0) text += first ? "−" : " − ";
-  else if (!first) text += " + ";
+  if (weight < 0)
+    text += first ? "−" : " − ";
+  else if (!first)
+    text += " + ";
   if (size != 1) text += fmt::format("{:.6g} ", size);
   text += symbol;
 }
@@ -151,8 +152,8 @@ std::string stage_text(const Stage& stage, const StepPlan& plan) {
   static const char* evaluations[] = {"implicit", "averaged", "explicit"};
   for (int k = 0; k < 3; ++k)
     if (const auto& c = stage.compliance[static_cast<std::size_t>(k)])
-      text += fmt::format("    g ({}) = H({}), effort {}\n", evaluations[k], combination_text(c->displacement, plan.slots),
-                          effort_text(c->effort));
+      text += fmt::format("    g ({}) = H({}), effort {}\n", evaluations[k],
+                          combination_text(c->displacement, plan.slots), effort_text(c->effort));
   for (std::size_t j = 0; j < stage.update.size(); ++j)
     text += "    " + plan.slots[j] + " ← " + combination_text(stage.update[j], plan.slots) + "\n";
   return text;
@@ -179,7 +180,8 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   check.combination(plan.velocity, "velocity");
   check.demand(plan.velocity.z == 0, "velocity combines slots after the step, not z");
   check.demand(std::isfinite(plan.facts.order) && plan.facts.order > 0, "facts: the order is positive");
-  check.demand(!plan.facts.stability_limit || *plan.facts.stability_limit > 0, "facts: the stability limit is positive");
+  check.demand(!plan.facts.stability_limit || *plan.facts.stability_limit > 0,
+               "facts: the stability limit is positive");
   return check.wrong;
 }
 
@@ -195,8 +197,9 @@ std::string print_plan(const StepPlan& plan) {
   for (const QuadraticTerm& term : plan.energy) {
     Combination c;
     c.slots = term.slots;
-    append_term(energy, term.coefficient,
-                fmt::format("|{}|²_{}", combination_text(c, plan.slots), term.matrix == QuadraticTerm::Matrix::M ? "M" : "K"));
+    append_term(
+        energy, term.coefficient,
+        fmt::format("|{}|²_{}", combination_text(c, plan.slots), term.matrix == QuadraticTerm::Matrix::M ? "M" : "K"));
   }
   if (!energy.empty()) text += "scheme energy: " + energy + "\n";
   return text;

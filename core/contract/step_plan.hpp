@@ -1,11 +1,10 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <ricochet/contract/errors.hpp>
 #include <string>
 #include <variant>
 #include <vector>
-
-#include <ricochet/contract/errors.hpp>
 
 /// \file
 /// A time scheme as data. The semi-discrete problem is
@@ -46,10 +45,10 @@ struct OperatorWeights {
 
 /// Velocity-level closure: which sides take part in the box problem, and how fast they rebound.
 /// Gap test: the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h). Approach test: with
-/// w⁻ = H·approach − (bound rate at the approach levels), w⁻ does not leave that side (up to 1e-10 of the largest speed the lane has
-/// shown at its stops, so that a point at rest on a stop stays in contact whatever its round-off). A side that passes both has the
-/// bound −e·w⁻ on y, relative to the bound's rate at the measure's levels; any other has none. Then every effort meets
-/// w⁻ + w⁺ = (1−e)w⁻ against it: contact never gives energy, for 0 ≤ e ≤ 1.
+/// w⁻ = H·approach − (bound rate at the approach levels), w⁻ does not leave that side (up to 1e-10 of the largest speed
+/// the lane has shown at its stops, so that a point at rest on a stop stays in contact whatever its round-off). A side
+/// that passes both has the bound −e·w⁻ on y, relative to the bound's rate at the measure's levels; any other has none.
+/// Then every effort meets w⁻ + w⁺ = (1−e)w⁻ against it: contact never gives energy, for 0 ≤ e ≤ 1.
 struct VelocityGate {
   Combination predictor;
   Levels predictor_bound;
@@ -68,34 +67,35 @@ struct ImpactMeasure {
 
 /// Where the scheme evaluates a compliant law, and how the resulting effort enters its equation.
 struct ComplianceMeasure {
-  Combination displacement;              ///< g, metres
-  Levels bound;                          ///< the stop's position in the same combination
-  Combination rate;                      ///< u, m/s, for laws with damping
+  Combination displacement;  ///< g, metres
+  Levels bound;              ///< the stop's position in the same combination
+  Combination rate;          ///< u, m/s, for laws with damping
   Levels rate_bound;
-  std::vector<double> effort = {1.0};    ///< π₀, π₁, π₂
+  std::vector<double> effort = {1.0};  ///< π₀, π₁, π₂
 };
 
 /// The three ways to evaluate a compliant law within a step.
 enum class Evaluation { implicit_end, averaged, explicit_start };
 
-/// A test displacement s and the levels that go with it: when the stage's equation is multiplied by s, the change of the
-/// scheme's own energy equals s·F̄ − s·C r + s·Hᵀp̄ exactly (no remainder but round-off) where the scheme has an invariant.
+/// A test displacement s and the levels that go with it: when the stage's equation is multiplied by s, the change of
+/// the scheme's own energy equals s·F̄ − s·C r + s·Hᵀp̄ exactly (no remainder but round-off) where the scheme has an
+/// invariant.
 struct WorkForm {
-  Combination displacement;              ///< s
-  Combination rate;                      ///< r, the velocity that damping sees
-  Levels load;                           ///< F̄
-  std::vector<double> effort = {1.0};    ///< p̄ = Σ effort_k p_{−k}
-  Levels support;                        ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
+  Combination displacement;            ///< s
+  Combination rate;                    ///< r, the velocity that damping sees
+  Levels load;                         ///< F̄
+  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k p_{−k}
+  Levels support;  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
 };
 
 struct Stage {
-  OperatorWeights matrix;                           ///< S; all zero: no solve, z = 0
-  std::vector<OperatorWeights> history;             ///< (β^M_j, β^C_j, β^K_j) per slot
-  Levels load;                                      ///< (c_k, φ_k)
-  std::optional<ImpactMeasure> impact;              ///< absent: this stage lets rigid laws be
+  OperatorWeights matrix;                                      ///< S; all zero: no solve, z = 0
+  std::vector<OperatorWeights> history;                        ///< (β^M_j, β^C_j, β^K_j) per slot
+  Levels load;                                                 ///< (c_k, φ_k)
+  std::optional<ImpactMeasure> impact;                         ///< absent: this stage lets rigid laws be
   std::array<std::optional<ComplianceMeasure>, 3> compliance;  ///< indexed by Evaluation
-  std::vector<Combination> update;                  ///< one per slot
-  Combination increment;                            ///< position after − position before, without cancellation
+  std::vector<Combination> update;                             ///< one per slot
+  Combination increment;  ///< position after − position before, without cancellation
   std::optional<WorkForm> work;
   const std::optional<ComplianceMeasure>& at(Evaluation e) const { return compliance[static_cast<int>(e)]; }
   std::optional<ComplianceMeasure>& at(Evaluation e) { return compliance[static_cast<int>(e)]; }
@@ -113,7 +113,7 @@ enum class Restitution { exact, asymptotic, ignored };
 
 /// What a scheme declares of itself; the conformance suite measures each and fails the plugin that is wrong.
 struct SchemeFacts {
-  double order = 1;                              ///< in h, without contact, with the start rule chosen
+  double order = 1;  ///< in h, without contact, with the start rule chosen
   Restitution restitution = Restitution::ignored;
   bool needs_regular_mass = false;
   /// Largest stable h·ω on the undamped oscillator, none when unconditionally stable.
@@ -123,14 +123,14 @@ struct SchemeFacts {
 };
 
 struct StepPlan {
-  std::vector<std::string> slots;                ///< names; slots[0] is "q"
+  std::vector<std::string> slots;  ///< names; slots[0] is "q"
   /// Slots before the start rule: x_j = a_j q₀ + b_j v₀ (per slot: {a, b}).
   std::vector<std::array<double, 2>> initial;
-  std::vector<Stage> start;                      ///< applied once; empty: nothing to do
-  bool start_advances = false;                   ///< whether the start rule moves time by h
-  std::vector<Stage> stages;                     ///< one to three
-  std::vector<QuadraticTerm> energy;             ///< scheme_energy; empty when none is declared
-  Combination velocity;                          ///< tip velocity shown to people, over the slots after the step
+  std::vector<Stage> start;           ///< applied once; empty: nothing to do
+  bool start_advances = false;        ///< whether the start rule moves time by h
+  std::vector<Stage> stages;          ///< one to three
+  std::vector<QuadraticTerm> energy;  ///< scheme_energy; empty when none is declared
+  Combination velocity;               ///< tip velocity shown to people, over the slots after the step
   SchemeFacts facts;
 };
 

@@ -6,9 +6,9 @@ namespace ricochet {
 /// What a scheme may know of the problem when it writes its plan.
 struct ProblemFacts {
   int dofs = 0;
-  int mass_kernel_dimension = 0;   ///< dim Ker M; 0 when the mass is regular
-  bool damped = false;             ///< C ≠ 0
-  bool contact = false;            ///< a law other than `none` and at least one stop
+  int mass_kernel_dimension = 0;  ///< dim Ker M; 0 when the mass is regular
+  bool damped = false;            ///< C ≠ 0
+  bool contact = false;           ///< a law other than `none` and at least one stop
 };
 
 /// A time scheme: numbers, never a loop.

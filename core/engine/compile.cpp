@@ -1,8 +1,6 @@
-#include <ricochet/engine/compile.hpp>
-
-#include <ricochet/engine/cost_model.hpp>
-
 #include <cmath>
+#include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/cost_model.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -10,9 +8,12 @@ namespace {
 
 const char* evaluation_word(Evaluation evaluation) {
   switch (evaluation) {
-    case Evaluation::implicit_end: return "implicit";
-    case Evaluation::averaged: return "averaged";
-    case Evaluation::explicit_start: break;
+    case Evaluation::implicit_end:
+      return "implicit";
+    case Evaluation::averaged:
+      return "averaged";
+    case Evaluation::explicit_start:
+      break;
   }
   return "explicit";
 }
@@ -23,7 +24,8 @@ Combination padded(Combination c, std::size_t slots) {
 }
 
 // What the law reads in this stage, if anything.
-std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, const ContactLaw& law, std::size_t slots) {
+std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, const ContactLaw& law,
+                                    std::size_t slots) {
   if (const auto evaluation = law.reads()) {
     const auto& compliance = stage.at(*evaluation);
     if (!compliance) return std::nullopt;
@@ -72,7 +74,8 @@ void say_what_is_left_out(Program& program) {
   const auto say = [&](std::string item, std::string reason) {
     program.left_out.push_back({std::move(item), std::move(reason)});
   };
-  say("damping matrix C", problem.damped() ? "C = αK + ηM is folded into the weights of K and M" : "the structure is undamped");
+  say("damping matrix C",
+      problem.damped() ? "C = αK + ηM is folded into the weights of K and M" : "the structure is undamped");
   if (!program.support) say("inertia load of the support", "the support does not move");
   if (!program.load)
     say("distributed load", "it is zero");
@@ -90,7 +93,8 @@ void say_what_is_left_out(Program& program) {
     if (absent(true)) say("lower stop", "absent");
     if (absent(false)) say("upper stop", "absent");
     if (problem.points() == 1) say("active-set search", "one contact point: closed form");
-    if (!program.eager_delassus) say("Delassus columns of points never touched", "computed when a point is first touched");
+    if (!program.eager_delassus)
+      say("Delassus columns of points never touched", "computed when a point is first touched");
   }
   bool mass_products = false;
   for (const StageProgram& stage : program.stages) mass_products = mass_products || stage.folded.uses_mass();

@@ -1,22 +1,21 @@
 #pragma once
 #include <memory>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/time_scheme.hpp>
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/engine/stage_operator.hpp>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace ricochet {
 
 /// One trajectory of a block: what may differ between lanes that share a factorisation.
 struct LaneSpec {
-  double amplitude = 0, phase = 0;       ///< of the support motion, m and rad
-  Eigen::VectorXd position, velocity;    ///< q₀, v₀ of w, nodal
-  Eigen::VectorXd lower, upper;          ///< g1, g2 at the contact points, absolute
-  Parameters law;                        ///< checked parameters of the contact law
+  double amplitude = 0, phase = 0;     ///< of the support motion, m and rad
+  Eigen::VectorXd position, velocity;  ///< q₀, v₀ of w, nodal
+  Eigen::VectorXd lower, upper;        ///< g1, g2 at the contact points, absolute
+  Parameters law;                      ///< checked parameters of the contact law
 };
 
 /// The lane that the scene itself describes.
@@ -29,14 +28,15 @@ struct LeftOut {
 
 struct CompileOptions {
   OperatorKind kind = OperatorKind::automatic;
-  long long expected_steps = 100000;   ///< over which set-up is paid back
-  bool eager_delassus = false;         ///< all columns at once (tests)
+  long long expected_steps = 100000;  ///< over which set-up is paid back
+  bool eager_delassus = false;        ///< all columns at once (tests)
 };
 
 /// What the facts of a scheme need to know about a problem.
 ProblemFacts problem_facts(const SemiDiscrete& problem, const ContactLaw& law);
 
-/// Σ_k w_k sin(ω(t + c_k h)) = along·sin ωt + across·cos ωt: what a weighted set of time levels does to a harmonic motion.
+/// Σ_k w_k sin(ω(t + c_k h)) = along·sin ωt + across·cos ωt: what a weighted set of time levels does to a harmonic
+/// motion.
 struct PhaseWeights {
   double along = 0, across = 0;
   PhaseWeights() = default;
@@ -46,14 +46,14 @@ struct PhaseWeights {
 /// What will run: one stage of the plan with everything that is constant worked out.
 struct StageProgram {
   FoldedStage folded;
-  std::unique_ptr<StageOperator> op;               ///< null: the stage solves nothing
-  Combination measure;                             ///< what the law reads
+  std::unique_ptr<StageOperator> op;  ///< null: the stage solves nothing
+  Combination measure;                ///< what the law reads
   Levels measure_levels;
   bool reads_contact = false;
-  double measure_z = 0;                            ///< η
-  std::vector<double> effort = {1.0};              ///< π
+  double measure_z = 0;                ///< η
+  std::vector<double> effort = {1.0};  ///< π
   std::optional<VelocityGate> gate;
-  std::optional<ComplianceMeasure> compliance;     ///< the one the law reads, with its rate
+  std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
   PhaseWeights load_phase, measure_phase, rate_phase, predictor_phase, approach_phase;
 };
 
@@ -65,11 +65,11 @@ struct Program {
   double h = 0;
   std::unique_ptr<ContactLaw> law;
   std::vector<LaneSpec> lanes;
-  int width = 1;                                   ///< T
+  int width = 1;  ///< T
   OperatorKind kind = OperatorKind::band;
   std::vector<StageProgram> start, stages;
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;
-  double predicted_step_seconds = 0;               ///< per step of the whole block
+  double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;
 };
@@ -79,6 +79,7 @@ using ProgramOrRefusal = std::variant<Program, Refusal>;
 /// Decides, once and from facts, what runs and what is left out. Refuses combinations that do not apply: a law that
 /// reads a measure that the scheme does not offer, a singular S.
 ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan plan, double h,
-                         std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes, const CompileOptions& options = {});
+                         std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes,
+                         const CompileOptions& options = {});
 
 }  // namespace ricochet

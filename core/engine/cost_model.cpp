@@ -1,14 +1,12 @@
-#include <ricochet/engine/cost_model.hpp>
-
-#include <ricochet/algebra/band_ldlt.hpp>
-
 #include <algorithm>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/engine/cost_model.hpp>
 
 namespace ricochet {
 namespace {
 
-// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2, AMD EPYC,
-// 2.4 GHz). Substitution at one lane is bound by latency, not by throughput.
+// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2, AMD
+// EPYC, 2.4 GHz). Substitution at one lane is bound by latency, not by throughput.
 struct Rates {
   double product, substitution, elementwise;
 };
@@ -25,7 +23,8 @@ Rates rates(int width) {
 
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   // The modal form divides by φᵀKφ; the dense eigenproblem is cubic.
-  if (kind == OperatorKind::modal) return problem.dofs() <= 1000 && (problem.space.left_fixed || problem.space.right_fixed);
+  if (kind == OperatorKind::modal)
+    return problem.dofs() <= 1000 && (problem.space.left_fixed || problem.space.right_fixed);
   return true;
 }
 

@@ -3,10 +3,10 @@
 
 namespace ricochet {
 
-/// Predicted cost of marching, from operation counts and the per-operation times that the benchmark `bench_march --calibrate`
-/// measures. Only its order matters: it chooses an operator and orders cases, it is never a result.
+/// Predicted cost of marching, from operation counts and the per-operation times that the benchmark `bench_march
+/// --calibrate` measures. Only its order matters: it chooses an operator and orders cases, it is never a result.
 struct Cost {
-  double step_seconds = 0;    ///< one step of the whole block, contact closed excluded
+  double step_seconds = 0;  ///< one step of the whole block, contact closed excluded
   double setup_seconds = 0;
 };
 

@@ -1,6 +1,5 @@
-#include <ricochet/engine/march_model.hpp>
-
 #include <Eigen/Eigenvalues>
+#include <ricochet/engine/march_model.hpp>
 
 namespace ricochet {
 namespace {

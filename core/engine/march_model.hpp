@@ -1,10 +1,9 @@
 #pragma once
 #include <Eigen/Dense>
 #include <memory>
-#include <vector>
-
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <vector>
 
 namespace ricochet {
 
@@ -19,7 +18,8 @@ struct RowMatrix {
 
 /// The coordinates in which a program marches: nodal (q itself), or modal (q = Φ η with ΦᵀKΦ and ΦᵀMΦ diagonal).
 ///
-/// Modes solve M φ = μ K φ (K SPD) with φᵀKφ = 1, so that the kernel of a singular mass is μ = 0 and slow modes are accurate.
+/// Modes solve M φ = μ K φ (K SPD) with φᵀKφ = 1, so that the kernel of a singular mass is μ = 0 and slow modes are
+/// accurate.
 class MarchModel {
  public:
   MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal);
@@ -34,14 +34,14 @@ class MarchModel {
   const RowMatrix& tip() const { return tip_; }
   const Eigen::VectorXd& support_shape() const { return shape_; }
 
-  Eigen::VectorXd to_model(const Eigen::VectorXd& nodal) const;    ///< coordinates of a displacement
+  Eigen::VectorXd to_model(const Eigen::VectorXd& nodal) const;  ///< coordinates of a displacement
   Eigen::VectorXd to_nodal(const Eigen::VectorXd& model) const;
   /// Coordinates of a load; no allocation. `in` and `out` may not overlap.
   void load_to_model(const double* in, double* out) const;
 
  private:
   std::shared_ptr<const SemiDiscrete> problem_;
-  Eigen::MatrixXd modes_;       // Φ
+  Eigen::MatrixXd modes_;  // Φ
   int rows_ = 0;
   SparseMatrix stiffness_;
   Inertia inertia_;

@@ -1,8 +1,3 @@
-#include <ricochet/engine/marcher.hpp>
-
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/quadratic_form.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/engine/marcher.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -43,7 +41,8 @@ double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load)
   return energy;
 }
 
-// The largest energy that the scene's data mention: initial state, static response to the loads, rest on a stop, clamp speed.
+// The largest energy that the scene's data mention: initial state, static response to the loads, rest on a stop, clamp
+// speed.
 double energy_scale(const Program& program) {
   const SemiDiscrete& problem = *program.problem;
   const QuadraticForm mass = QuadraticForm::of(problem.inertia), stiffness(problem.stiffness);
@@ -107,7 +106,8 @@ class Marcher::StageDelassus final : public DelassusColumns {
     double* out = columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
     for (std::size_t i = 0; i < static_cast<std::size_t>(points_); ++i) {
       double sum = 0;
-      for (auto e = static_cast<std::size_t>(contact_.start[i]); e < static_cast<std::size_t>(contact_.start[i + 1]); ++e)
+      for (auto e = static_cast<std::size_t>(contact_.start[i]); e < static_cast<std::size_t>(contact_.start[i + 1]);
+           ++e)
         sum += contact_.value[e] * response[contact_.index[e]];
       out[i] = sum;
     }
@@ -125,13 +125,13 @@ class Marcher::StageDelassus final : public DelassusColumns {
 // What a stage keeps between steps, and the constants of its loop.
 struct Marcher::StageState {
   std::unique_ptr<StageDelassus> delassus;
-  std::array<Block, 3> effort;                    // p, p₋₁, p₋₂
+  std::array<Block, 3> effort;  // p, p₋₁, p₋₂
   std::array<const double*, 3> effort_pointers{};
   Block free, rate, gap, gate_lower, gate_upper, approach;
-  Block fastest;                      // largest speed seen at a closed point, per lane
-  std::uint32_t contact_lanes = 0;    // lanes with a non-zero effort
-  std::uint32_t closed_lanes = 0;     // lanes with a closed gate
-  std::vector<double> update;                     // slots × (slots + 1)
+  Block fastest;                    // largest speed seen at a closed point, per lane
+  std::uint32_t contact_lanes = 0;  // lanes with a non-zero effort
+  std::uint32_t closed_lanes = 0;   // lanes with a closed gate
+  std::vector<double> update;       // slots × (slots + 1)
   std::vector<double> measure_weights, rate_weights, gap_weights, approach_weights;
   bool shifts_effort = false;
 };
@@ -285,8 +285,7 @@ void Marcher::support_offsets(const PhaseWeights& phase, double* out, bool rate)
     c *= -omega;
   }
   for (int lane = 0; lane < program_.width; ++lane)
-    out[lane] = amplitude_.at(0, lane) *
-                (phases_ ? s * cos_phase_.at(0, lane) + c * sin_phase_.at(0, lane) : s);
+    out[lane] = amplitude_.at(0, lane) * (phases_ ? s * cos_phase_.at(0, lane) + c * sin_phase_.at(0, lane) : s);
 }
 
 const double* Marcher::distributed_load(const Levels& levels, double t) {
@@ -357,7 +356,8 @@ void Marcher::combine_for(const StageProgram& program) {
   combined_for_ = &program;
 }
 
-void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer) {
+void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index,
+                        StepObserver* observer) {
   const double* z = elastic_.data();
   if (program.op) {
     FreeStepInput input;
@@ -469,12 +469,12 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
     support_offsets(program.measure_phase, offset_.data(), gated);
     offset = offset_.data();
   }
-  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(), offset,
-                   state.free.data());
+  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(),
+                   offset, state.free.data());
   if (state.rate.rows() > 0) {
     if (program_.support) support_offsets(program.rate_phase, offset_.data(), true);
-    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(), offset,
-                     state.rate.data());
+    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
+                     offset, state.rate.data());
   }
   const Block& lower = gated ? state.gate_lower : lower_;
   const Block& upper = gated ? state.gate_upper : upper_;

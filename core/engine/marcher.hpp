@@ -2,17 +2,16 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <ricochet/engine/compile.hpp>
 #include <string>
 #include <vector>
-
-#include <ricochet/engine/compile.hpp>
 
 namespace ricochet {
 
 /// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
 struct LaneStatus {
   bool running = true;
-  long long step = 0;       ///< when it stopped
+  long long step = 0;  ///< when it stopped
   double time = 0;
   std::string cause;
 };
@@ -109,7 +108,7 @@ class Marcher {
   std::vector<Block> blocks_;
   std::vector<double*> slots_;
   std::vector<const double*> slot_pointers_;
-  Block combination_;                     // Σ β^K_j x_j of the stage to come
+  Block combination_;  // Σ β^K_j x_j of the stage to come
   const StageProgram* combined_for_ = nullptr;
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
   Block scale_, offset_, lower_, upper_, amplitude_, cos_phase_, sin_phase_;
@@ -117,7 +116,7 @@ class Marcher {
   std::vector<int> touched_;
   std::vector<LaneOutcome> outcome_;
   std::vector<LaneStatus> status_;
-  std::uint32_t frozen_now_ = 0;          // lanes that froze since the last update of the slots
+  std::uint32_t frozen_now_ = 0;  // lanes that froze since the last update of the slots
   std::unique_ptr<LoadWindow> load_window_;
   std::vector<double> scratch_;
   Block elastic_;

@@ -1,10 +1,8 @@
-#include <ricochet/engine/stage_operator.hpp>
-
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/sparse_ldlt.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {
 namespace {
@@ -13,7 +11,8 @@ bool any(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
 }
 
-// S as (1) of band_ldlt.hpp: the factored mass enters through its border, scaled so that both blocks have the same units.
+// S as (1) of band_ldlt.hpp: the factored mass enters through its border, scaled so that both blocks have the same
+// units.
 QuasiDefinite system(const MarchModel& model, const FoldedStage& stage) {
   QuasiDefinite matrix;
   matrix.A = stage.stiffness * model.stiffness();
@@ -27,8 +26,8 @@ QuasiDefinite system(const MarchModel& model, const FoldedStage& stage) {
   return matrix;
 }
 
-// What band and sparse operators share: the right-hand side by band products, and M x of a factored mass through the border:
-// with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
+// What band and sparse operators share: the right-hand side by band products, and M x of a factored mass through the
+// border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
 class Assembly {
  public:
   Assembly(const MarchModel& model, const FoldedStage& stage, int lanes)
@@ -92,7 +91,8 @@ class Assembly {
   Block m_, b_;
 };
 
-/// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved border.
+/// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved
+/// border.
 class BandOperator final : public StageOperator {
  public:
   BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
@@ -213,7 +213,10 @@ class SparseOperator final : public StageOperator {
 class ModalOperator final : public StageOperator {
  public:
   ModalOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
-      : kernels_(lane_kernels(lanes)), rows_(model.rows()), slots_(static_cast<int>(stage.mass_history.size())), lanes_(lanes) {
+      : kernels_(lane_kernels(lanes)),
+        rows_(model.rows()),
+        slots_(static_cast<int>(stage.mass_history.size())),
+        lanes_(lanes) {
     const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
     zero_scale_ = Block(1, lanes);
     unknown_ = Block(rows_, lanes);
@@ -267,17 +270,26 @@ OperatorOrRefusal factorised(std::unique_ptr<Operator> made, const QuasiDefinite
 
 const char* operator_name(OperatorKind kind) {
   switch (kind) {
-    case OperatorKind::automatic: return "automatic";
-    case OperatorKind::diagonal: return "diagonal";
-    case OperatorKind::modal: return "modal";
-    case OperatorKind::band: return "band";
-    case OperatorKind::sparse: break;
+    case OperatorKind::automatic:
+      return "automatic";
+    case OperatorKind::diagonal:
+      return "diagonal";
+    case OperatorKind::modal:
+      return "modal";
+    case OperatorKind::band:
+      return "band";
+    case OperatorKind::sparse:
+      break;
   }
   return "sparse";
 }
 
-bool FoldedStage::uses_mass() const { return any(mass_history); }
-bool FoldedStage::uses_stiffness() const { return any(stiffness_history); }
+bool FoldedStage::uses_mass() const {
+  return any(mass_history);
+}
+bool FoldedStage::uses_stiffness() const {
+  return any(stiffness_history);
+}
 
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
   FoldedStage folded;

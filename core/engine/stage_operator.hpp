@@ -1,23 +1,23 @@
 #pragma once
 #include <memory>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace ricochet {
 
 enum class OperatorKind { automatic, diagonal, modal, band, sparse };
 const char* operator_name(OperatorKind kind);
 
-/// The coefficients of one stage with C = αK + ηM folded into K and M: S = s_M M + s_K K, b = Σ_j (β^M_j M + β^K_j K) x_j + …
+/// The coefficients of one stage with C = αK + ηM folded into K and M: S = s_M M + s_K K, b = Σ_j (β^M_j M + β^K_j K)
+/// x_j + …
 struct FoldedStage {
   double mass = 0, stiffness = 0;
-  std::vector<double> mass_history, stiffness_history;   ///< one per slot
+  std::vector<double> mass_history, stiffness_history;  ///< one per slot
   bool uses_mass() const;
   bool uses_stiffness() const;
   bool solves() const { return mass != 0 || stiffness != 0; }
@@ -26,10 +26,10 @@ FoldedStage fold(const Stage& stage, const Damping& damping, int slots);
 
 /// What the marcher hands over for a free step. All blocks have the width that the operator was made for.
 struct FreeStepInput {
-  const double* const* slots = nullptr;   ///< n × T each
-  const double* k = nullptr;              ///< Σ β^K_j x_j, kept by the marcher (only where keeps_combination())
-  const double* scale = nullptr;          ///< T: Σ φ_k A ω² sin(ω(t+c_k h)+ψ); null: no support motion
-  const double* load = nullptr;           ///< n: Σ φ_k F(t+c_k h) of the distributed load; null: none
+  const double* const* slots = nullptr;  ///< n × T each
+  const double* k = nullptr;             ///< Σ β^K_j x_j, kept by the marcher (only where keeps_combination())
+  const double* scale = nullptr;         ///< T: Σ φ_k A ω² sin(ω(t+c_k h)+ψ); null: no support motion
+  const double* load = nullptr;          ///< n: Σ φ_k F(t+c_k h) of the distributed load; null: none
 };
 
 /// z° = S⁻¹ b for every lane of a block.

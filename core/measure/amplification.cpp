@@ -1,8 +1,7 @@
-#include <ricochet/measure/amplification.hpp>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <ricochet/measure/amplification.hpp>
 
 namespace ricochet {
 

@@ -1,12 +1,12 @@
 #pragma once
 #include <Eigen/Core>
-
 #include <ricochet/contract/step_plan.hpp>
 
 namespace ricochet {
 
-/// The step of a plan on one scalar mode m q'' + c q' + k q = 0, contact open: x_{n+1} = A x_n over the slots (s × s, dimensionless up
-/// to the slots' own units). Follows from the plan alone. A mode on which S vanishes gives a matrix of infinities.
+/// The step of a plan on one scalar mode m q'' + c q' + k q = 0, contact open: x_{n+1} = A x_n over the slots (s × s,
+/// dimensionless up to the slots' own units). Follows from the plan alone. A mode on which S vanishes gives a matrix of
+/// infinities.
 Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k);
 
 /// Eigenvalues of amplification(), largest modulus first: |r| > 1 grows, |r| = 1 is marginal.

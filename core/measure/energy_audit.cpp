@@ -1,9 +1,8 @@
-#include <ricochet/measure/energy_audit.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/measure/energy_audit.hpp>
 
 namespace ricochet {
 namespace {
@@ -50,7 +49,8 @@ double EnergyAudit::contact_row(const std::vector<double>& x, int point) const {
   const RowMatrix& rows = model_.contact();
   double sum = 0;
   for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
-    sum += rows.value[static_cast<std::size_t>(e)] * x[static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)])];
+    sum +=
+        rows.value[static_cast<std::size_t>(e)] * x[static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)])];
   return sum;
 }
 
@@ -195,7 +195,8 @@ void EnergyAudit::step_done(Marcher& marcher) {
     totals.work_of_damping += state.step_damping;
     totals.work_of_contact += state.step_contact;
     if (state.has_scheme)
-      totals.largest_step_gain = std::max(totals.largest_step_gain, sample.scheme - state.now.scheme - state.step_loads);
+      totals.largest_step_gain =
+          std::max(totals.largest_step_gain, sample.scheme - state.now.scheme - state.step_loads);
     if (!state.has_first) totals.first = sample;
     if (!state.has_scheme) totals.scheme_start = sample.scheme;
     state.has_first = state.has_scheme = true;
@@ -204,7 +205,8 @@ void EnergyAudit::step_done(Marcher& marcher) {
     if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
       marcher.freeze(lane, "the energy is not finite");
     else if (energy > marcher.energy_bound())
-      marcher.freeze(lane, fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound()));
+      marcher.freeze(lane,
+                     fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound()));
   }
 }
 

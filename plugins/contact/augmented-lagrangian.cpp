@@ -1,8 +1,7 @@
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/contract/plugin.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contract/plugin.hpp>
 
 namespace {
 
@@ -10,7 +9,8 @@ using namespace ricochet;
 
 /// Rigid stops approached by augmentations: given a multiplier λ, solve
 ///     lower ≤ y + (p − λ)/r ⊥ p ≤ upper                                                                        (1)
-/// then λ ← p, until p stops changing. From λ = 0 one augmentation is the penalty of stiffness r; the fixed point is Signorini.
+/// then λ ← p, until p stops changing. From λ = 0 one augmentation is the penalty of stiffness r; the fixed point is
+/// Signorini.
 class AugmentedLagrangian final : public ContactLaw {
  public:
   AugmentedLagrangian(int iterations, double tolerance, bool from_previous)
@@ -72,14 +72,16 @@ class AugmentedLagrangian final : public ContactLaw {
 };
 
 void register_all(Registry& registry) {
-  ParameterSpec augmentation = real_parameter("augmentation", "N/m", std::nullopt, {.low = 0, .low_open = true},
-                                              "r, stiffness of each augmentation (per unit of the scheme's impact measure)");
+  ParameterSpec augmentation =
+      real_parameter("augmentation", "N/m", std::nullopt, {.low = 0, .low_open = true},
+                     "r, stiffness of each augmentation (per unit of the scheme's impact measure)");
   augmentation.per_lane = true;
   registry.add_contact(
       {.name = "augmented-lagrangian",
        .summary = "hybrid: penalty steps that update a multiplier",
        .text = "Repeats a penalty solve of stiffness r around a multiplier that each solve replaces by its effort. One "
-               "iteration from zero is the penalty of the same stiffness, many are Signorini; in between, the penetration that "
+               "iteration from zero is the penalty of the same stiffness, many are Signorini; in between, the "
+               "penetration that "
                "is left is the complementarity residual that the run reports. The measure is the scheme's impact "
                "measure, restitution included.",
        .source = "Hestenes (1969), Powell (1969); for unilateral contact Alart and Curnier (1991)",

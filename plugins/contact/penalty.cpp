@@ -11,8 +11,8 @@ Evaluation evaluation_of(const std::string& word) {
   return Evaluation::implicit_end;
 }
 
-/// Linear springs behind the stops: p = κ (lower − g)₊ − κ (g − upper)₊. With g = g° + reach·W p this is the box problem
-/// lower ≤ g + p/κ ⊥ p ≤ upper: a shifted diagonal, closed form when reach = 0.
+/// Linear springs behind the stops: p = κ (lower − g)₊ − κ (g − upper)₊. With g = g° + reach·W p this is the box
+/// problem lower ≤ g + p/κ ⊥ p ≤ upper: a shifted diagonal, closed form when reach = 0.
 class Penalty final : public ContactLaw {
  public:
   explicit Penalty(Evaluation evaluation) : evaluation_(evaluation) {}
@@ -48,11 +48,13 @@ void register_all(Registry& registry) {
   registry.add_contact(
       {.name = "penalty",
        .summary = "linear springs behind the stops",
-       .text = "A point that passes a stop by δ is pushed back with κ δ. Where in the step δ is measured is `evaluation`: "
-               "implicit at the end of the step, averaged over the levels over which the scheme averages the elastic force, "
-               "explicit at what is known when the step begins (then the step is limited by √(m/κ)). The restitution of "
-               "the time scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the "
-               "stop's stiffness per metre grows as the mesh is refined.",
+       .text =
+           "A point that passes a stop by δ is pushed back with κ δ. Where in the step δ is measured is `evaluation`: "
+           "implicit at the end of the step, averaged over the levels over which the scheme averages the elastic "
+           "force, "
+           "explicit at what is known when the step begins (then the step is limited by √(m/κ)). The restitution of "
+           "the time scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the "
+           "stop's stiffness per metre grows as the mesh is refined.",
        .source = "Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli (2006)",
        .parameters = {stiffness, word_parameter("evaluation", {"implicit", "averaged", "explicit"}, "implicit",
                                                 "the level at which the spring force is evaluated")}},

@@ -28,8 +28,9 @@ void register_all(Registry& registry) {
        .text = "Finds the contact efforts p such that the scheme's impact measure stays between the stops and p acts "
                "only where it touches one: lower ≤ y ⊥ p ≤ upper. What y is (a position, an average of positions, a "
                "velocity) and what restitution is folded into it is the time scheme's choice.",
-       .source = "Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller, "
-                 "Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback",
+       .source =
+           "Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller, "
+           "Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<Signorini>(); });
 }

@@ -1,6 +1,6 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include <fmt/format.h>
+
+#include <ricochet/contract/plugin.hpp>
 
 namespace {
 
@@ -11,8 +11,8 @@ using namespace ricochet;
 ///     (M/h + θC + hθ²K) z = (1−θ)F(t) + θF(t+h) − C v − K(q + θh v) + Hᵀp
 ///     v ← v + z,   q ← q + h v + hθ z,   y = H v_{n+1} on the sides that the gap test finds closed
 ///
-/// Gap test at q + (h/2)v, approach test on v. On a side that passes both, v⁺ may not fall below −e v⁻ (relative to the stop).
-/// Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
+/// Gap test at q + (h/2)v, approach test on v. On a side that passes both, v⁺ may not fall below −e v⁻ (relative to the
+/// stop). Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
 class MoreauJean final : public TimeScheme {
  public:
   MoreauJean(double theta, double restitution) : theta_(theta), e_(restitution) {}
@@ -20,12 +20,15 @@ class MoreauJean final : public TimeScheme {
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
     const bool massless_contact = facts.contact && facts.mass_kernel_dimension > 0;
     if (massless_contact && e_ > 0)
-      return Refusal{fmt::format("restitution = {:g} has nothing to act on at a contact point without mass (singular mass): its "
-                                 "velocity is not a state; use restitution 0, or a regular mass",
-                                 e_)};
-    if (massless_contact && theta_ == 0.5 && !facts.damped)
-      return Refusal{"theta = 0.5 leaves the root −1 on the kernel of a singular mass: the velocity of a contact point "
-                     "changes sign at every step and the approach test never holds; use theta > 0.5, damping, or a regular mass"};
+      return Refusal{
+          fmt::format("restitution = {:g} has nothing to act on at a contact point without mass (singular mass): its "
+                      "velocity is not a state; use restitution 0, or a regular mass",
+                      e_)};
+    if (massless_contact && theta_ == 0.5)
+      return Refusal{
+          "theta = 0.5 leaves the root −1 on the kernel of a singular mass, with or without damping: the velocity of a "
+          "contact point changes sign at every step and the approach test never holds; use theta > 0.5 or a regular "
+          "mass"};
     StepPlan plan;
     plan.slots = {"q", "v"};
     plan.initial = {{1, 0}, {0, 1}};
@@ -41,7 +44,8 @@ class MoreauJean final : public TimeScheme {
     const Combination end{.slots = {1, h}, .z = h * theta_};
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {1}};
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {theta_, 1 - theta_}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.at(Evaluation::explicit_start) = {
+        {.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
     stage.update = {end, {.slots = {0, 1}, .z = 1}};
     stage.increment = {.slots = {0, h}, .z = h * theta_};
     stage.work = {{.slots = {0, h}, .z = h / 2}, {.slots = {0, 1}, .z = theta_}, load, {1}, {{1, 1}, {0, -1}}};
@@ -62,14 +66,18 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "moreau-jean",
        .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
-       .text = "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
-               "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
-               "does not leave its stop; other points are free. With both tests contact never gives energy (θ = ½, any e in "
-               "[0, 1]). Positions may pass the stop by O(h). Contact points without mass have no velocity to restitute: "
-               "refused for e > 0, and for θ = ½ without damping.",
-       .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and Brogliato (2008), ch. 10",
+       .text =
+           "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
+           "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
+           "does not leave its stop; other points are free. With both tests contact never gives energy (θ = ½, any e "
+           "in "
+           "[0, 1]). Positions may pass the stop by O(h). Contact points without mass have no velocity to restitute: "
+           "refused for e > 0, and for θ = ½.",
+       .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and "
+                 "Brogliato (2008), ch. 10",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
-                      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient")}},
+                      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
+                                     "e, Newton's restitution coefficient")}},
       [](const Parameters& p) { return std::make_unique<MoreauJean>(p.real("theta"), p.real("restitution")); });
 }
 

@@ -1,8 +1,7 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/plugin.hpp>
 
 namespace {
 
@@ -24,9 +23,10 @@ class NewmarkDumontPaoli final : public TimeScheme {
     if (facts.mass_kernel_dimension > 0 && beta_ == 0 && !facts.damped)
       return Refusal{"beta = 0 leaves S singular on the kernel of a singular mass: use beta ≥ 0.25"};
     if (facts.mass_kernel_dimension > 0 && beta_ < 0.25)
-      return Refusal{fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step "
-                                 "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25",
-                                 beta_)};
+      return Refusal{
+          fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step "
+                      "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25",
+                      beta_)};
     StepPlan plan;
     plan.slots = {"q", "d"};
     plan.initial = {{1, 0}, {0, h}};
@@ -98,18 +98,23 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "newmark-dumont-paoli",
        .summary = "three-level β scheme with the constraint on (q_{n+1} + e q_{n−1})/(1+e)",
-       .text = "The β-Newmark scheme (γ = ½) written on three levels, its contact effort at the middle level. With e = 0 the "
-               "scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the combination "
-               "(q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the kernel of a "
-               "singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α > 0).",
+       .text =
+           "The β-Newmark scheme (γ = ½) written on three levels, its contact effort at the middle level. With e = 0 "
+           "the "
+           "scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the combination "
+           "(q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the kernel of a "
+           "singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α > 0).",
        .source = "Dumont and Paoli (2006), Vibrations of a beam between obstacles: convergence of a fully discretized "
                  "approximation; Paoli and Schatzman (2002) for the combination that carries the restitution",
-       .parameters = {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5}, "β, weight of the outer levels in K q and F"),
+       .parameters = {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5},
+                                     "β, weight of the outer levels in K q and F"),
                       real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
-                      word_parameter("start", {"first-order", "second-order"}, "second-order",
-                                     "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation")}},
+                      word_parameter(
+                          "start", {"first-order", "second-order"}, "second-order",
+                          "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation")}},
       [](const Parameters& p) {
-        return std::make_unique<NewmarkDumontPaoli>(p.real("beta"), p.real("restitution"), p.word("start") == "second-order");
+        return std::make_unique<NewmarkDumontPaoli>(p.real("beta"), p.real("restitution"),
+                                                    p.word("start") == "second-order");
       });
 }
 

@@ -1,8 +1,7 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/plugin.hpp>
 
 namespace {
 
@@ -13,7 +12,8 @@ using namespace ricochet;
 ///     (M + γhC + βh²K) z = F(t+h) − C(v + (1−γ)h a) − K(q + h v + (½−β)h² a) + Hᵀp
 ///     q ← q + h v + (½−β)h² a + βh² z,   v ← v + (1−γ)h a + γh z,   a ← z,   y = H q_{n+1}
 ///
-/// Invariant (undamped, free, γ = ½): ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M; test displacement q_{n+1} − q_n with the averaged equation.
+/// Invariant (undamped, free, γ = ½): ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M; test displacement q_{n+1} − q_n with the
+/// averaged equation.
 class Newmark final : public TimeScheme {
  public:
   Newmark(double beta, double gamma) : beta_(beta), gamma_(gamma) {}
@@ -21,9 +21,10 @@ class Newmark final : public TimeScheme {
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
     const bool unconditional = 2 * beta_ >= gamma_;
     if (facts.mass_kernel_dimension > 0 && !unconditional)
-      return Refusal{fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
-                                 "use beta ≥ gamma/2",
-                                 beta_, gamma_ / 2)};
+      return Refusal{
+          fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
+                      "use beta ≥ gamma/2",
+                      beta_, gamma_ / 2)};
     StepPlan plan;
     plan.slots = {"q", "v", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}};
@@ -52,26 +53,29 @@ class Newmark final : public TimeScheme {
     stage.impact = {end(h), {{1, 1}}, std::nullopt};
     const Combination end_rate{.slots = {0, 1, lag}, .z = gamma_ * h};
     stage.at(Evaluation::implicit_end) = {end(h), {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    // The elastic force enters as K q_{n+1} alone, and so does the spring: averaging is done by the scheme's own recurrence.
+    // The elastic force enters as K q_{n+1} alone, and so does the spring: averaging is done by the scheme's own
+    // recurrence.
     stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
     stage.at(Evaluation::explicit_start) = {{.slots = {1, h, curve}}, {{1, 1}}, {.slots = {0, 1, lag}}, {{1, 1}}, {1}};
     stage.update = {end(h), end_rate, {.slots = {}, .z = 1}};
     stage.increment = {.slots = {0, h, curve}, .z = beta_ * h * h};
-    stage.work = {stage.increment, {.slots = {0, 1, lag / 2}, .z = gamma_ * h / 2}, {{0, 0.5}, {1, 0.5}}, {0.5, 0.5},
+    stage.work = {stage.increment,
+                  {.slots = {0, 1, lag / 2}, .z = gamma_ * h / 2},
+                  {{0, 0.5}, {1, 0.5}},
+                  {0.5, 0.5},
                   {{1, 1}, {0, -1}}};
     return stage;
   }
 
-  // M a₀ = F(0) − C v₀ − K q₀ (+ Hᵀp so that the Taylor step does not pass a stop that the state rests on). On the kernel of a
-  // singular mass a₀ is not defined: βh²K is added to M there, an O(h²) change of a₀ on the regular modes.
+  // M a₀ = F(0) − C v₀ − K q₀ (+ Hᵀp so that the Taylor step does not pass a stop that the state rests on). On the
+  // kernel of a singular mass a₀ is not defined: βh²K is added to M there, an O(h²) change of a₀ on the regular modes.
   Stage initial_acceleration(double h, bool singular_mass) const {
     Stage stage;
     stage.matrix = {1, 0, singular_mass ? beta_ * h * h : 0};
     stage.history = {{0, 0, -1}, {0, -1, 0}};
     stage.load = {{0, 1}};
     stage.impact = {{.slots = {1, h}, .z = 0.5 * h * h}, {{1, 1}}, std::nullopt};
-    for (auto& compliance : stage.compliance)
-      compliance = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    for (auto& compliance : stage.compliance) compliance = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
     stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
     return stage;
   }
@@ -83,13 +87,18 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "newmark",
        .summary = "Newmark (β, γ) with the multiplier inside the acceleration, stops at position level",
-       .text = "The method of structural dynamics: equilibrium and non-penetration at the end of the step, q_{n+1} between "
-               "the stops. The effort acts through the acceleration, hence on three levels with weights (β, ½+γ−2β, ½−γ+β): a "
-               "rigid impact leaves oscillating accelerations, and with β = ¼, γ = ½ the energy grows, the more the finer the "
-               "step. It knows no restitution coefficient. Implicit and averaged penalties coincide.",
-       .source = "Newmark (1959); Hughes (1987), The Finite Element Method, section 9.1; energy growth at contact: Laursen and Chawla (1997)",
+       .text =
+           "The method of structural dynamics: equilibrium and non-penetration at the end of the step, q_{n+1} between "
+           "the stops. The effort acts through the acceleration, hence on three levels with weights (β, ½+γ−2β, "
+           "½−γ+β): a "
+           "rigid impact leaves oscillating accelerations, and with β = ¼, γ = ½ the energy grows, the more the finer "
+           "the "
+           "step. It knows no restitution coefficient. Implicit and averaged penalties coincide.",
+       .source = "Newmark (1959); Hughes (1987), The Finite Element Method, section 9.1; energy growth at contact: "
+                 "Laursen and Chawla (1997)",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),
-                      real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1}, "γ; above ½ it damps, at first order")}},
+                      real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1},
+                                     "γ; above ½ it damps, at first order")}},
       [](const Parameters& p) { return std::make_unique<Newmark>(p.real("beta"), p.real("gamma")); });
 }
 

@@ -1,17 +1,17 @@
 #include "runners/execution/run_case.hpp"
 
-#include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/energy_audit.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <ctime>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/energy_audit.hpp>
 
 namespace ricochet {
 namespace {
 
-// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from start to end.
+// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from
+// start to end.
 double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -25,9 +25,10 @@ long long whole_steps(const StudyCase& study_case, std::vector<std::string>& not
   // A ratio of two decimal numbers is whole up to a few roundings.
   if (std::abs(ratio - static_cast<double>(nearest)) <= 1e-9 * ratio) return nearest;
   const auto steps = static_cast<long long>(std::floor(ratio));
-  notes.push_back(fmt::format("the duration {:g} s is no multiple of the step {:g} s: the run ends at the last whole step, "
-                              "t = {:.9g} s",
-                              study_case.duration, study_case.step, static_cast<double>(steps) * study_case.step));
+  notes.push_back(
+      fmt::format("the duration {:g} s is no multiple of the step {:g} s: the run ends at the last whole step, "
+                  "t = {:.9g} s",
+                  study_case.duration, study_case.step, static_cast<double>(steps) * study_case.step));
   return steps;
 }
 
@@ -71,7 +72,8 @@ Prepared prepare(const StudyCase& study_case, const Registry& registry) {
   if (law->reads() && steps.facts.restitution != Restitution::ignored)
     for (const auto& [key, value] : study_case.time.parameters.values())
       if (key == "restitution" && std::holds_alternative<double>(value) && std::get<double>(value) != 0)
-        prepared.notes.push_back("a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
+        prepared.notes.push_back(
+            "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
   options.expected_steps = prepared.steps;
   auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
@@ -103,9 +105,17 @@ class Sampler {
   void take(const Marcher& marcher, const EnergyAudit& audit) {
     const EnergySample& energy = audit.energy(0);
     const ContactTotals& contact = audit.contact(0);
-    const double row[] = {marcher.time(),    marcher.tip(0), audit.tip_velocity(0), energy.kinetic,
-                          energy.elastic,    energy.contact, energy.common(),       energy.scheme,
-                          contact.force,     audit.penetration(0), static_cast<double>(contact.active)};
+    const double row[] = {marcher.time(),
+                          marcher.tip(0),
+                          audit.tip_velocity(0),
+                          energy.kinetic,
+                          energy.elastic,
+                          energy.contact,
+                          energy.common(),
+                          energy.scheme,
+                          contact.force,
+                          audit.penetration(0),
+                          static_cast<double>(contact.active)};
     for (const double value : row)
       if (!std::isfinite(value)) return;
     for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
@@ -138,6 +148,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
   put("balance_residual", energy.balance_residual());
   put("projection_energy", problem.projection_energy);
+  put("kernel_energy", problem.kernel_energy);
   put("deepest_penetration", contact.deepest_penetration);
   put("impacts", static_cast<double>(contact.impacts));
   put("active_set_changes", static_cast<double>(contact.active_set_changes));
@@ -160,9 +171,9 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   if (!prepared.program) return plan;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(*prepared.program);
-  plan.predicted_seconds = prepared.program->predicted_setup_seconds +
-                           static_cast<double>(prepared.steps) *
-                               (prepared.program->predicted_step_seconds + audit_seconds_per_step);
+  plan.predicted_seconds =
+      prepared.program->predicted_setup_seconds +
+      static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + audit_seconds_per_step);
   return plan;
 }
 
@@ -214,7 +225,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   }
   fill_measures(record, marcher, audit, *problem);
   if (marcher.delassus_columns() > 0)
-    record.notes.push_back(fmt::format("Delassus columns computed: {} of {}", marcher.delassus_columns(), problem->points()));
+    record.notes.push_back(
+        fmt::format("Delassus columns computed: {} of {}", marcher.delassus_columns(), problem->points()));
   return record;
 }
 

@@ -1,23 +1,22 @@
 #pragma once
 #include <filesystem>
 #include <iosfwd>
+#include <ricochet/contract/catalogue.hpp>
 #include <string>
 #include <vector>
-
-#include <ricochet/contract/catalogue.hpp>
 
 #include "runners/study/study.hpp"
 
 namespace ricochet {
 
 struct RunOptions {
-  std::filesystem::path out;   ///< results folder; empty: results/NAME
-  int jobs = 0;                ///< 0: all processors
-  bool fresh = false;          ///< forget what the folder holds
+  std::filesystem::path out;  ///< results folder; empty: results/NAME
+  int jobs = 0;               ///< 0: all processors
+  bool fresh = false;         ///< forget what the folder holds
 };
 
-/// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/, study.json and report.html,
-/// and prints one line per case. Returns the exit code of design §5 (0, 3, 5, 130).
+/// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/,
+/// study.json and report.html, and prints one line per case. Returns the exit code of design §5 (0, 3, 5, 130).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
 
 /// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.

@@ -21,6 +21,10 @@ const std::vector<MeasureInfo>& trajectory_measures() {
       {"balance_residual", "J", "Change of energy minus the works above: what the balance fails to close by."},
       {"projection_energy", "J",
        "Energy after minus before the projection of the initial state on the constraint of a singular mass."},
+      {"kernel_energy", "J",
+       "energy of the initial state in the kernel of the mass that no inertia holds: lost in the first steps at any "
+       "step length, 0 after "
+       "projection"},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
       {"impacts", "1", "Number of times a contact point closed."},
       {"active_set_changes", "1", "Number of steps at which the set of closed contact points changed."},

@@ -16,28 +16,29 @@ struct Curve {
 struct CaseRecord {
   std::string id;
   std::vector<std::pair<std::string, nlohmann::ordered_json>> axes;
-  std::string status;                                  ///< done, refused, diverged, failed
-  std::string reason;                                  ///< "" when done
+  std::string status;  ///< done, refused, diverged, failed
+  std::string reason;  ///< "" when done
   long long steps = 0;
   double setup_seconds = 0, run_seconds = 0;
   std::vector<std::pair<std::string, double>> measures;  ///< in a fixed order, finite (an absent measure is left out)
   std::vector<std::pair<std::string, std::string>> left_out;  ///< item, reason
   std::vector<std::string> notes;
-  std::string operator_name;                           ///< what compile chose: diagonal, modal, band, sparse
+  std::string operator_name;  ///< what compile chose: diagonal, modal, band, sparse
   Curve curve;
 };
 
 /// Where and with what the figures were made.
 struct Environment {
-  std::vector<std::pair<std::string, std::string>> entries;  ///< program, commit, compiler, flags, processor, cores, libraries …
+  std::vector<std::pair<std::string, std::string>>
+      entries;  ///< program, commit, compiler, flags, processor, cores, libraries …
 };
 
 /// Everything a store holds, which is everything a report is made from.
 struct StudyResults {
-  nlohmann::ordered_json study;                        ///< resolved study
+  nlohmann::ordered_json study;  ///< resolved study
   std::string name, question, kind;
-  std::vector<std::string> columns;                    ///< axis columns of cases.csv, in order
-  std::vector<CaseRecord> cases;                       ///< in the study's order; those not run yet are absent
+  std::vector<std::string> columns;  ///< axis columns of cases.csv, in order
+  std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   Environment environment;
 };

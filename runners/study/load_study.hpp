@@ -1,16 +1,15 @@
 #pragma once
 #include <filesystem>
-#include <string>
-
 #include <ricochet/contract/catalogue.hpp>
+#include <string>
 
 #include "runners/study/study.hpp"
 
 namespace ricochet {
 
 /// Reads, checks and expands a study; opens only the plugins that it names. Nothing runs.
-/// Throws InputError (pointer "" for the whole file) for everything a user can get wrong, PluginError for a plugin that is there but does
-/// not serve.
+/// Throws InputError (pointer "" for the whole file) for everything a user can get wrong, PluginError for a plugin that
+/// is there but does not serve.
 Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry);
 
 /// The same from text already read (`file` only for messages).

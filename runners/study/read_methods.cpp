@@ -38,7 +38,9 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   std::vector<const Unusable*> suspects;
   for (const Unusable& file : catalogue.unusable())
     if (meant ? &file == meant : file.meant.empty()) suspects.push_back(&file);
-  if (suspects.empty() || (!meant && !nearest_name(name, names).empty())) throw InputError(pointer, message);
+  if (suspects.empty()) throw InputError(pointer, message);
+  if (!meant && !nearest_name(name, names).empty())
+    throw InputError(pointer, message + "; `ricochet doctor` tells of plugin files that cannot serve");
   message =
       "at " + pointer + ": " + message +
       (suspects.size() == 1 ? "; this file was found and cannot serve:" : "; these files were found and cannot serve:");

@@ -1,11 +1,10 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
-#include <vector>
-
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/scene/scene.hpp>
+#include <string>
+#include <vector>
 
 namespace ricochet {
 
@@ -19,24 +18,25 @@ struct MethodChoice {
 
 /// One combination of the study: everything that one run needs.
 struct StudyCase {
-  std::string id;                                    ///< stable across re-orderings: hash of the axes, 10 hex digits
+  std::string id;  ///< stable across re-orderings: hash of the axes, 10 hex digits
   /// Every axis as a column (design §5): mass, mass.velocity, contact, contact.stiffness, time, time.beta, elements,
-  /// step, and any scene value given as a list by its JSON pointer without "/scene/" and '/' → '.'; in the study's order.
+  /// step, and any scene value given as a list by its JSON pointer without "/scene/" and '/' → '.'; in the study's
+  /// order.
   std::vector<std::pair<std::string, Json>> axes;
   SceneSpec scene;
-  Json scene_json;                                   ///< the scene of this case, scalars only
+  Json scene_json;  ///< the scene of this case, scalars only
   MethodChoice mass, contact, time;
   int elements = 0;
   double step = 0;
   double duration = 0;
   int samples = 0;
-  std::optional<std::string> excluded;               ///< the reason given in `exclude`
+  std::optional<std::string> excluded;  ///< the reason given in `exclude`
 };
 
 struct Study {
   std::string name, question, kind;
-  Json resolved;                                     ///< the study with every default written out
-  std::vector<std::string> columns;                  ///< axis columns over all cases, in order
+  Json resolved;                     ///< the study with every default written out
+  std::vector<std::string> columns;  ///< axis columns over all cases, in order
   std::vector<StudyCase> cases;
 };
 

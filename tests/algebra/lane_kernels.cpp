@@ -1,13 +1,12 @@
 // Kernels against plain loops, for each instruction set and each number of lanes.
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
-
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/block.hpp>
+#include <ricochet/algebra/lane_kernels.hpp>
 
 using namespace ricochet;
 
@@ -93,13 +92,15 @@ TEST_CASE("the two instruction sets agree to round-off, and updates follow their
   const int T = GENERATE(1, 4, 32), n = 9;
   for (const bool increments : {false, true}) {
     // The second set of weights is the one that the kernels recognise: q ← q + d + z, d ← d + z.
-    const std::vector<double> weights = increments ? std::vector<double>{1, 1, 1, 0, 1, 1} : std::vector<double>{0.5, 1, 2, 0.1, -1, 3};
+    const std::vector<double> weights =
+        increments ? std::vector<double>{1, 1, 1, 0, 1, 1} : std::vector<double>{0.5, 1, 2, 0.1, -1, 3};
     const std::vector<double> next = {0.3, -0.7};
     const Block q = random_block(n, T, 0, 5), d = random_block(n, T, 0, 6), z = random_block(n, T, 0, 7);
     for (const bool baseline : {false, true}) {
       Block x = q, y = d, combined(n, T);
       double* slots[] = {x.data(), y.data()};
-      lane_kernels(T, baseline).update(static_cast<long>(x.size()), 2, slots, z.data(), weights.data(), next.data(), combined.data());
+      lane_kernels(T, baseline)
+          .update(static_cast<long>(x.size()), 2, slots, z.data(), weights.data(), next.data(), combined.data());
       for (std::size_t e = 0; e < x.size(); ++e) {
         const double new_q = weights[0] * q.data()[e] + weights[1] * d.data()[e] + weights[2] * z.data()[e];
         const double new_d = weights[3] * q.data()[e] + weights[4] * d.data()[e] + weights[5] * z.data()[e];
@@ -135,7 +136,8 @@ TEST_CASE("a quasi-definite system equals its Schur complement, and a singular o
   system.A = random_band(n, 3, true);
   std::vector<Eigen::Triplet<double>> coupling;
   for (int r = 0; r < border; ++r)
-    for (int j = std::max(0, 2 * r - 2); j < std::min(n, 2 * r + 4); ++j) coupling.emplace_back(r, j, j == 2 * r ? 1.0 : 0.2);
+    for (int j = std::max(0, 2 * r - 2); j < std::min(n, 2 * r + 4); ++j)
+      coupling.emplace_back(r, j, j == 2 * r ? 1.0 : 0.2);
   system.G = SparseMatrix(border, n);
   system.G.setFromTriplets(coupling.begin(), coupling.end());
   system.Cv = random_band(border, 1, true);
@@ -143,7 +145,8 @@ TEST_CASE("a quasi-definite system equals its Schur complement, and a singular o
   REQUIRE_FALSE(ldlt.factorise(system));
   CHECK(ldlt.half_width() == 5);
   const Eigen::MatrixXd A = system.A, G = system.G, Cv = system.Cv;
-  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2), expected = (A + G.transpose() * Cv.inverse() * G).ldlt().solve(b);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2),
+                        expected = (A + G.transpose() * Cv.inverse() * G).ldlt().solve(b);
   std::vector<int> from = ldlt.order();
   for (int& row : from)
     if (row >= n) row = -1;

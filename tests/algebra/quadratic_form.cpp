@@ -36,7 +36,8 @@ TEST_CASE("a quadratic form equals its dense matrix, for stiffness and every mas
 }
 
 TEST_CASE("the elastic energy of a smooth shape keeps its digits on a fine mesh") {
-  // u = 0.04 x² has the constant curvature 0.08: E = ½ EI 0.08² L, interpolated exactly. Entries of K q are 10⁶ times larger.
+  // u = 0.04 x² has the constant curvature 0.08: E = ½ EI 0.08² L, interpolated exactly. Entries of K q are 10⁶ times
+  // larger.
   const SceneSpec scene = working_set();
   const SemiDiscrete problem = discretised(scene, 200, *mass("consistent"));
   const auto& beam = std::get<BeamSpec>(scene.structure);

@@ -1,5 +1,6 @@
-// Nanoseconds per lane-step of the reference scene: N = 50, α = 1e-4, forced, contact happening; stops at all nodes for each mass
-// and operator, and at the tip. Medians of interleaved rounds with their spread, beside the FMA peak of the core in the same run.
+// Nanoseconds per lane-step of the reference scene: N = 50, α = 1e-4, forced, contact happening; stops at all nodes for
+// each mass and operator, and at the tip. Medians of interleaved rounds with their spread, beside the FMA peak of the
+// core in the same run.
 //
 //     bench_march [--rounds N]
 #include <fmt/format.h>
@@ -73,16 +74,16 @@ int main(int argc, char** argv) {
     return 4;
   }
   std::vector<Case> cases;
-  const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity, OperatorKind kind,
-                       bool audited = false) {
+  const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity,
+                       OperatorKind kind, bool audited = false) {
     for (const int lanes : {1, 8, 16, 32}) {
       if (audited && lanes > 1) continue;
       Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, 0};
       const auto* mass_entry = registry.mass(mass);
       std::map<std::string, ParameterValue> values;
       if (!velocity.empty()) values["velocity"] = velocity;
-      auto problem = std::make_shared<const SemiDiscrete>(
-          std::get<SemiDiscrete>(discretise(scene(place), 50, *mass_entry->make(defaults(mass_entry->manual, values)))));
+      auto problem = std::make_shared<const SemiDiscrete>(std::get<SemiDiscrete>(
+          discretise(scene(place), 50, *mass_entry->make(defaults(mass_entry->manual, values)))));
       auto law = registry.contact("signorini")->make({});
       const auto* time = registry.time("newmark-dumont-paoli");
       const double h = 2 * 3.14159265358979324 / 10 / 6000;
@@ -126,9 +127,10 @@ int main(int argc, char** argv) {
     }
   }
   fmt::print("reference scene: N = 50, alpha = 1e-4, forced at 10 rad/s, 6000 steps per period, Signorini\n");
-  fmt::print("kernels: {}; FMA peak {:.1f} per ns; {} interleaved rounds, median [fastest, slowest]\n\n", lane_instruction_set(),
-             peak, rounds);
-  fmt::print("{:<44} {:>5} {:>12} {:>22} {:>16} {:>10}\n", "case", "lanes", "ns/lane-step", "spread", "at peak, 2000 FMA", "ratio");
+  fmt::print("kernels: {}; FMA peak {:.1f} per ns; {} interleaved rounds, median [fastest, slowest]\n\n",
+             lane_instruction_set(), peak, rounds);
+  fmt::print("{:<44} {:>5} {:>12} {:>22} {:>16} {:>10}\n", "case", "lanes", "ns/lane-step", "spread",
+             "at peak, 2000 FMA", "ratio");
   for (Case& one : cases) {
     std::sort(one.nanoseconds.begin(), one.nanoseconds.end());
     const double median = one.nanoseconds[one.nanoseconds.size() / 2];
@@ -138,6 +140,7 @@ int main(int argc, char** argv) {
                fmt::format("[{:.1f}, {:.1f}]", one.nanoseconds.front(), one.nanoseconds.back()), ideal,
                ideal > 0 ? median / ideal : 0);
     for (int lane = 0; lane < one.lanes; ++lane)
-      if (!one.marcher->status(lane).running) fmt::print("  lane {} stopped: {}\n", lane, one.marcher->status(lane).cause);
+      if (!one.marcher->status(lane).running)
+        fmt::print("  lane {} stopped: {}\n", lane, one.marcher->status(lane).cause);
   }
 }

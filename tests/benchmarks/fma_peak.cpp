@@ -11,8 +11,8 @@ __attribute__((target("avx2,fma"), noinline)) double chains(long rounds) {
   Vector a0 = {1, 1, 1, 1}, a1 = a0, a2 = a0, a3 = a0, a4 = a0, a5 = a0, a6 = a0, a7 = a0, a8 = a0, a9 = a0;
   const Vector b = a0 * 0.999999, c = a0 * 1e-9;
   for (long r = 0; r < rounds; ++r) {
-#define CHAIN(a)  \
-  a = a * b + c;  \
+#define CHAIN(a) \
+  a = a * b + c; \
   asm("" : "+x"(a));
     CHAIN(a0) CHAIN(a1) CHAIN(a2) CHAIN(a3) CHAIN(a4) CHAIN(a5) CHAIN(a6) CHAIN(a7) CHAIN(a8) CHAIN(a9)
 #undef CHAIN

@@ -40,7 +40,8 @@ bool same_bits(double a, double b) {
 TEST_CASE("lanes equal single runs bit for bit") {
   const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular", {{"velocity", std::string("P1")}}},
                              Choice{"singular", {{"velocity", std::string("P0")}}});
-  const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean", {{"theta", 0.6}}});
+  const auto time =
+      GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean", {{"theta", 0.6}}});
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal, OperatorKind::sparse);
   const int count = GENERATE(3, 16);
   const Methods methods{mass, {"signorini"}, time};
@@ -61,8 +62,8 @@ TEST_CASE("lanes equal single runs bit for bit") {
       for (int i = 0; i < single.program().model->rows(); ++i) {
         const double alone = single.slot(j)[i], together = block.slot(j)[i * block.width() + k];
         if (!same_bits(alone, together))
-          FAIL(mass.name << " " << time.name << " " << operator_name(kind) << " of " << count << ": lane " << k << " slot "
-                         << j << " row " << i << ": " << alone << ", off by " << together - alone);
+          FAIL(mass.name << " " << time.name << " " << operator_name(kind) << " of " << count << ": lane " << k
+                         << " slot " << j << " row " << i << ": " << alone << ", off by " << together - alone);
       }
   }
   INFO(mass.name << " " << time.name << " " << operator_name(kind));
@@ -76,26 +77,30 @@ TEST_CASE("penalty stiffness may differ between lanes") {
     lane.law.set("stiffness", 1e3 * (k + 1));
     return lane;
   };
-  Marcher block = marcher(working_set(), 6, methods, 1e-4, {},
-                          [&](const LaneSpec& base) { return std::vector{lane_of(base, 0), lane_of(base, 1)}; });
+  Marcher block = marcher(working_set(), 6, methods, 1e-4, {}, [&](const LaneSpec& base) {
+    return std::vector{lane_of(base, 0), lane_of(base, 1)};
+  });
   run(block, 0.1);
   CHECK(block.tip(0) != block.tip(1));
   for (int k = 0; k < 2; ++k) {
-    Marcher single =
-        marcher(working_set(), 6, methods, 1e-4, {}, [&](const LaneSpec& base) { return std::vector{lane_of(base, k)}; });
+    Marcher single = marcher(working_set(), 6, methods, 1e-4, {},
+                             [&](const LaneSpec& base) { return std::vector{lane_of(base, k)}; });
     run(single, 0.1);
     CHECK(same_bits(single.tip(0), block.tip(k)));
   }
 }
 
 TEST_CASE("every operator gives the same trajectory to round-off") {
-  const auto mass = GENERATE(Choice{"consistent"}, Choice{"lumped"}, Choice{"singular", {{"velocity", std::string("P1")}}},
-                             Choice{"singular", {{"velocity", std::string("P0")}}});
-  const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark", {{"beta", 0.3}}}, Choice{"moreau-jean"});
+  const auto mass =
+      GENERATE(Choice{"consistent"}, Choice{"lumped"}, Choice{"singular", {{"velocity", std::string("P1")}}},
+               Choice{"singular", {{"velocity", std::string("P0")}}});
+  const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark", {{"beta", 0.3}}},
+                             Choice{"moreau-jean", {{"theta", 0.6}}});
   SceneSpec scene = working_set();
   beam_of(scene).damping = {1e-4, 0.3};
   // Newmark's rigid impacts amplify any round-off: springs for it.
-  const Methods methods{mass, time.name == "newmark" ? Choice{"penalty", {{"stiffness", 1e4}}} : Choice{"signorini"}, time};
+  const Methods methods{mass, time.name == "newmark" ? Choice{"penalty", {{"stiffness", 1e4}}} : Choice{"signorini"},
+                        time};
   std::vector<double> tips;
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {
     CompileOptions options;

@@ -14,7 +14,8 @@ TEST_CASE("marching allocates nothing, observed or not") {
   const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular"});
   const auto contact = GENERATE(Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e5}}},
                                 Choice{"augmented-lagrangian", {{"augmentation", 1e5}}});
-  const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean"});
+  const auto time =
+      GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean", {{"theta", 0.6}}});
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal, OperatorKind::sparse);
   CompileOptions options;
   options.kind = kind;
@@ -99,7 +100,8 @@ TEST_CASE("a step that is singular is refused, not divided by") {
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {
     CompileOptions options;
     options.kind = kind;
-    auto result = compile(problem, plan, 1e-4, make(registry().contact("none"), {"none"}), {scene_lane(*problem, {})}, options);
+    auto result =
+        compile(problem, plan, 1e-4, make(registry().contact("none"), {"none"}), {scene_lane(*problem, {})}, options);
     REQUIRE(std::holds_alternative<Refusal>(result));
     CHECK(std::get<Refusal>(result).sentence.find("singular") != std::string::npos);
   }

@@ -1,5 +1,5 @@
-// The semi-analytic solution of the continuous beam, free and damped, stops at the tip (working set, α = 1e-4): the schemes
-// converge to it.
+// The semi-analytic solution of the continuous beam, free and damped, stops at the tip (working set, α = 1e-4): the
+// schemes converge to it.
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -33,8 +33,8 @@ TEST_CASE("the damped beam between tip stops converges to the continuous solutio
     if (h == 2e-5) {
       // The bound asked for at this step, about 1.3 times the error of the P1 mass.
       CHECK(error <= 8e-5);
-      // First order in h: halving, with room for the phase of the impact within the step. The second-order start brings the error
-      // down to that of the mesh, where no order in h is left to see.
+      // First order in h: halving, with room for the phase of the impact within the step. The second-order start brings
+      // the error down to that of the mesh, where no order in h is left to see.
       CHECK(last / error > 1.5);
       if (start == "first-order") CHECK(last / error < 3.0);
     }

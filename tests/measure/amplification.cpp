@@ -16,7 +16,8 @@ StepPlan plan(const Choice& time, double h) {
 
 std::vector<Choice> all_schemes() {
   std::vector<Choice> schemes;
-  for (const double beta : {0.0, 0.1, 0.2, 0.25, 0.3, 0.5}) schemes.push_back({"newmark-dumont-paoli", {{"beta", beta}}});
+  for (const double beta : {0.0, 0.1, 0.2, 0.25, 0.3, 0.5})
+    schemes.push_back({"newmark-dumont-paoli", {{"beta", beta}}});
   for (const double beta : {0.0, 0.1, 0.25, 0.3})
     for (const double gamma : {0.5, 0.6}) schemes.push_back({"newmark", {{"beta", beta}, {"gamma", gamma}}});
   for (const double theta : {0.5, 0.7, 1.0}) schemes.push_back({"moreau-jean", {{"theta", theta}}});
@@ -33,8 +34,7 @@ TEST_CASE("Dumont–Paoli on the kernel of a singular mass has the roots of its 
       const double a = alpha / (2 * h);
       const auto roots = amplification_roots(plan({"newmark-dumont-paoli", {{"beta", beta}}}, h), 0, alpha, 1);
       REQUIRE(roots.size() == 2);
-      for (const auto& r : roots)
-        CHECK(std::abs((beta + a) * r * r + (1 - 2 * beta) * r + (beta - a)) < 1e-12);
+      for (const auto& r : roots) CHECK(std::abs((beta + a) * r * r + (1 - 2 * beta) * r + (beta - a)) < 1e-12);
       if (alpha == 0)
         // β = ¼ is a double root, known to the square root of round-off only.
         CHECK(std::abs(roots[0]) == Approx(1).margin(beta == 0.25 ? 1e-7 : 1e-13));

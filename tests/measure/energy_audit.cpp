@@ -1,7 +1,7 @@
 // The balance closes; the energies are those of the formulas; impacts are counted once.
-#include "tests/marching.hpp"
-
 #include <ricochet/measure/energy_audit.hpp>
+
+#include "tests/marching.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -21,11 +21,13 @@ SceneSpec busy_scene() {
 }  // namespace
 
 TEST_CASE("the balance of energy closes to round-off, with damping, loads, a moving support and impacts") {
-  const auto mass = GENERATE(Choice{"consistent"}, Choice{"lumped"}, Choice{"singular", {{"velocity", std::string("P1")}}},
-                             Choice{"singular", {{"velocity", std::string("P0")}}});
-  const auto time = GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.25}}}, Choice{"newmark-dumont-paoli", {{"beta", 0.3}}},
-                             Choice{"newmark-dumont-paoli", {{"beta", 0.5}, {"restitution", 0.6}}},
-                             Choice{"newmark", {{"beta", 0.3}}}, Choice{"moreau-jean", {{"restitution", 0.7}}});
+  const auto mass =
+      GENERATE(Choice{"consistent"}, Choice{"lumped"}, Choice{"singular", {{"velocity", std::string("P1")}}},
+               Choice{"singular", {{"velocity", std::string("P0")}}});
+  const auto time =
+      GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.25}}}, Choice{"newmark-dumont-paoli", {{"beta", 0.3}}},
+               Choice{"newmark-dumont-paoli", {{"beta", 0.5}, {"restitution", 0.6}}},
+               Choice{"newmark", {{"beta", 0.3}}}, Choice{"moreau-jean", {{"restitution", 0.7}}});
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
   // Newmark needs equilibrium at t = 0, which these data do not have on the kernel of a singular mass.
   if (mass.name == "singular" && time.name == "newmark") return;
@@ -40,7 +42,8 @@ TEST_CASE("the balance of energy closes to round-off, with damping, loads, a mov
   REQUIRE(beam.status(0).running);
   CHECK(audit.contact(0).impacts > 0);
   CHECK(totals.work_of_damping > 0);
-  // Round-off per step ~ 1e-16 · cond(S) of terms of the size of the energy, 2000 steps; the terms themselves are 1e6 times larger.
+  // Round-off per step ~ 1e-16 · cond(S) of terms of the size of the energy, 2000 steps; the terms themselves are 1e6
+  // times larger.
   const double scale = totals.scheme_start + std::abs(totals.work_of_loads) + totals.work_of_damping;
   CHECK(std::abs(totals.balance_residual()) <= 1e-8 * scale);
 }

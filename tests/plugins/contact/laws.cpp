@@ -27,11 +27,12 @@ TEST_CASE("one augmentation from zero is the penalty") {
   const double stiffness = GENERATE(1e3, 1e6);
   const double h = 1e-4;
   const double penalty = tip_after({{"consistent"}, {"penalty", {{"stiffness", stiffness}}}, time}, h, 0.3);
-  const double once = tip_after({{"consistent"},
-                                 {"augmented-lagrangian",
-                                  {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
-                                 time},
-                                h, 0.3);
+  const double once = tip_after(
+      {{"consistent"},
+       {"augmented-lagrangian",
+        {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
+       time},
+      h, 0.3);
   CHECK(once == penalty);
 }
 
@@ -39,11 +40,12 @@ TEST_CASE("many augmentations are Signorini") {
   const auto start = GENERATE(std::string("zero"), std::string("previous"));
   const Choice time{"newmark-dumont-paoli"};
   const double rigid = tip_after({{"consistent"}, {"signorini"}, time}, 1e-4, 0.3);
-  const double hybrid = tip_after({{"consistent"},
-                                   {"augmented-lagrangian",
-                                    {{"augmentation", 1e6}, {"iterations", 10000LL}, {"tolerance", 1e-13}, {"start", start}}},
-                                   time},
-                                  1e-4, 0.3);
+  const double hybrid =
+      tip_after({{"consistent"},
+                 {"augmented-lagrangian",
+                  {{"augmentation", 1e6}, {"iterations", 10000LL}, {"tolerance", 1e-13}, {"start", start}}},
+                 time},
+                1e-4, 0.3);
   // Efforts to 1e-13, amplified over four impacts.
   CHECK(hybrid == Approx(rigid).margin(1e-8));
 }
@@ -64,15 +66,17 @@ TEST_CASE("a stiff implicit penalty tends to Signorini as 1/stiffness") {
 
 TEST_CASE("for Newmark the implicit and the averaged penalty coincide") {
   const auto tip = [](const char* evaluation) {
-    return tip_after({{"consistent"}, {"penalty", {{"stiffness", 1e4}, {"evaluation", std::string(evaluation)}}}, {"newmark"}}, 1e-4, 0.3);
+    return tip_after(
+        {{"consistent"}, {"penalty", {{"stiffness", 1e4}, {"evaluation", std::string(evaluation)}}}, {"newmark"}}, 1e-4,
+        0.3);
   };
   CHECK(tip("implicit") == tip("averaged"));
   CHECK(tip("explicit") != tip("implicit"));
 }
 
 TEST_CASE("averaged penalty springs keep the energy of a free impact, and the spring gives it back") {
-  // β = ¼: the spring is treated as K is, and the scheme keeps the energy of every linear piece; only the two steps that
-  // straddle contact onset and release break it, by O(h).
+  // β = ¼: the spring is treated as K is, and the scheme keeps the energy of every linear piece; only the two steps
+  // that straddle contact onset and release break it, by O(h).
   SceneSpec scene = working_set();
   std::vector<double> drift;
   for (const double h : {1e-4, 1e-5}) {
@@ -93,7 +97,8 @@ TEST_CASE("averaged penalty springs keep the energy of a free impact, and the sp
 TEST_CASE("an explicit penalty needs no solve and fails beyond its own step limit") {
   const auto running = [](double stiffness) {
     Marcher beam = marcher(working_set(), 8,
-                           {{"consistent"}, {"penalty", {{"stiffness", stiffness}, {"evaluation", std::string("explicit")}}},
+                           {{"consistent"},
+                            {"penalty", {{"stiffness", stiffness}, {"evaluation", std::string("explicit")}}},
                             {"newmark-dumont-paoli"}},
                            1e-4);
     EnergyAudit audit(beam);

@@ -1,0 +1,178 @@
+// What every plugin must satisfy, ours and those of RICOCHET_PLUGIN_PATH: it is enough to be registered. Each plugin
+// runs with its defaults, and with the value of this table where a parameter has none.
+#include <ricochet/measure/amplification.hpp>
+
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+// A parameter without default: the middle of a bounded range, else a stiffness-like number.
+Choice with_defaults(const PluginManual& manual) {
+  Choice choice{manual.name, {}};
+  for (const ParameterSpec& spec : manual.parameters) {
+    if (spec.fallback) continue;
+    if (spec.type == ParameterSpec::Type::word)
+      choice.values[spec.key] = spec.words.front();
+    else if (std::isfinite(spec.range.low) && std::isfinite(spec.range.high))
+      choice.values[spec.key] = 0.5 * (spec.range.low + spec.range.high);
+    else
+      choice.values[spec.key] = 1e5;
+  }
+  return choice;
+}
+
+std::vector<Choice> all(Role role) {
+  std::vector<Choice> choices;
+  for (const std::string& name : registry().names(role))
+    choices.push_back(with_defaults(*registry().manual(role, name)));
+  REQUIRE_FALSE(choices.empty());
+  return choices;
+}
+
+SceneSpec impacting_scene() {
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = 1e-5;
+  scene.stops.place = StopsSpec::Place::nodes;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("conformance: manuals say what a user needs") {
+  for (const Role role : {Role::mass, Role::contact, Role::time})
+    for (const std::string& name : registry().names(role)) {
+      const PluginManual& manual = *registry().manual(role, name);
+      INFO(role_name(role) << " " << name);
+      CHECK_FALSE(manual.summary.empty());
+      CHECK_FALSE(manual.text.empty());
+      CHECK_FALSE(manual.source.empty());
+      for (const ParameterSpec& spec : manual.parameters) {
+        INFO(spec.key);
+        CHECK_FALSE(spec.text.empty());
+        CHECK_FALSE(spec.unit.empty());
+        if (spec.fallback) CHECK_FALSE(check_parameter(spec, *spec.fallback));
+      }
+    }
+}
+
+TEST_CASE("conformance: a mass matrix is symmetric, positive semidefinite, and has the kernel it declares") {
+  for (const Choice& choice : all(Role::mass)) {
+    INFO(choice.name);
+    const auto problem = problem_of(working_set(), 6, choice);
+    const Eigen::MatrixXd M = dense_mass(problem->inertia);
+    // Entries of one size; eigenvalues relative to the largest.
+    CHECK((M - M.transpose()).norm() <= 1e-14 * M.norm());
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues();
+    CHECK(values[0] >= -1e-13 * values.maxCoeff());
+    CHECK((values.array() < 1e-12 * values.maxCoeff()).count() == problem->inertia.kernel_dimension);
+    // The mass of the beam itself: a rigid translation of the free nodes, up to the clamped element.
+    Eigen::VectorXd rigid = Eigen::VectorXd::Zero(problem->dofs());
+    for (int i = 0; i < problem->dofs(); i += 2) rigid[i] = 1;
+    const double total = rigid.dot(M * rigid), length = std::get<BeamSpec>(working_set().structure).length;
+    CHECK(total > 0.8 * line_density(working_set()) * length);
+    CHECK(total <= line_density(working_set()) * length * (1 + 1e-12));
+  }
+}
+
+TEST_CASE("conformance: a scheme's plan is well formed, prints itself, and is as stable as it says") {
+  const double h = 1e-4;
+  for (const Choice& choice : all(Role::time)) {
+    INFO(choice.name);
+    auto made = plan_of(choice, h, {});
+    REQUIRE(std::holds_alternative<StepPlan>(made));
+    const StepPlan plan = std::get<StepPlan>(made);
+    CHECK_FALSE(check_plan(plan));
+    CHECK(print_plan(plan).find("S = ") != std::string::npos);
+    const auto radius = [&](double frequency) {
+      return std::abs(amplification_roots(plan, 1, 0, frequency * frequency / (h * h))[0]);
+    };
+    // Marginal roots reach 1 up to the square root of round-off where they are double.
+    if (plan.facts.stability_limit) {
+      CHECK(radius(0.99 * *plan.facts.stability_limit) <= 1 + 1e-6);
+      CHECK(radius(1.01 * *plan.facts.stability_limit) > 1 + 1e-6);
+    } else {
+      for (const double frequency : {0.1, 2.0, 30.0, 1e3}) CHECK(radius(frequency) <= 1 + 1e-6);
+    }
+    // A scheme that needs inertia everywhere says so in a sentence instead of failing later.
+    ProblemFacts massless;
+    massless.mass_kernel_dimension = 3;
+    massless.contact = true;
+    if (plan.facts.needs_regular_mass) {
+      auto refused = plan_of(choice, h, massless);
+      const auto* refusal = std::get_if<Refusal>(&refused);
+      REQUIRE(refusal);
+      CHECK(refusal->sentence.size() > 20);
+    }
+  }
+}
+
+TEST_CASE("conformance: a scheme that says so gains no energy at rigid stops") {
+  for (const Choice& choice : all(Role::time)) {
+    auto made = plan_of(choice, 1e-5, {});
+    const SchemeFacts facts = std::get<StepPlan>(made).facts;
+    if (!facts.contact_never_gains) continue;
+    INFO(choice.name);
+    // Steps below the limit of a conditionally stable scheme on this mesh of the consistent mass (10 elements).
+    Marcher beam = marcher(impacting_scene(), 10, {{"consistent"}, {"signorini"}, choice}, 1e-5);
+    const EnergyAudit audit = audited(beam, 0.3);
+    CHECK(beam.status(0).running);
+    CHECK(audit.contact(0).impacts > 0);
+    CHECK(audit.totals(0).largest_step_gain <= 1e-9 * audit.totals(0).scheme_start);
+  }
+}
+
+TEST_CASE("conformance: a contact law pushes, never pulls, and leaves no more penetration than it owns up to") {
+  // Recomputed at each step from the stage itself: p > 0 only at the lower stop, p < 0 only at the upper one.
+  class Signs final : public StepObserver {
+   public:
+    long contacts = 0, wrong = 0;
+    void stage_solved(const Marcher& marcher, const StageView& view) override {
+      if (!view.effort || view.contact_lanes == 0) return;
+      const RowMatrix& rows = marcher.program().model->contact();
+      for (int j = 0; j < rows.rows(); ++j) {
+        const double p = view.effort[0][j];
+        if (p == 0) continue;
+        ++contacts;
+        double u = 0;
+        for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
+          u += rows.value[static_cast<std::size_t>(e)] * view.slots[0][rows.index[static_cast<std::size_t>(e)]];
+        // The beam swings ±0.1 m between the stops: the sign of the displacement tells which one is near.
+        if (p * u > 0) ++wrong;
+      }
+    }
+    void step_done(Marcher&) override {}
+  };
+  for (const Choice& choice : all(Role::contact)) {
+    INFO(choice.name);
+    SceneSpec scene = impacting_scene();
+    scene.stops.place = StopsSpec::Place::tip;
+    Marcher beam = marcher(scene, 8, {{"consistent"}, choice, {"newmark-dumont-paoli"}}, 1e-4);
+    if (beam.law().absent()) continue;
+    Signs signs;
+    beam.start(&signs);
+    beam.march(3000, &signs);
+    CHECK(beam.status(0).running);
+    CHECK(signs.contacts > 0);
+    CHECK(signs.wrong == 0);
+  }
+}
+
+TEST_CASE("conformance: any law, scheme and mass either run together or refuse in a sentence") {
+  for (const Choice& mass : all(Role::mass))
+    for (const Choice& contact : all(Role::contact))
+      for (const Choice& time : all(Role::time)) {
+        INFO(mass.name << " × " << contact.name << " × " << time.name);
+        auto program = compiled(problem_of(impacting_scene(), 4, mass), {mass, contact, time}, 1e-5);
+        if (const auto* refusal = std::get_if<Refusal>(&program)) {
+          CHECK(refusal->sentence.size() > 20);
+          continue;
+        }
+        Marcher beam(std::move(std::get<Program>(program)));
+        const EnergyAudit audit = audited(beam, 0.06);
+        CHECK(std::isfinite(audit.energy(0).common()));
+        if (!beam.law().absent()) CHECK(audit.contact(0).impacts > 0);
+      }
+}
