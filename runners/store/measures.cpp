@@ -15,18 +15,22 @@ const std::vector<MeasureInfo>& trajectory_measures() {
        "work of the loads."},
       {"drift_per_impact", "J",
        "Change of energy that damping and loads do not explain, divided by the number of impacts."},
-      {"work_of_damping", "J", "Work of the viscous forces over the run; negative when they take energy out."},
-      {"work_of_loads", "J", "Work of the distributed load and of the moving support over the run."},
-      {"dissipated_at_contact", "J", "Energy taken out by the contact efforts over the run."},
-      {"balance_residual", "J", "Change of energy minus the works above: what the balance fails to close by."},
+      {"work_of_damping", "J", "Energy taken out by the viscous forces over the run."},
+      {"work_of_loads", "J",
+       "Energy brought in by the distributed load and by the moving support over the run, in the frame of the clamp."},
+      {"dissipated_at_contact", "J",
+       "Energy taken out by the contact efforts over the run, less what springs at the stops still store."},
+      {"balance_residual", "J",
+       "What the balance of the scheme's own energy fails to close by: change − loads + damping − work of the stops; "
+       "round-off × steps "
+       "where the scheme has an exact balance."},
       {"projection_energy", "J",
        "Energy after minus before the projection of the initial state on the constraint of a singular mass."},
       {"kernel_energy", "J",
-       "energy of the initial state in the kernel of the mass that no inertia holds: lost in the first steps at any "
-       "step length, 0 after "
-       "projection"},
+       "Energy of the initial state in the kernel of a singular mass, which no inertia holds: lost or left ringing at "
+       "any step, 0 after projection."},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
-      {"impacts", "1", "Number of times a contact point closed."},
+      {"impacts", "1", "Number of times that contact began: no active point in one step, some in the next."},
       {"active_set_changes", "1", "Number of steps at which the set of closed contact points changed."},
       {"impulse", "N s", "Time integral of the contact efforts' magnitude, summed over the contact points."},
       {"complementarity_residual", "m or m/s",
@@ -35,7 +39,8 @@ const std::vector<MeasureInfo>& trajectory_measures() {
       {"first_impact", "s", "Time at which a contact point first closed."},
       {"first_release", "s", "Time at which a contact point first opened again."},
       {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run."},
-      {"microseconds_per_step", "µs", "Wall-clock time of the marching divided by the number of steps."},
+      {"microseconds_per_step", "µs",
+       "Processor time of the marching, energy audit of every step included, divided by the number of steps."},
   };
   return measures;
 }

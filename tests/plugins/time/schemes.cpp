@@ -211,7 +211,7 @@ TEST_CASE("a beam at rest on its stop stays there") {
   const EnergyAudit audit = audited(beam, 60.0);
   INFO(time.name);
   // At velocity level the tip rests where it came to rest, O(h) beyond the stop.
-  const double passed = time.name == "moreau-jean" ? 2e-3 : 1e-6;
+  const double passed = time.name == "moreau-jean" ? 5e-3 : 1e-6;
   CHECK(beam.tip(0) == Approx(0.1).margin(passed));
   // 4-point quadrature and cubic elements are exact for this static deflection; what is left is the decay of the
   // motion.
