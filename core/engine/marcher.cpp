@@ -425,7 +425,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
   for (int lane = 0; lane < T; ++lane) {
     bool closed = false;
     for (int i = 0; i < points; ++i)
-      closed |= (state.gap.at(i, lane) <= lower_.at(i, lane)) | (state.gap.at(i, lane) >= upper_.at(i, lane));
+      closed = closed || state.gap.at(i, lane) <= lower_.at(i, lane) || state.gap.at(i, lane) >= upper_.at(i, lane);
     state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
   }
   if (state.closed_lanes == 0) return;

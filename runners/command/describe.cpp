@@ -146,6 +146,9 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
     print_manual(role, *registry.manual(role, name), registry, out);
   }
   if (found) return exit_done;
+  for (const Role role : {Role::mass, Role::contact, Role::time})
+    if (const Unusable* file = catalogue.unusable_provider(role, name))
+      throw PluginError(file->file.string() + ": " + file->reason);
   std::string message =
       "no method is called \"" + name + "\"" + did_you_mean(name, names) + " (found: " + quoted_list(names) + ")";
   for (const Unusable& file : catalogue.unusable())

@@ -3,11 +3,14 @@
 // core in the same run.
 //
 //     bench_march [--rounds N]
+//     bench_march --calibrate      the rates of core/engine/cost_model.cpp: nanoseconds per multiply-add of each kernel
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
 #include <ctime>
+#include <ricochet/algebra/block.hpp>
+#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/catalogue.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -61,9 +64,53 @@ struct Case {
   long long contact_steps = 0;
 };
 
+// Time of one call, as the fastest of several batches: what a cost model should compare is the machine at rest.
+template <class Call>
+double fastest(Call call) {
+  double best = 1e300;
+  for (int batch = 0; batch < 20; ++batch) {
+    const double start = thread_nanoseconds();
+    for (int k = 0; k < 400; ++k) call();
+    best = std::min(best, (thread_nanoseconds() - start) / 400);
+  }
+  return best;
+}
+
+void calibrate() {
+  constexpr int rows = 100, width = 3;
+  fmt::print("nanoseconds per multiply-add and lane, 100 rows, half-bandwidth 3, {}\n", lane_instruction_set());
+  fmt::print("{:>5} {:>10} {:>14} {:>12}\n", "lanes", "product", "substitution", "elementwise");
+  for (const int lanes : {1, 2, 4, 8, 16, 32}) {
+    const LaneKernels& kernels = lane_kernels(lanes);
+    Block k(rows, lanes, width), b(rows, lanes), z(rows, lanes, width), q(rows, lanes), d(rows, lanes);
+    const std::vector<double> band(rows * (2 * width + 1) + 8, 1e-3), factor(rows * (2 * width + 1), 1e-3);
+    BandStep step;
+    step.rows = step.solve_rows = rows;
+    step.product_width = width;
+    step.K = band.data();
+    step.k = k.data();
+    step.b = b.data();
+    step.z = z.data();
+    const double product = fastest([&] { kernels.band_step(step); });
+    step.solve_width = width;
+    step.factor = factor.data();
+    const double whole = fastest([&] { kernels.band_step(step); });
+    double* slots[] = {q.data(), d.data()};
+    const double weights[] = {1, 0.5, 0.5, 0, 1, 0.5}, next[] = {1, 2};
+    const double update =
+        fastest([&] { kernels.update(static_cast<long>(q.size()), 2, slots, z.data(), weights, next, k.data()); });
+    fmt::print("{:>5} {:>10.3f} {:>14.3f} {:>12.3f}\n", lanes, product / (rows * 7 * lanes),
+               (whole - product) / (rows * 7 * lanes), update / (rows * 8 * lanes));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::strcmp(argv[1], "--calibrate") == 0) {
+    calibrate();
+    return 0;
+  }
   int rounds = 7;
   if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[2]));
   Catalogue catalogue = Catalogue::standard();
