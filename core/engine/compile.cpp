@@ -166,11 +166,11 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.stages.resize(program.plan.stages.size());
   for (std::size_t k = 0; k < program.start.size(); ++k)
     if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return *refusal;
-  bool contact_read = false, half_width_zero = true;
+  bool contact_read = false, mass_only = true;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return *refusal;
     contact_read = contact_read || program.stages[k].reads_contact;
-    half_width_zero = half_width_zero && program.stages[k].folded.stiffness == 0;
+    mass_only = mass_only && program.stages[k].folded.stiffness == 0;
   }
   if (program.contact && !contact_read) {
     if (const auto evaluation = program.law->reads())
@@ -178,7 +178,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
                      " evaluation of a compliant law: choose another evaluation"};
     return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
-  if (program.kind == OperatorKind::band && half_width_zero && !problem->inertia.factored()) {
+  if (program.kind == OperatorKind::band && mass_only && !problem->inertia.factored()) {
     bool diagonal = true;
     const SparseMatrix& mass = problem->inertia.mass;
     for (int j = 0; j < mass.outerSize(); ++j)

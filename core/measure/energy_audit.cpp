@@ -86,7 +86,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     }
     combine(view.slots, view.z, view.plan->increment, lane, first_);
     for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
-    if (view.effort) count_contact(marcher, view, lane);
+    if (view.effort) count_contact(view, lane);
     if (starting) continue;
     const WorkForm& work = *view.plan->work;
     const bool loads = marcher.program().support || marcher.program().load;
@@ -126,7 +126,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
   }
 }
 
-void EnergyAudit::count_contact(const Marcher& marcher, const StageView& view, int lane) {
+void EnergyAudit::count_contact(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   ContactTotals& contact = state.contact;
   const bool was_active = contact.active > 0;
@@ -156,7 +156,6 @@ void EnergyAudit::count_contact(const Marcher& marcher, const StageView& view, i
   } else if (was_active && contact.first_release < 0) {
     contact.first_release = view.time;
   }
-  (void)marcher;
 }
 
 void EnergyAudit::step_done(Marcher& marcher) {

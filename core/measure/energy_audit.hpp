@@ -73,7 +73,7 @@ class EnergyAudit final : public StepObserver {
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
                std::vector<double>& out) const;
   double contact_row(const std::vector<double>& x, int point) const;
-  void count_contact(const Marcher& marcher, const StageView& view, int lane);
+  void count_contact(const StageView& view, int lane);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;
