@@ -15,11 +15,10 @@ namespace {
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
 
-constexpr std::array roles = {Role::mass, Role::contact, Role::time};
 
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
-  for (const Role role : roles) {
+  for (const Role role : all_roles) {
     const std::string prefix = std::string(role_name(role)) + "__";
     if (!symbol.starts_with(prefix)) continue;
     std::string name(symbol.substr(prefix.size()));
@@ -34,7 +33,7 @@ using Methods = std::vector<std::pair<Role, std::string>>;
 // "time-central-difference.so" is meant to provide the time scheme central-difference.
 Methods meant_by_name(const fs::path& file) {
   const std::string stem = file.stem().string();
-  for (const Role role : roles) {
+  for (const Role role : all_roles) {
     const std::string prefix = std::string(role_name(role)) + "-";
     if (stem.size() > prefix.size() && stem.starts_with(prefix)) return {{role, stem.substr(prefix.size())}};
   }
@@ -197,7 +196,7 @@ void Catalogue::adopt(const fs::path& file, const Registry& from, Registry& regi
       missing += (missing.empty() ? "" : ", ") + text(method.role, method.name);
     mine.emplace_back(method.role, method.name);
   }
-  for (const Role role : roles)
+  for (const Role role : all_roles)
     for (const std::string& name : from.names(role))
       if (std::find(mine.begin(), mine.end(), std::pair(role, name)) == mine.end())
         more += (more.empty() ? "" : ", ") + text(role, name);
@@ -219,6 +218,9 @@ void Catalogue::adopt(const fs::path& file, const Registry& from, Registry& regi
         break;
       case Role::time:
         registry.add_time(from.time(name)->manual, from.time(name)->make);
+        break;
+      case Role::reference:
+        registry.add_reference(from.reference(name)->manual, from.reference(name)->make);
         break;
     }
   }

@@ -20,9 +20,11 @@ const char* role_name(Role role) {
     case Role::contact:
       return "contact";
     case Role::time:
+      return "time";
+    case Role::reference:
       break;
   }
-  return "time";
+  return "reference";
 }
 
 void Registry::check(Role role, const PluginManual& manual) const {
@@ -54,6 +56,12 @@ void Registry::add_time(PluginManual manual, std::function<std::unique_ptr<TimeS
   const std::string name = manual.name;
   time_.emplace(name, Entry<TimeScheme>{std::move(manual), std::move(make), current_file_});
 }
+void Registry::add_reference(PluginManual manual,
+                             std::function<std::unique_ptr<ReferenceSolver>(const Parameters&)> make) {
+  check(Role::reference, manual);
+  const std::string name = manual.name;
+  reference_.emplace(name, Entry<ReferenceSolver>{std::move(manual), std::move(make), current_file_});
+}
 
 const Entry<MassStrategy>* Registry::mass(const std::string& name) const {
   return find(mass_, name);
@@ -63,6 +71,9 @@ const Entry<ContactLaw>* Registry::contact(const std::string& name) const {
 }
 const Entry<TimeScheme>* Registry::time(const std::string& name) const {
   return find(time_, name);
+}
+const Entry<ReferenceSolver>* Registry::reference(const std::string& name) const {
+  return find(reference_, name);
 }
 
 const PluginManual* Registry::manual(Role role, const std::string& name) const {
@@ -76,6 +87,9 @@ const PluginManual* Registry::manual(Role role, const std::string& name) const {
     case Role::time:
       if (const auto* entry = time(name)) return &entry->manual;
       break;
+    case Role::reference:
+      if (const auto* entry = reference(name)) return &entry->manual;
+      break;
   }
   return nullptr;
 }
@@ -88,9 +102,11 @@ std::string Registry::file(Role role, const std::string& name) const {
     case Role::contact:
       return of(contact(name));
     case Role::time:
+      return of(time(name));
+    case Role::reference:
       break;
   }
-  return of(time(name));
+  return of(reference(name));
 }
 
 std::vector<std::string> Registry::names(Role role) const {
@@ -107,6 +123,9 @@ std::vector<std::string> Registry::names(Role role) const {
       break;
     case Role::time:
       collect(time_);
+      break;
+    case Role::reference:
+      collect(reference_);
       break;
   }
   return result;

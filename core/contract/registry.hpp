@@ -1,17 +1,20 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/parameters.hpp>
+#include <ricochet/contract/reference.hpp>
 #include <ricochet/contract/time_scheme.hpp>
 #include <string>
 #include <vector>
 
 namespace ricochet {
 
-enum class Role { mass, contact, time };
+enum class Role { mass, contact, time, reference };
+inline constexpr std::array all_roles = {Role::mass, Role::contact, Role::time, Role::reference};
 const char* role_name(Role role);
 
 /// The manual of a plugin, registered together with its factory so that it cannot drift.
@@ -37,10 +40,12 @@ class Registry {
   void add_mass(PluginManual manual, std::function<std::unique_ptr<MassStrategy>(const Parameters&)> make);
   void add_contact(PluginManual manual, std::function<std::unique_ptr<ContactLaw>(const Parameters&)> make);
   void add_time(PluginManual manual, std::function<std::unique_ptr<TimeScheme>(const Parameters&)> make);
+  void add_reference(PluginManual manual, std::function<std::unique_ptr<ReferenceSolver>(const Parameters&)> make);
 
   const Entry<MassStrategy>* mass(const std::string& name) const;
   const Entry<ContactLaw>* contact(const std::string& name) const;
   const Entry<TimeScheme>* time(const std::string& name) const;
+  const Entry<ReferenceSolver>* reference(const std::string& name) const;
   const PluginManual* manual(Role role, const std::string& name) const;
   /// File of a method's library, "" when registered in-process.
   std::string file(Role role, const std::string& name) const;
@@ -53,6 +58,7 @@ class Registry {
   std::map<std::string, Entry<MassStrategy>> mass_;
   std::map<std::string, Entry<ContactLaw>> contact_;
   std::map<std::string, Entry<TimeScheme>> time_;
+  std::map<std::string, Entry<ReferenceSolver>> reference_;
   std::string current_file_;
 };
 

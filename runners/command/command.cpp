@@ -118,7 +118,7 @@ const std::vector<Subcommand>& subcommands() {
        1,
        {"plugin"},
        command_plan},
-      {"list", "[mass|contact|time]", "List the methods found.", 0, 1, {"plugin"}, command_list},
+      {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {"plugin"}, command_list},
       {"describe",
        "NAME",
        "Show the manual of a method: text, parameters, source, facts.",

@@ -137,7 +137,7 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
   const std::string& name = arguments.operands.front();
   std::vector<std::string> names;
   bool found = false;
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+  for (const Role role : all_roles) {
     const std::vector<std::string> here = catalogue.names(role);
     names.insert(names.end(), here.begin(), here.end());
     if (!catalogue.require(role, name, registry)) continue;
@@ -146,7 +146,7 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
     print_manual(role, *registry.manual(role, name), registry, out);
   }
   if (found) return exit_done;
-  for (const Role role : {Role::mass, Role::contact, Role::time})
+  for (const Role role : all_roles)
     if (const Unusable* file = catalogue.unusable_provider(role, name))
       throw PluginError(file->file.string() + ": " + file->reason);
   std::string message =

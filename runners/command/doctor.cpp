@@ -94,7 +94,7 @@ int command_doctor(const Arguments& arguments, std::ostream& out) {
   catalogue.open_all(registry);
   print_plugins(catalogue, arguments.plugins, out);
   bool complete = true;
-  for (const Role role : {Role::mass, Role::contact, Role::time})
+  for (const Role role : all_roles)
     if (registry.names(role).empty()) {
       out << "\nno usable " << role_name(role) << " plugin: no study can run\n";
       complete = false;

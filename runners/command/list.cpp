@@ -10,12 +10,12 @@ namespace ricochet {
 namespace {
 
 std::vector<Role> roles_asked(const Arguments& arguments) {
-  const std::vector<Role> all = {Role::mass, Role::contact, Role::time};
-  if (arguments.operands.empty()) return all;
+  if (arguments.operands.empty()) return {all_roles.begin(), all_roles.end()};
   const std::string& word = arguments.operands.front();
-  for (const Role role : all)
+  for (const Role role : all_roles)
     if (word == role_name(role)) return {role};
-  const std::vector<std::string> names = {"mass", "contact", "time"};
+  std::vector<std::string> names;
+  for (const Role role : all_roles) names.emplace_back(role_name(role));
   throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) + " (roles: " + quoted_list(names) +
                    ")");
 }

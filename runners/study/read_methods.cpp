@@ -16,9 +16,11 @@ const char* role_phrase(Role role) {
     case Role::contact:
       return "contact law";
     case Role::time:
+      return "time scheme";
+    case Role::reference:
       break;
   }
-  return "time scheme";
+  return "reference";
 }
 
 const PluginManual& require_method(Role role, const std::string& name, const std::string& pointer, Catalogue& catalogue,

@@ -32,7 +32,7 @@ TEST_CASE("methods are known by name before anything is opened") {
   CHECK(catalogue.unusable().empty());
   CHECK(catalogue.folders() == std::vector<fs::path>{installed});
   std::size_t count = 0;
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+  for (const Role role : all_roles) {
     const auto names = catalogue.names(role);
     CHECK(std::is_sorted(names.begin(), names.end()));
     CHECK_FALSE(names.empty());
@@ -82,7 +82,7 @@ TEST_CASE("open_all opens every library, once each") {
   Registry registry;
   catalogue.open_all(registry);
   CHECK(catalogue.unusable().empty());
-  for (const Role role : {Role::mass, Role::contact, Role::time}) CHECK(registry.names(role) == catalogue.names(role));
+  for (const Role role : all_roles) CHECK(registry.names(role) == catalogue.names(role));
   CHECK(catalogue.opened().size() == catalogue.provided().size());
   catalogue.open_all(registry);
   CHECK(catalogue.opened().size() == catalogue.provided().size());

@@ -190,7 +190,7 @@ TEST_CASE("layers include what lies below them") {
 
 TEST_CASE("core and runners know no method by name") {
   // These are words of every day as well; they may stand in a sentence.
-  const std::set<std::string> ordinary = {"consistent", "lumped", "none", "penalty", "singular"};
+  const std::set<std::string> ordinary = {"consistent", "exact", "lumped", "none", "penalty", "singular"};
   // "none" is also what ECharts calls no symbol, what a table shows for no value, and a projection of the initial
   // state: it may stand alone where nothing is decided by it.
   const auto decides = [](const std::string& before) {

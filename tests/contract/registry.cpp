@@ -29,7 +29,7 @@ void add_time(Registry& registry, PluginManual text) {
 
 TEST_CASE("a fresh registry knows no method") {
   const Registry registry;
-  for (const Role role : {Role::mass, Role::contact, Role::time}) {
+  for (const Role role : all_roles) {
     CHECK(registry.names(role).empty());
     CHECK(registry.manual(role, "anything") == nullptr);
     CHECK(registry.file(role, "anything").empty());

@@ -42,7 +42,7 @@ SceneSpec impacting_scene() {
 }  // namespace
 
 TEST_CASE("conformance: manuals say what a user needs") {
-  for (const Role role : {Role::mass, Role::contact, Role::time})
+  for (const Role role : all_roles)
     for (const std::string& name : registry().names(role)) {
       const PluginManual& manual = *registry().manual(role, name);
       INFO(role_name(role) << " " << name);
