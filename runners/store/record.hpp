@@ -33,6 +33,14 @@ struct Environment {
       entries;  ///< program, commit, compiler, flags, processor, cores, libraries …
 };
 
+/// Rows that were worked out of the cases, as they stand in NAME.csv: `errors`, `orders`, `work_precision`,
+/// `stability`, `effects`. A cell is a number, a text, a truth value, or null where there is none; never NaN.
+struct DerivedTable {
+  std::string name;
+  std::vector<std::string> columns;
+  std::vector<std::vector<nlohmann::ordered_json>> rows;  ///< each as long as `columns`
+};
+
 /// Everything a store holds, which is everything a report is made from.
 struct StudyResults {
   nlohmann::ordered_json study;  ///< resolved study
@@ -41,6 +49,7 @@ struct StudyResults {
   std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   Environment environment;
+  std::vector<DerivedTable> derived;
 };
 
 /// The measures of kind `trajectory`, in the order of cases.csv, with what they mean (also the report's tooltips).
