@@ -64,7 +64,10 @@ double energy_scale(const Program& program) {
   if (program.load) {
     Eigen::VectorXd load(problem.dofs());
     problem.load->assemble(0.0, load.data());
-    if (load.allFinite()) scale = std::max(scale, static_energy(problem.stiffness, load));
+    const double energy = load.allFinite() ? static_energy(problem.stiffness, load) : 0;
+    // A force on a structure that nothing holds back: no energy is too large.
+    if (energy == 0 && !problem.space.left_fixed && !problem.space.right_fixed) return infinity;
+    scale = std::max(scale, energy);
   }
   return scale;
 }

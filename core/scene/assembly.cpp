@@ -25,6 +25,38 @@ SparseMatrix bending_stiffness(const FiniteElementSpace& space, double EI) {
   return stiffness;
 }
 
+SparseMatrix axial_stiffness(const FiniteElementSpace& space, double EA) {
+  assert(space.basis == FiniteElementSpace::Basis::linear);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(4 * space.elements.size());
+  for (const auto& element : space.elements) {
+    const double k = EA / element.length;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b)
+        if (element.dof[a] >= 0 && element.dof[b] >= 0)
+          entries.emplace_back(element.dof[a], element.dof[b], a == b ? k : -k);
+  }
+  SparseMatrix stiffness(space.dofs, space.dofs);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  return stiffness;
+}
+
+std::vector<DofPlace> dof_places(const FiniteElementSpace& space) {
+  std::vector<DofPlace> places(static_cast<std::size_t>(space.dofs));
+  const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const auto& element = space.elements[e];
+    // The right end is the next element's left one, to the last bit.
+    const double right = e + 1 < space.elements.size() ? space.elements[e + 1].left : element.left + element.length;
+    for (int a = 0; a < space.functions(); ++a) {
+      if (element.dof[a] < 0) continue;
+      const bool second = hermite ? a >= 2 : a == 1;
+      places[static_cast<std::size_t>(element.dof[a])] = {second ? right : element.left, hermite && a % 2 == 1};
+    }
+  }
+  return places;
+}
+
 Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space) {
   Eigen::VectorXd load = Eigen::VectorXd::Zero(space.dofs);
   for (const auto& element : space.elements) {
@@ -39,18 +71,38 @@ Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space) {
   return load;
 }
 
-std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x) {
-  assert(!space.elements.empty());
+namespace {
+
+// The element that holds x, and ξ there.
+std::pair<const FiniteElementSpace::Element*, double> locate(const FiniteElementSpace& space, double x) {
   const auto after = std::upper_bound(space.elements.begin(), space.elements.end(), x,
                                       [](double value, const auto& element) { return value < element.left; });
   const auto& element = after == space.elements.begin() ? space.elements.front() : *(after - 1);
   double xi = (x - element.left) / element.length;
   if (std::abs(xi - std::round(xi)) < 1e-10) xi = std::round(xi);  // the rounding of a decimal position
-  const auto phi = shape_values(space.basis, element.length, xi);
+  return {&element, xi};
+}
+
+std::vector<std::pair<int, double>> row_of(const FiniteElementSpace& space, const FiniteElementSpace::Element& element,
+                                           const std::array<double, 4>& values) {
   std::vector<std::pair<int, double>> row;
   for (int a = 0; a < space.functions(); ++a)
-    if (element.dof[a] >= 0 && phi[a] != 0) row.emplace_back(element.dof[a], phi[a]);
+    if (element.dof[a] >= 0 && values[a] != 0) row.emplace_back(element.dof[a], values[a]);
   return row;
+}
+
+}  // namespace
+
+std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x) {
+  if (space.elements.empty()) return {{0, 1.0}};
+  const auto [element, xi] = locate(space, x);
+  return row_of(space, *element, shape_values(space.basis, element->length, xi));
+}
+
+std::vector<std::pair<int, double>> strain_row(const FiniteElementSpace& space, double x) {
+  if (space.elements.empty()) return {};
+  const auto [element, xi] = locate(space, x);
+  return row_of(space, *element, shape_strains(space.basis, element->length, xi));
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,

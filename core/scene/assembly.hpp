@@ -10,17 +10,31 @@ namespace ricochet {
 /// K_ij = ∫EI φ_i'' φ_j'' dx (n × n, both triangles) for a Hermite space; EI in N m².
 SparseMatrix bending_stiffness(const FiniteElementSpace& space, double EI);
 
+/// K_ij = ∫EA φ_i' φ_j' dx (n × n, both triangles) for a linear space; EA in N.
+SparseMatrix axial_stiffness(const FiniteElementSpace& space, double EA);
+
+/// Where each dof stands and what it is: the displacement there, or (Hermite) its slope.
+struct DofPlace {
+  double x = 0;
+  bool slope = false;
+};
+std::vector<DofPlace> dof_places(const FiniteElementSpace& space);
+
 /// s_i = ∫ρS φ_i dx (kg on displacements, kg m on rotations) plus the point masses: the inertia load of a support that
 /// accelerates by a is −a s.
 Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space);
 
 /// The displacement at x as Σ value·q_dof, eliminated dofs left out. x within 1e-10 of an element's length from a node
-/// is that node: one entry, exactly 1.
+/// is that node: one entry, exactly 1. Without elements the only dof is everywhere.
 std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x);
 
 /// Rows of displacement_row() for each x (m × n).
 Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,
                                                                const std::vector<double>& x);
+
+/// The derivative that strains the structure at x: w_xx (Hermite) or w_x (linear); at a node, that of the element to
+/// its right (to its left at the end).
+std::vector<std::pair<int, double>> strain_row(const FiniteElementSpace& space, double x);
 
 /// Positions of the nodes, x_0 = 0 to x_N = L; the last is exactly L.
 std::vector<double> node_positions(double length, int elements);

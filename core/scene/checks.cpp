@@ -28,6 +28,35 @@ void check_structure(const BeamSpec& beam) {
           fmt::format("the mass damping η is {:.6g} 1/s; expected a finite number, 0 or above", beam.damping.mass));
 }
 
+void positive(double value, const char* key, const char* what, const char* unit) {
+  require(std::isfinite(value) && value > 0, std::string("/scene/structure/") + key,
+          fmt::format("the {} is {:.6g} {}; expected a finite number above 0", what, value, unit));
+}
+
+void check_structure(const OscillatorSpec& oscillator) {
+  positive(oscillator.mass, "mass", "mass", "kg");
+  const auto not_negative = [](double value, const char* key, const char* what, const char* unit) {
+    require(std::isfinite(value) && value >= 0, std::string("/scene/structure/") + key,
+            fmt::format("the {} is {:.6g} {}; expected a finite number, 0 or above", what, value, unit));
+  };
+  not_negative(oscillator.stiffness, "stiffness", "stiffness", "N/m");
+  not_negative(oscillator.damping, "damping", "damping", "N s/m");
+  require(std::isfinite(oscillator.force.amplitude), "/scene/structure/force/amplitude",
+          "the amplitude of the force is not finite");
+  not_negative(oscillator.force.pulsation, "force/pulsation", "pulsation of the force", "rad/s");
+  require(std::isfinite(oscillator.force.phase), "/scene/structure/force/phase",
+          "the phase of the force is not finite");
+}
+
+void check_structure(const BarSpec& bar) {
+  positive(bar.length, "length", "length", "m");
+  positive(bar.EA, "EA", "stiffness EA", "N");
+  positive(bar.rhoA, "rhoA", "mass per length ρA", "kg/m");
+  for (const double value : {bar.damping.stiffness, bar.damping.mass})
+    require(std::isfinite(value) && value >= 0, "/scene/structure/damping",
+            "the damping of the bar is not a finite number, 0 or above");
+}
+
 void check_support(const SupportSpec& support) {
   require(std::isfinite(support.amplitude), "/scene/support/amplitude", "the amplitude of the support is not finite");
   require(std::isfinite(support.pulsation) && support.pulsation >= 0, "/scene/support/pulsation",
@@ -47,16 +76,29 @@ void check_variables(const SceneSpec& scene) {
   only_x(scene.initial.velocity, "/scene/initial/velocity", "the initial velocity");
 }
 
+bool left_fixed(const SceneSpec& scene) {
+  const auto* bar = std::get_if<BarSpec>(&scene.structure);
+  return bar ? bar->fixed == BarSpec::Fixed::left : std::holds_alternative<BeamSpec>(scene.structure);
+}
+bool right_fixed(const SceneSpec& scene) {
+  const auto* bar = std::get_if<BarSpec>(&scene.structure);
+  return bar && bar->fixed == BarSpec::Fixed::right;
+}
+
 void check_positions(const SceneSpec& scene) {
   if (scene.stops.place != StopsSpec::Place::positions) return;
   const auto& positions = scene.stops.positions;
   const double length = structure_length(scene);
+  require(!std::holds_alternative<OscillatorSpec>(scene.structure), "/scene/stops/at",
+          "an oscillator has one point, its tip; expected \"tip\"");
   require(!positions.empty(), "/scene/stops/at", "the list of positions is empty; expected at least one x");
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const std::string pointer = fmt::format("/scene/stops/at/{}", i);
-    require(positions[i] > 0 && positions[i] <= length, pointer,
-            fmt::format("a stop at x = {:.6g} m is not on the free part of the beam; expected 0 < x ≤ {:.6g} m",
-                        positions[i], length));
+    const double x = positions[i];
+    const bool free = (x > 0 || (x == 0 && !left_fixed(scene))) && (x < length || (x == length && !right_fixed(scene)));
+    require(free, pointer,
+            fmt::format("a stop at x = {:.6g} m is not on the free part of the structure; expected 0 {} x {} {:.6g} m",
+                        x, left_fixed(scene) ? "<" : "≤", right_fixed(scene) ? "<" : "≤", length));
     for (std::size_t j = 0; j < i; ++j)
       require(std::abs(positions[i] - positions[j]) > 1e-9 * length, pointer,
               fmt::format("two stops at x = {:.6g} m; expected different positions", positions[i]));
@@ -67,10 +109,10 @@ void check_positions(const SceneSpec& scene) {
 /// would touch there).
 std::vector<double> touchable(const SceneSpec& scene, int elements) {
   std::vector<double> x = contact_positions(scene, elements);
-  if (x.empty() || scene.stops.place != StopsSpec::Place::nodes) return x;
+  if (x.empty() || scene.stops.place != StopsSpec::Place::nodes || structure_length(scene) == 0) return x;
   constexpr int fine = 200;
   const auto between = node_positions(structure_length(scene), fine);
-  x.insert(x.end(), between.begin() + 1, between.end());
+  x.insert(x.end(), between.begin() + (left_fixed(scene) ? 1 : 0), between.end() - (right_fixed(scene) ? 1 : 0));
   std::sort(x.begin(), x.end());
   return x;
 }
@@ -78,18 +120,19 @@ std::vector<double> touchable(const SceneSpec& scene, int elements) {
 void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    require(lower[row] < upper[row], "/scene/stops/lower",
-            fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is not below the upper stop, {:.6g} m; expected "
-                        "lower < upper everywhere",
+    require(lower[row] <= upper[row], "/scene/stops/lower",
+            fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected "
+                        "lower ≤ upper everywhere",
                         x[i], lower[row], upper[row]));
   }
 }
 
-/// With a stop along the whole beam the clamp lies between the stops too, wherever the support takes it.
+/// With a stop along the whole structure the clamp lies between the stops too, wherever the support takes it.
 void check_clamp(const SceneSpec& scene) {
-  if (scene.stops.place != StopsSpec::Place::nodes) return;
-  const double lower = scene.stops.lower ? (*scene.stops.lower)(0) : -infinity;
-  const double upper = scene.stops.upper ? (*scene.stops.upper)(0) : infinity;
+  if (scene.stops.place != StopsSpec::Place::nodes || (!left_fixed(scene) && !right_fixed(scene))) return;
+  const double clamp = left_fixed(scene) ? 0 : structure_length(scene);
+  const double lower = scene.stops.lower ? (*scene.stops.lower)(clamp) : -infinity;
+  const double upper = scene.stops.upper ? (*scene.stops.upper)(clamp) : infinity;
   const bool moves = scene.support.pulsation != 0;
   const double start = support_at_start(scene.support).position;
   const double highest = moves ? std::abs(scene.support.amplitude) : start, lowest = moves ? -highest : start;
@@ -99,27 +142,35 @@ void check_clamp(const SceneSpec& scene) {
   const double stop = above ? upper : lower, reached = above ? highest : lowest;
   if (scene.support.amplitude == 0)
     throw InputError(fmt::format("/scene/stops/{}", side),
-                     fmt::format("the {} stop at x = 0 is at {:.6g} m, beyond the clamp at 0 m; expected lower ≤ 0 ≤ "
-                                 "upper there",
-                                 side, stop));
+                     fmt::format("the {} stop at x = {:.6g} is at {:.6g} m, beyond the clamp at 0 m; expected lower "
+                                 "≤ 0 ≤ upper there",
+                                 side, clamp, stop));
   throw InputError("/scene/support/amplitude",
-                   fmt::format("the support takes the clamp to {:.6g} m, through the {} stop at {:.6g} m (x = 0); "
+                   fmt::format("the support takes the clamp to {:.6g} m, through the {} stop at {:.6g} m (x = {:.6g}); "
                                "expected an amplitude of at most {:.6g} m",
-                               reached, side, stop, std::max(0.0, std::min(-lower, upper))));
+                               reached, side, stop, clamp, std::max(0.0, std::min(-lower, upper))));
 }
 
 }  // namespace
 
 double structure_length(const SceneSpec& scene) {
-  return std::get<BeamSpec>(scene.structure).length;
+  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) return beam->length;
+  if (const auto* bar = std::get_if<BarSpec>(&scene.structure)) return bar->length;
+  return 0;
+}
+
+double tip_position(const SceneSpec& scene) {
+  const auto* bar = std::get_if<BarSpec>(&scene.structure);
+  return bar && bar->fixed != BarSpec::Fixed::left ? 0 : structure_length(scene);
 }
 
 std::vector<double> contact_positions(const SceneSpec& scene, int elements) {
   if (!scene.stops.lower && !scene.stops.upper) return {};
-  if (scene.stops.place == StopsSpec::Place::tip) return {structure_length(scene)};
+  if (scene.stops.place == StopsSpec::Place::tip || structure_length(scene) == 0) return {tip_position(scene)};
   if (scene.stops.place == StopsSpec::Place::positions) return scene.stops.positions;
   auto nodes = node_positions(structure_length(scene), elements);
-  nodes.erase(nodes.begin());
+  if (right_fixed(scene)) nodes.pop_back();
+  if (left_fixed(scene)) nodes.erase(nodes.begin());
   return nodes;
 }
 
@@ -156,6 +207,9 @@ void check_scene(const SceneSpec& shared, int elements) {
   check_support(scene.support);
   check_variables(scene);
   check_positions(scene);
+  if (const auto* bar = std::get_if<BarSpec>(&scene.structure))
+    require(bar->fixed != BarSpec::Fixed::none || scene.support.amplitude == 0, "/scene/support/amplitude",
+            "a bar with two free ends has no clamp that could move; expected an amplitude of 0");
 
   const auto x = touchable(scene, elements);
   const auto lower = stop_values(scene.stops.lower, x, -infinity);
@@ -172,6 +226,7 @@ void check_scene(const SceneSpec& shared, int elements) {
   }
   for (const auto& element : space.elements)
     for (const auto& point : gauss_points()) scene.load(element.left + point.xi * element.length, 0);
+  scene.load(tip_position(scene), 0);
 }
 
 }  // namespace ricochet

@@ -8,8 +8,11 @@
 /// Where stops act, and whether displacements stay between them.
 namespace ricochet {
 
-/// Length of the structure, m.
+/// Length of the structure, m; 0 for an oscillator.
 double structure_length(const SceneSpec& scene);
+
+/// Where the tip is, m: the free end of a beam or bar.
+double tip_position(const SceneSpec& scene);
 
 /// Positions of the contact points: free nodes, the tip, or the positions given; empty without stops.
 std::vector<double> contact_positions(const SceneSpec& scene, int elements);

@@ -45,24 +45,28 @@ Eigen::VectorXd load_at_start(const SemiDiscrete& problem) {
 void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
   const double length = structure_length(scene);
   const auto support = support_at_start(scene.support);
-  const auto nodes = node_positions(length, static_cast<int>(problem.space.elements.size()));
   problem.position.resize(problem.space.dofs);
   problem.velocity.resize(problem.space.dofs);
-  for (std::size_t i = 1; i < nodes.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(2 * i - 2);
-    problem.position[row] = scene.initial.displacement(nodes[i]) - support.position;
-    problem.position[row + 1] = scene.initial.displacement.slope(nodes[i], 0, length);
-    problem.velocity[row] = scene.initial.velocity(nodes[i]) - support.velocity;
-    problem.velocity[row + 1] = scene.initial.velocity.slope(nodes[i], 0, length);
+  const auto places = dof_places(problem.space);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const auto [x, slope] = places[i];
+    const InitialSpec& initial = scene.initial;
+    problem.position[row] =
+        slope ? initial.displacement.slope(x, 0, length) : initial.displacement(x) - support.position;
+    problem.velocity[row] = slope ? initial.velocity.slope(x, 0, length) : initial.velocity(x) - support.velocity;
   }
+  if (!problem.space.left_fixed && !problem.space.right_fixed) return;
+  const double clamp = problem.space.left_fixed ? 0 : length;
 
   const double size = problem.position.lpNorm<Eigen::Infinity>() + std::abs(support.position);
   const double rate = problem.velocity.lpNorm<Eigen::Infinity>() + std::abs(support.velocity);
   // Values are rounded to 1e-16; slopes come from a stencil of length/256.
-  note_clamp(problem, "displacement", "m", scene.initial.displacement(0), support.position, 1e-12 * size);
+  note_clamp(problem, "displacement", "m", scene.initial.displacement(clamp), support.position, 1e-12 * size);
+  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(clamp), support.velocity, 1e-12 * rate);
+  if (problem.space.basis != FiniteElementSpace::Basis::hermite) return;
   note_clamp(problem, "slope", "rad", scene.initial.displacement.slope(0, 0, length), 0,
              1e-10 * (size + size / length));
-  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(0), support.velocity, 1e-12 * rate);
   note_clamp(problem, "rate of slope", "rad/s", scene.initial.velocity.slope(0, 0, length), 0,
              1e-10 * (rate + rate / length));
 }

@@ -3,7 +3,7 @@
 
 namespace ricochet {
 
-/// Hermite interpolation of w = u0 − φ(0) and w_t = u1 − φ'(0): values and slopes at the free nodes into `position` and
+/// Interpolation of w = u0 − φ(0) and w_t = u1 − φ'(0): values and slopes at the free nodes into `position` and
 /// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
 void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
 

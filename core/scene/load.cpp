@@ -16,6 +16,7 @@ DistributedLoad::DistributedLoad(const Formula& load, const FiniteElementSpace& 
       for (std::size_t a = 0; a < 4; ++a) weights[4 * g + a] = gauss[g].weight * element.length * phi[a];
     }
   }
+  if (space.elements.empty()) points_.push_back(0);
   values_.resize(points_.size());
 }
 
@@ -23,6 +24,7 @@ void DistributedLoad::assemble(double t, double* out) const {
   std::fill(out, out + size_, 0.0);
   if (absent()) return;
   load_.evaluate(points_, t, values_);
+  if (dofs_.empty()) out[0] = values_[0];
   for (std::size_t e = 0; e < dofs_.size(); ++e) {
     for (std::size_t a = 0; a < 4; ++a) {
       const int dof = dofs_[e][a];

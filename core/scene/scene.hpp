@@ -38,7 +38,31 @@ struct BeamSpec {
   Section section;
   Damping damping;
 };
-using StructureSpec = std::variant<BeamSpec>;
+
+/// One mass on a spring and a dashpot, m w'' + c w' + k w = F cos(ωt + ψ) + load(t) − m φ''. Its only point is the tip.
+struct OscillatorSpec {
+  struct Force {
+    double amplitude = 0;  ///< F, N
+    double pulsation = 0;  ///< ω, rad/s
+    double phase = 0;      ///< ψ, rad
+  };
+  double mass = 1;       ///< m, kg
+  double stiffness = 0;  ///< k, N/m; 0: a free mass
+  double damping = 0;    ///< c, N s/m
+  Force force;
+};
+
+/// A bar in tension and compression, ρA w_tt = (EA (w + αw_t)_x)_x; its tip is the free end (x = 0 unless that is
+/// fixed).
+struct BarSpec {
+  enum class Fixed { right, left, none };
+  double length = 1;  ///< m
+  double EA = 1;      ///< N
+  double rhoA = 1;    ///< kg/m
+  Fixed fixed = Fixed::right;
+  Damping damping;
+};
+using StructureSpec = std::variant<BeamSpec, OscillatorSpec, BarSpec>;
 
 /// Two rigid stops g1(x) ≤ u ≤ g2(x); a missing formula is an absent stop.
 struct StopsSpec {
@@ -66,7 +90,7 @@ struct SceneSpec {
   StructureSpec structure;
   StopsSpec stops;
   SupportSpec support;
-  Formula load;  ///< f(x,t), N/m
+  Formula load;  ///< f(x,t), N/m; for an oscillator f(t), N
   InitialSpec initial;
 };
 

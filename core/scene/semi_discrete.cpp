@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <cmath>
 #include <limits>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
@@ -8,6 +11,33 @@ namespace ricochet {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
+  problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
+  problem.damping = beam.damping;
+}
+void add_stiffness(const BarSpec& bar, SemiDiscrete& problem) {
+  problem.stiffness = axial_stiffness(problem.space, bar.EA);
+  problem.damping = bar.damping;
+}
+void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
+  problem.stiffness.resize(1, 1);
+  problem.stiffness.insert(0, 0) = oscillator.stiffness;
+  problem.stiffness.makeCompressed();
+  problem.damping.mass = oscillator.damping / oscillator.mass;
+}
+
+// An oscillator's harmonic force is one more term of its load.
+Formula whole_load(const SceneSpec& scene) {
+  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
+  if (!oscillator || oscillator->force.amplitude == 0) return scene.load;
+  const auto& force = oscillator->force;
+  if (force.pulsation == 0 && !scene.load.uses_t())
+    return Formula(scene.load(0) + force.amplitude * std::cos(force.phase));
+  return Formula(
+      fmt::format("({}) + ({})*cos(({})*t + ({}))", scene.load.text(), force.amplitude, force.pulsation, force.phase),
+      "/scene/structure/force", "xt");
+}
 
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what) {
   const double support = support_at_start(problem.support).position;
@@ -27,18 +57,16 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
 
-  const auto& beam = std::get<BeamSpec>(scene.structure);
-  problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
-  problem.damping = beam.damping;
+  std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
   problem.support = scene.support;
   problem.support_shape = rigid_motion_load(problem.space);
-  problem.load = std::make_shared<const DistributedLoad>(scene.load, problem.space);
+  problem.load = std::make_shared<const DistributedLoad>(whole_load(scene), problem.space);
 
   problem.contact_x = contact_positions(scene, elements);
   problem.contact = displacement_rows(problem.space, problem.contact_x);
   problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
   problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
-  problem.tip = displacement_rows(problem.space, {beam.length});
+  problem.tip = displacement_rows(problem.space, {tip_position(scene)});
 
   interpolate_initial(scene, problem);
   check_start(problem, "/scene/initial/displacement", "the initial displacement");

@@ -11,7 +11,8 @@
 
 namespace ricochet {
 
-/// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element.
+/// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element;
+/// without elements, the force f(0,t) (N) itself.
 class DistributedLoad {
  public:
   DistributedLoad(const Formula& load, const FiniteElementSpace& space);
@@ -22,7 +23,7 @@ class DistributedLoad {
 
  private:
   Formula load_;
-  std::vector<double> points_;  ///< 4 per element
+  std::vector<double> points_;  ///< 4 per element, or one
   mutable std::vector<double> values_;
   std::vector<std::array<int, 4>> dofs_;
   std::vector<std::array<double, 16>> weights_;  ///< per element: weight·φ_a at each Gauss point

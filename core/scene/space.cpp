@@ -27,6 +27,40 @@ FiniteElementSpace make(const BeamSpec& beam, int elements) {
   return space;
 }
 
+/// One point mass and no element.
+FiniteElementSpace make(const OscillatorSpec& oscillator, int elements) {
+  if (elements != 1)
+    throw InputError("/mesh/elements", fmt::format("{} elements; an oscillator has no mesh: expected 1", elements));
+  FiniteElementSpace space;
+  space.structure = "oscillator";
+  space.basis = FiniteElementSpace::Basis::linear;
+  space.dofs = 1;
+  space.point_masses = {{0, oscillator.mass}};
+  return space;
+}
+
+/// Dofs w_0 … w_N, those of fixed ends left out: half-bandwidth 1.
+FiniteElementSpace make(const BarSpec& bar, int elements) {
+  FiniteElementSpace space;
+  space.structure = "bar";
+  space.basis = FiniteElementSpace::Basis::linear;
+  space.left_fixed = bar.fixed == BarSpec::Fixed::left;
+  space.right_fixed = bar.fixed == BarSpec::Fixed::right;
+  const int first = space.left_fixed ? 1 : 0, last = space.right_fixed ? elements - 1 : elements;
+  space.dofs = last - first + 1;
+  const auto nodes = node_positions(bar.length, elements);
+  const auto dof = [&](int node) { return node < first || node > last ? -1 : node - first; };
+  for (int e = 0; e < elements; ++e) {
+    FiniteElementSpace::Element element;
+    element.left = nodes[static_cast<std::size_t>(e)];
+    element.length = bar.length / elements;
+    element.line_density = bar.rhoA;
+    element.dof = {dof(e), dof(e + 1), -1, -1};
+    space.elements.push_back(element);
+  }
+  return space;
+}
+
 }  // namespace
 
 FiniteElementSpace make_space(const StructureSpec& structure, int elements) {

@@ -73,6 +73,7 @@ std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std:
                   {"duration", study_case.duration},
                   {"samples", study_case.samples}};
   for (const auto& [name, value] : study_case.axes) content["axes"].push_back({name, value});
+  if (!study_case.settings.is_null()) content["settings"] = study_case.settings;
   if (study_case.excluded) content["excluded"] = *study_case.excluded;
   for (const auto& library : libraries) {
     if (library.empty()) continue;

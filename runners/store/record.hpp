@@ -12,6 +12,14 @@ struct Curve {
   std::vector<std::vector<double>> columns;
 };
 
+/// Rows that were worked out of the cases, as they stand in NAME.csv: `errors`, `orders`, `work_precision`,
+/// `stability`, `effects`. A cell is a number, a text, a truth value, or null where there is none; never NaN.
+struct DerivedTable {
+  std::string name;
+  std::vector<std::string> columns;
+  std::vector<std::vector<nlohmann::ordered_json>> rows;  ///< each as long as `columns`
+};
+
 /// What one case left behind: a row of cases.csv, and its curve.
 struct CaseRecord {
   std::string id;
@@ -25,20 +33,13 @@ struct CaseRecord {
   std::vector<std::string> notes;
   std::string operator_name;  ///< what compile chose: diagonal, modal, band, sparse
   Curve curve;
+  std::vector<DerivedTable> tables;  ///< rows of its own, without the case's axes (stability.csv)
 };
 
 /// Where and with what the figures were made.
 struct Environment {
   std::vector<std::pair<std::string, std::string>>
       entries;  ///< program, commit, compiler, flags, processor, cores, libraries …
-};
-
-/// Rows that were worked out of the cases, as they stand in NAME.csv: `errors`, `orders`, `work_precision`,
-/// `stability`, `effects`. A cell is a number, a text, a truth value, or null where there is none; never NaN.
-struct DerivedTable {
-  std::string name;
-  std::vector<std::string> columns;
-  std::vector<std::vector<nlohmann::ordered_json>> rows;  ///< each as long as `columns`
 };
 
 /// Everything a store holds, which is everything a report is made from.
@@ -49,7 +50,7 @@ struct StudyResults {
   std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   Environment environment;
-  std::vector<DerivedTable> derived;
+  std::vector<DerivedTable> derived;  ///< worked out of the cases when they are read, not stored
 };
 
 /// The measures of kind `trajectory`, in the order of cases.csv, with what they mean (also the report's tooltips).

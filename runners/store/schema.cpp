@@ -42,6 +42,15 @@ CREATE TABLE curves(
   name TEXT NOT NULL, series BLOB NOT NULL, PRIMARY KEY(case_id, position));
 )sql";
 
+// What version 2 adds. case_tables.content: JSON {columns, rows}. motions: references, computed once, by what
+// determines them.
+constexpr const char* kLaterTables = R"sql(
+CREATE TABLE case_tables(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+  name TEXT NOT NULL, content TEXT NOT NULL, PRIMARY KEY(case_id, position));
+CREATE TABLE motions(key TEXT PRIMARY KEY, content BLOB NOT NULL);
+)sql";
+
 [[noreturn]] void not_ours(const std::filesystem::path& file) {
   throw StoreError(fmt::format(
       "{}: this file is not a Ricochet store; move it away or choose another folder with --out", file.string()));
@@ -103,9 +112,15 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       SQLite::Transaction transaction(database);
       database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};", kStoreApplication, kStoreVersion));
       database.exec(kTables);
+      database.exec(kLaterTables);
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
+    } else if (version == 1) {
+      SQLite::Transaction transaction(database);
+      database.exec(kLaterTables);
+      database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
+      transaction.commit();
     } else if (version != kStoreVersion) {
       throw StoreError(
           fmt::format("{}: this store has format version {}, this program reads and writes version {}; "

@@ -156,6 +156,13 @@ void Store::save_one(const CaseRecord& record) {
   SQLite::Statement note(database, "INSERT INTO notes VALUES(?, ?, ?)");
   for (const std::string& text : notes) insert(note, record.id, position++, text);
 
+  position = 0;
+  SQLite::Statement table(database, "INSERT INTO case_tables VALUES(?, ?, ?, ?)");
+  for (const DerivedTable& one : record.tables) {
+    const Json content = {{"columns", one.columns}, {"rows", one.rows}};
+    insert(table, record.id, position++, one.name, text_of(content));
+  }
+
   SQLite::Statement curve(database, "INSERT INTO curves VALUES(?, ?, ?, ?)");
   for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
     const std::vector<double>& column = record.curve.columns[i];
@@ -168,6 +175,29 @@ void Store::save_one(const CaseRecord& record) {
                static_cast<int>(column.size() * sizeof(double)));
     curve.exec();
   }
+}
+
+std::string Store::motion(const std::string& key) const {
+  const std::lock_guard guard(mutex_);
+  std::string content;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement find(*database_, "SELECT content FROM motions WHERE key = ?");
+    find.bind(1, key);
+    if (!find.executeStep()) return;
+    const SQLite::Column blob = find.getColumn(0);
+    content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
+  });
+  return content;
+}
+
+void Store::save_motion(const std::string& key, const std::string& content) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement add(*database_, "INSERT OR REPLACE INTO motions(key, content) VALUES(?, ?)");
+    add.bind(1, key);
+    add.bind(2, content.data(), static_cast<int>(content.size()));
+    add.exec();
+  });
 }
 
 StudyResults Store::load() const {

@@ -44,6 +44,10 @@ class Store {
   /// Adds finished cases. Measures that are not finite are left out, with a note. May be called from several threads.
   void save(std::span<const CaseRecord> records);
 
+  /// What was computed once and serves several cases (a reference), by what determines it; "" when there is none.
+  std::string motion(const std::string& key) const;
+  void save_motion(const std::string& key, const std::string& content);
+
   /// Everything the store holds.
   StudyResults load() const;
 

@@ -32,6 +32,7 @@ std::string CaseIds::next(const StudyCase& study_case, const std::string& kind) 
   all["scene"] = study_case.scene_json;
   all["duration"] = study_case.duration;
   all["samples"] = study_case.samples;
+  if (!study_case.settings.is_null()) all["settings"] = study_case.settings;
   std::string text = all.dump();
   while (true) {
     std::string id = fmt::format("{:016x}", hash(text)).substr(0, 10);

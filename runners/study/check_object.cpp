@@ -44,6 +44,7 @@ std::string expectation(const Field& field) {
 }
 
 Json check_scalar(const Field& field, const Json& value, const std::string& pointer) {
+  if (field.nullable && value.is_null()) return value;
   const ParameterValue given = to_parameter(value, field.spec.type, pointer, expectation(field));
   if (check_parameter(field.spec, given)) {
     std::string hint;
@@ -82,6 +83,20 @@ Json check_places(const Json& value, const std::string& pointer) {
     if (!value[i].is_number())
       throw InputError(here, "expected a position x in ]0, L], in m, found " + quote(value[i]));
     result.push_back(value[i].get<double>());
+  }
+  return result;
+}
+
+Json check_words(const Field& field, const Json& value, const std::string& pointer) {
+  Json result = Json::array();
+  const bool list = value.is_array();
+  if (list && value.empty())
+    throw InputError(pointer, "an empty list; expected at least one of " + quoted_list(field.spec.words));
+  for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
+    const std::string here = list ? pointer_to(pointer, i) : pointer;
+    result.push_back(check_scalar(field, list ? value[i] : value, here));
+    for (std::size_t j = 0; j < i; ++j)
+      if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
   }
   return result;
 }
@@ -127,6 +142,8 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return check_places(value, pointer);
     case Field::Form::object:
       return check_object(field.nested.front(), value, pointer, axes);
+    case Field::Form::words:
+      return check_words(field, value, pointer);
     case Field::Form::methods:
     case Field::Form::excludes:
       break;

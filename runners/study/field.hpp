@@ -32,15 +32,17 @@ struct Field {
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
     methods,   ///< methods of `role`: a name, an object, or a list of either
+    words,     ///< a word or a list of words out of `spec.words`, one value together
     excludes,  ///< partial matches with a reason
   };
   Form form = Form::scalar;
   ParameterSpec spec;              ///< key, unit, text; for scalars also type, range, words
   std::optional<Json> fallback;    ///< what an absent key means; none: the study must give it
   bool axis = false;               ///< a list here is an axis of the cross product
-  bool nullable = false;           ///< null is a value (an absent stop)
+  bool nullable = false;           ///< null is a value (an absent stop, no limit)
   std::string variables;           ///< for formulas: a subset of "xt"
   Role role = Role::mass;          ///< for methods
+  bool marched = false;            ///< for references: marched_reference is one as well
   std::vector<ObjectForm> nested;  ///< one entry for Form::object
 
   const std::string& key() const { return spec.key; }
@@ -54,6 +56,12 @@ struct Variant {
 
 /// The keys of a whole study; its variants are the kinds. A new kind is one more variant, with its own keys.
 const ObjectForm& study_form();
+
+/// The reference that no plugin provides: the method itself, marched on finer steps and meshes.
+inline constexpr const char* marched_reference = "self";
+
+/// The errors that a comparing study may ask for, in the order of its tables.
+const std::vector<std::string>& error_names();
 
 /// The kinds of study that exist.
 std::vector<std::string> study_kinds();

@@ -76,6 +76,62 @@ void check_steps(const Json& steps, double duration) {
   }
 }
 
+// An oscillator has one dof whatever the mesh: its study need not speak of one.
+void give_oscillator_its_mesh(Json& study) {
+  const Json::json_pointer type("/scene/structure/type");
+  if (study.is_object() && study.contains(type) && study.at(type) == "oscillator" && !study.contains("mesh"))
+    study["mesh"] = {{"elements", 1}};
+}
+
+void check_kind(const Json& study) {
+  if (const auto horizon = study.find("horizon"); horizon != study.end() && !horizon->is_null())
+    if (horizon->get<double>() > study["duration"].get<double>())
+      throw InputError("/horizon", fmt::format("a horizon of {} s lies beyond the duration of {} s",
+                                               horizon->get<double>(), study["duration"].get<double>()));
+  if (const auto steps = study.find("steps"); steps != study.end())
+    if ((*steps)["from"].get<double>() > (*steps)["to"].get<double>())
+      throw InputError("/steps/from", fmt::format("the range begins at {} s and ends at {} s; expected from ≤ to",
+                                                  (*steps)["from"].get<double>(), (*steps)["to"].get<double>()));
+}
+
+// What a kind adds to a case; null where nothing differs from a plain trajectory, whose ids then stay what they were.
+Json kind_settings(const Json& study) {
+  Json settings = Json::object();
+  for (const char* key : {"reference", "errors", "horizon", "repeats", "steps", "observe", "budget"})
+    if (const auto found = study.find(key); found != study.end() && !found->is_null()) settings[key] = *found;
+  return settings.empty() ? Json(nullptr) : settings;
+}
+
+// References: plugins, or the method itself marched finer.
+std::vector<MethodChoice> read_references(Json& resolved, const std::string& pointer, Catalogue& catalogue,
+                                          Registry& registry) {
+  if (!resolved.is_array()) resolved = Json::array({resolved});
+  if (resolved.empty()) throw InputError(pointer, "an empty list; expected at least one reference");
+  std::vector<MethodChoice> choices;
+  Json complete = Json::array();
+  for (std::size_t i = 0; i < resolved.size(); ++i) {
+    const Json& entry = resolved[i];
+    const std::string here = pointer_to(pointer, i);
+    if (entry == marched_reference ||
+        (entry.is_object() && entry.size() == 1 && entry.value("name", "") == marched_reference)) {
+      choices.push_back({marched_reference, {}});
+      complete.push_back({{"name", marched_reference}});
+    } else {
+      if (entry.is_string() && !nearest_name(entry.get<std::string>(), {marched_reference}).empty())
+        throw InputError(here, "no plugin provides the reference " + quote(entry) + "; did you mean \"" +
+                                   std::string(marched_reference) + "\"?");
+      const MethodOptions options = read_methods(Role::reference, entry, here, catalogue, registry);
+      if (options.options.size() != 1) throw InputError(here, "a list of parameters; expected one reference");
+      choices.push_back(options.options.front().choice);
+      complete.push_back(options.resolved.front());
+    }
+    for (std::size_t j = 0; j < i; ++j)
+      if (complete[j] == complete[i]) throw InputError(here, "repeats the reference " + quote(complete[i]["name"]));
+  }
+  resolved = complete;
+  return choices;
+}
+
 std::string column_of(const std::string& scene_pointer) {
   std::string column = scene_pointer.substr(std::string("/scene/").size());
   std::replace(column.begin(), column.end(), '/', '.');
@@ -134,16 +190,21 @@ void add_columns(const Axes& axes, std::vector<std::string>& columns) {
 Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry) {
   std::vector<Axis> axes;
   Study study;
-  study.resolved = check_object(study_form(), parse_json(text), "", axes);
+  Json given = parse_json(text);
+  give_oscillator_its_mesh(given);
+  study.resolved = check_object(study_form(), given, "", axes);
   Json& resolved = study.resolved;
   study.name = resolved["name"].get<std::string>();
   study.question = resolved["question"].get<std::string>();
   study.kind = resolved["kind"].get<std::string>();
   check_name(study.name);
-  const auto duration = resolved["duration"].get<double>();
-  const auto samples = resolved["samples"].get<int>();
-  check_steps(resolved["step"], duration);
-  const std::vector<double> steps = list_of<double>(resolved["step"]);
+  // A kind without a step of its own (stability) goes through a range of them within each case.
+  const bool stepped = resolved.contains("step");
+  const auto duration = resolved["duration"].is_null() ? 0.0 : resolved["duration"].get<double>();
+  const auto samples = resolved.value("samples", 0);
+  if (stepped) check_steps(resolved["step"], duration);
+  const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
+  check_kind(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
   std::vector<MethodOptions> methods;
@@ -153,6 +214,10 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     refuse_repeated(methods.back().options, role);
     resolved["methods"][key] = methods.back().resolved;
   }
+  std::vector<MethodChoice> references;
+  if (resolved.contains("reference"))
+    references = read_references(resolved["reference"], "/reference", catalogue, registry);
+  const Json settings = kind_settings(resolved);
   const auto& masses = methods[0].options;
   const auto& contacts = methods[1].options;
   const auto& times = methods[2].options;
@@ -171,7 +236,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
-  add_columns({{"elements", nullptr}, {"step", nullptr}}, study.columns);
+  add_columns({{"elements", nullptr}}, study.columns);
+  if (stepped) add_columns({{"step", nullptr}}, study.columns);
   add_columns(scenes.front().axes, study.columns);
 
   CaseIds ids;
@@ -192,10 +258,12 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.elements = meshes[product[4]];
     one.step = steps[product[5]];
     one.axes.emplace_back("elements", one.elements);
-    one.axes.emplace_back("step", one.step);
+    if (stepped) one.axes.emplace_back("step", one.step);
     one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
     one.duration = duration;
     one.samples = samples;
+    one.references = references;
+    one.settings = settings;
     one.id = ids.next(one, study.kind);
     study.cases.push_back(std::move(one));
   }

@@ -30,6 +30,10 @@ Section read_section(const Json& json) {
   return section;
 }
 
+Damping read_damping(const Json& json) {
+  return {json.at("stiffness").get<double>(), json.at("mass").get<double>()};
+}
+
 BeamSpec read_beam(const Json& json) {
   BeamSpec beam;
   beam.length = json.at("length").get<double>();
@@ -38,8 +42,31 @@ BeamSpec read_beam(const Json& json) {
     beam.young = json.at("young").get<double>();
     beam.density = json.at("density").get<double>();
   }
-  beam.damping = {json.at("damping").at("stiffness").get<double>(), json.at("damping").at("mass").get<double>()};
+  beam.damping = read_damping(json.at("damping"));
   return beam;
+}
+
+OscillatorSpec read_oscillator(const Json& json) {
+  const Json& force = json.at("force");
+  return {json.at("mass").get<double>(),
+          json.at("stiffness").get<double>(),
+          json.at("damping").get<double>(),
+          {force.at("amplitude").get<double>(), force.at("pulsation").get<double>(), force.at("phase").get<double>()}};
+}
+
+BarSpec read_bar(const Json& json) {
+  const auto fixed = json.at("fixed").get<std::string>();
+  using Fixed = BarSpec::Fixed;
+  return {json.at("length").get<double>(), json.at("EA").get<double>(), json.at("rhoA").get<double>(),
+          fixed == "right" ? Fixed::right : (fixed == "left" ? Fixed::left : Fixed::none),
+          read_damping(json.at("damping"))};
+}
+
+StructureSpec read_structure(const Json& json) {
+  const auto type = json.at("type").get<std::string>();
+  if (type == "oscillator") return read_oscillator(json);
+  if (type == "bar") return read_bar(json);
+  return read_beam(json);
 }
 
 StopsSpec read_stops(const Json& json) {
@@ -60,7 +87,7 @@ StopsSpec read_stops(const Json& json) {
 
 SceneSpec read_scene(const Json& scene) {
   SceneSpec spec;
-  spec.structure = read_beam(scene.at("structure"));
+  spec.structure = read_structure(scene.at("structure"));
   spec.stops = read_stops(scene.at("stops"));
   const Json& support = scene.at("support");
   spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),

@@ -30,6 +30,8 @@ struct StudyCase {
   double step = 0;
   double duration = 0;
   int samples = 0;
+  std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
+  Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
   std::optional<std::string> excluded;  ///< the reason given in `exclude`
 };
 

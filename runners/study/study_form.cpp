@@ -109,10 +109,26 @@ ObjectForm structure() {
                      "",
                      {}}},
                    {{"given"}, {}}};
+  ObjectForm force;
+  force.fields = {real("amplitude", "N", any, 0.0, "F of the force F cos(ωt + ψ)."),
+                  real("pulsation", "rad/s", non_negative, 0.0, "ω of the force."),
+                  real("phase", "rad", any, 0.0, "ψ of the force.")};
+  ObjectForm oscillator;
+  oscillator.fields = {real("mass", "kg", positive, std::nullopt, "Mass m."),
+                       real("stiffness", "N/m", non_negative, std::nullopt, "Stiffness k; 0: a free mass."),
+                       real("damping", "N s/m", non_negative, 0.0, "Damping c."),
+                       object("force", Json::object(), "Harmonic force on the mass; absent: none.", force)};
+  ObjectForm bar;
+  bar.fields = {real("length", "m", positive, std::nullopt, "Length L."),
+                real("EA", "N", positive, std::nullopt, "Stiffness EA."),
+                real("rhoA", "kg/m", positive, std::nullopt, "Mass per length ρA."),
+                word("fixed", {"right", "left", "none"}, std::nullopt,
+                     "The end that is held; the tip is the free one (x = 0 where both are free)."),
+                object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   ObjectForm keys;
-  keys.fields = {word("type", {"beam"}, std::nullopt, "What moves.")};
+  keys.fields = {word("type", {"beam", "oscillator", "bar"}, std::nullopt, "What moves.")};
   keys.discriminator = "/type";
-  keys.variants = {{{"beam"}, beam}};
+  keys.variants = {{{"beam"}, beam}, {{"oscillator"}, oscillator}, {{"bar"}, bar}};
   return keys;
 }
 
@@ -148,15 +164,84 @@ ObjectForm scene() {
   return keys;
 }
 
+Field step() {
+  return real("step", "s", positive, std::nullopt, "Time step h.");
+}
+
+Field duration() {
+  return single(real("duration", "s", positive, std::nullopt,
+                     "Simulated time; the run ends at the last whole step not beyond it."));
+}
+
+Field samples() {
+  return integer("samples", {2, 1000000, false, false}, 200, "Number of points of each sampled curve.");
+}
+
+/// A number that may be null: no such limit.
+Field optional(Field field) {
+  field = single(std::move(field));
+  field.nullable = true;
+  field.fallback = Json(nullptr);
+  return field;
+}
+
+Field budget() {
+  return optional(real("budget", "s", positive, std::nullopt,
+                       "Processor time after which a case is stopped and counts as failed; null: no limit."));
+}
+
+std::vector<Field> comparison() {
+  Field reference =
+      methods("reference", Role::reference,
+              "What each case is compared with: a reference plugin, \"self\" (the method itself on finer "
+              "steps and meshes), or a list; the first is the reference, and its gap to the others is part "
+              "of the error floor.");
+  reference.marched = true;
+  Field errors = named(Field::Form::words, "errors", std::nullopt, "The errors to measure.");
+  errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());
+  errors.fallback = Json(error_names());
+  return {
+      step(),
+      duration(),
+      samples(),
+      std::move(reference),
+      std::move(errors),
+      optional(real("horizon", "s", positive, std::nullopt,
+                    "Trajectories are compared up to this time; null: up to the end, or up to where two nearby runs "
+                    "have drifted apart, whichever comes first (the report says which).")),
+      budget()};
+}
+
+std::vector<Field> work_precision() {
+  std::vector<Field> fields = comparison();
+  fields.push_back(integer("repeats", {1, 1000, false, false}, 5,
+                           "How often each case is timed, one at a time, in turn with the others."));
+  return fields;
+}
+
+std::vector<Field> stability() {
+  ObjectForm steps;
+  steps.fields = {single(real("from", "s", positive, std::nullopt, "Smallest step.")),
+                  single(real("to", "s", positive, std::nullopt, "Largest step.")),
+                  integer("count", {1, 10000, false, false}, 20, "Number of steps, spaced evenly on a log scale.")};
+  Field observe;
+  observe.spec.type = ParameterSpec::Type::boolean;
+  observe.spec.key = "observe";
+  observe.spec.text = "Whether the same cells are marched as well, and the limit found by bisection.";
+  observe.fallback = true;
+  return {object("steps", std::nullopt, "The range of steps.", steps), observe,
+          optional(real("duration", "s", positive, std::nullopt,
+                        "Simulated time of each observed cell; null: as long as growth needs to show.")),
+          budget()};
+}
+
 // A new kind is one more entry here, with the keys that only it has.
 std::vector<Variant> kinds() {
   return {
-      {{"trajectory"},
-       {{single(real("duration", "s", positive, std::nullopt,
-                     "Simulated time; the run ends at the last whole step not beyond it.")),
-         integer("samples", {2, 1000000, false, false}, 200, "Number of points of each sampled curve.")},
-        "",
-        {}}},
+      {{"trajectory"}, {{step(), duration(), samples(), budget()}, "", {}}},
+      {{"convergence"}, {comparison(), "", {}}},
+      {{"work-precision"}, {work_precision(), "", {}}},
+      {{"stability"}, {stability(), "", {}}},
   };
 }
 
@@ -179,7 +264,6 @@ ObjectForm study() {
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
       object("mesh", std::nullopt, "The meshes.", mesh),
       object("methods", std::nullopt, "The methods whose combinations are run.", chosen),
-      real("step", "s", positive, std::nullopt, "Time step h."),
       named(Field::Form::excludes, "exclude", Json::array(), "Combinations that are not run, each with its reason.")};
   keys.discriminator = "/kind";
   keys.variants = kinds();
@@ -187,6 +271,12 @@ ObjectForm study() {
 }
 
 }  // namespace
+
+const std::vector<std::string>& error_names() {
+  static const std::vector<std::string> names = {"tip-linf",    "tip-l2", "displacement-l2", "displacement-h2",
+                                                 "velocity-l2", "energy", "impact-times",    "impulse"};
+  return names;
+}
 
 std::vector<std::string> study_kinds() {
   std::vector<std::string> words;

@@ -73,6 +73,7 @@ class SchemaWriter {
   Json single(const Field& field) {
     switch (field.form) {
       case Field::Form::scalar:
+        if (field.nullable) return {{"anyOf", Json::array({scalar(field.spec), {{"type", "null"}}})}};
         return scalar(field.spec);
       case Field::Form::text:
         return {{"type", "string"}};
@@ -84,8 +85,12 @@ class SchemaWriter {
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
       case Field::Form::object:
         return object(field.nested.front());
+      case Field::Form::words: {
+        const Json one = scalar(field.spec);
+        return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}}})}};
+      }
       case Field::Form::methods:
-        return methods(field.role);
+        return methods(field.role, field.marched);
       case Field::Form::excludes:
         break;
     }
@@ -108,8 +113,9 @@ class SchemaWriter {
     return schema;
   }
 
-  Json methods(Role role) {
+  Json methods(Role role, bool marched) {
     Json plain = Json::array(), ways = Json::array();
+    if (marched) plain.push_back(marched_reference);
     for (const std::string& name : registry_.names(role)) {
       const PluginManual& manual = *registry_.manual(role, name);
       const ObjectForm form = method_form(manual);

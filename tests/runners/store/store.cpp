@@ -146,7 +146,7 @@ TEST_CASE("store: another version is refused with what was found, expected and t
   SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
   using Catch::Contains;
   CHECK_THAT(open_error(folder.path()),
-             Contains("results.sqlite") && Contains("version 99") && Contains("version 1") && Contains("--fresh"));
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 2") && Contains("--fresh"));
   CHECK_THROWS_AS(read_store(folder.path()), StoreError);
   CHECK(open_error(folder.path(), true).empty());
 }

@@ -1,0 +1,61 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <optional>
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/step_plan.hpp>
+#include <variant>
+#include <vector>
+
+/// \file
+/// One step of a plan as a matrix, while the contact set stays what it is. Stage by stage, with R = S⁻¹Hᵀ and W = H R
+/// over the closed points alone,
+///
+///     z° = S⁻¹ Σ_j (β^M_j M + β^C_j C + β^K_j K) x_j + R(π₁ p₋₁ + π₂ p₋₂),     z = z° + π₀ R p
+///     rigid:      0 = H(Σ_j y_j x_j + y_z z)                                   the impact measure rests on its stop
+///     compliant:  p = −κ H(Σ_j g_j x_j + g_z z)                                the spring, pulling as well as pushing
+///
+/// and x_j ← Σ_i u_ji x_i + u_jz z. Loads and bounds move the fixed point and not the eigenvalues: they are left out.
+namespace ricochet {
+
+/// M, C, K (n × n) and the rows of H of the closed points (m × n; m = 0: open), in any coordinates.
+struct LinearProblem {
+  Eigen::MatrixXd mass, damping, stiffness, contact;
+};
+
+/// How a closed contact answers: by a constraint, or by a spring where the scheme evaluates it.
+struct ClosedContact {
+  std::optional<Evaluation> evaluation;  ///< absent: rigid, the impact measure is held
+  double stiffness = 0;                  ///< κ, N/m
+};
+
+using StepMapOrRefusal = std::variant<Eigen::MatrixXd, Refusal>;
+
+/// A of X_{n+1} = A X_n, X = (x_0, …, x_{s−1}, then p₋₁ and p₋₂ of each stage whose law weights them). Refused: a
+/// singular S, a plan without the measure that the law reads, an impact measure that no effort can move.
+StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law);
+
+/// What a scheme does to the closed points themselves under a rigid law: A (s × s) of x_{n+1} = A x_n over one contact
+/// row of the slots, where the impact measure of the plan's single stage vanishes at every step. Together with the
+/// modes of the structure held at these points it has the eigenvalues of step_map(): H z follows from H x alone, and
+/// on the displacements that leave the points where they are the constraint does not act. Nothing for plans of several
+/// stages, without impact measure, or whose measure no effort can move.
+std::optional<Eigen::MatrixXd> held_point_map(const StepPlan& plan);
+
+/// Eigenvalues that round-off cannot tell apart, as one.
+struct Root {
+  std::complex<double> value;  ///< their mean: far better known than each, where the matrix is defective
+  int multiplicity = 1;
+  /// Fewer eigenvectors than eigenvalues: powers of the matrix grow like n on the unit circle. Only with vectors.
+  bool defective = false;
+  Eigen::VectorXcd vector;  ///< an eigenvector, empty when not asked for
+};
+
+/// Eigenvalues closer than this are one cluster; a double root is known to about the square root of round-off.
+constexpr double root_cluster = 1e-6;
+
+/// Eigenvalues of A, largest modulus first, after balancing by powers of two (Parlett and Reinsch 1969), so that slots
+/// may have different units. Empty when A is not finite or the iteration fails.
+std::vector<Root> step_roots(const Eigen::MatrixXd& matrix, bool vectors);
+
+}  // namespace ricochet
