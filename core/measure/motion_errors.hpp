@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+#include <ricochet/contract/reference.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// How far a motion is from a reference on the same grid, up to the horizon T. Δ is their difference; ‖·‖ are over
+/// times 0 … T (trapezoidal rule, divided by T: a root mean square) and over x.
+///
+///     tip-linf         max_t |Δu(tip)|                                 m
+///     tip-l2           (1/T ∫ Δu(tip)² dt)^½                           m
+///     displacement-l2  (1/T ∫∫ Δu² dx dt)^½                            m^{3/2}
+///     displacement-h2  (1/T ∫∫ (Δu'')² dx dt)^½; a bar: Δu'            m^{-1/2}; m^{½}
+///     velocity-l2      (1/T ∫∫ (Δu_t)² dx dt)^½                        m^{3/2}/s
+///     energy           1/T ∫ |ΔE| dt                                   J
+///     impact-times     max over the reference's impacts of the distance to the nearest impact on the same side   s
+///     impulse          max_t |∫₀ᵗ Δ(Σp) dτ|: the contact force in the dual norm W^{-1,∞}(0,T)                    N s
+///
+/// For an oscillator the integrals over x are the values of its one point (m, m/s), and there is no strain.
+struct MotionError {
+  std::string name;
+  std::optional<double> value;  ///< none: `reason` says why
+  std::string reason;
+};
+
+/// The errors named (those above, others throw std::logic_error), in that order. Times beyond the horizon, or beyond
+/// what the motion reached, do not count; a motion that ended early has no errors but a reason.
+std::vector<MotionError> motion_errors(const SampledMotion& motion, const SampledMotion& reference,
+                                       const SampleGrid& grid, double horizon, const std::vector<std::string>& names);
+
+/// The time up to which two motions stay within `share` of the first one's largest tip displacement; the grid's last
+/// time when they always do.
+double common_horizon(const SampledMotion& a, const SampledMotion& b, const SampleGrid& grid, double share);
+
+/// Richardson extrapolation of two motions whose error is C h^order, fine at h and coarse at h·ratio:
+/// fine + (fine − coarse)/(ratio^order − 1). Events are the fine ones, their times extrapolated where both have the
+/// same sequence of sides.
+SampledMotion extrapolated(const SampledMotion& fine, const SampledMotion& coarse, double ratio, double order);
+
+}  // namespace ricochet

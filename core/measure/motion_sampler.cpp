@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ricochet/measure/motion_sampler.hpp>
+#include <ricochet/scene/assembly.hpp>
+
+namespace ricochet {
+namespace {
+
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+Rows strain_rows(const FiniteElementSpace& space, const std::vector<double>& places) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (const auto& [dof, value] : strain_row(space, places[i])) entries.emplace_back(static_cast<int>(i), dof, value);
+  Rows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
+}
+
+// Weights of the cubic through s = −1, 0, 1, 2, and of its derivative in s, at s in [0, 1].
+struct Cubic {
+  std::array<double, 4> value, slope;
+};
+Cubic cubic(double s) {
+  const double a = s + 1, b = s, c = s - 1, d = s - 2;
+  return {{-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6},
+          {-(c * d + b * d + b * c) / 6, (c * d + a * d + a * c) / 2, -(b * d + a * d + a * b) / 2,
+           (b * c + a * c + a * b) / 6}};
+}
+
+// A time is a step when it is one up to the rounding of two decimal numbers.
+constexpr double rounding_of_steps = 1e-6;
+
+}  // namespace
+
+void sample_places(double length, int cells, SampleGrid& grid) {
+  if (length == 0) return;
+  const double cell = length / cells, offset = 0.5 / std::sqrt(3.0);
+  for (int i = 0; i < cells; ++i)
+    for (const double side : {-offset, offset}) {
+      grid.places.push_back((i + 0.5 + side) * cell);
+      grid.weights.push_back(cell / 2);
+    }
+}
+
+ContactLog::ContactLog(const Marcher& marcher)
+    : model_(*marcher.program().model),
+      problem_(*marcher.program().problem),
+      T_(marcher.width()),
+      h_(marcher.program().h),
+      signs_(static_cast<std::size_t>(problem_.points()), 0),
+      position_(static_cast<std::size_t>(model_.rows())),
+      velocity_(static_cast<std::size_t>(model_.rows())) {
+  events_.reserve(64);
+}
+
+double ContactLog::row(const std::vector<double>& x, int point) const {
+  const RowMatrix& rows = model_.contact();
+  double sum = 0;
+  for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
+    sum +=
+        rows.value[static_cast<std::size_t>(e)] * x[static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)])];
+  return sum;
+}
+
+void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
+  force_ = 0;
+  if (!view.effort) return;
+  const bool touching = (view.contact_lanes & 1u) != 0;
+  if (!touching && !closed_[0] && !closed_[1]) return;
+  const LaneSpec& lane = marcher.program().lanes.front();
+  const double t = view.time;
+  bool now[2] = {false, false}, changed = false, state_known = false;
+  double onset[2] = {t + 2 * h_, t + 2 * h_};
+  for (int j = 0; j < problem_.points(); ++j) {
+    const double p = view.effort[0][j * T_];
+    const auto sign = static_cast<signed char>(p > 0 ? 1 : (p < 0 ? -1 : 0));
+    signed char& before = signs_[static_cast<std::size_t>(j)];
+    changed = changed || sign != before;
+    before = sign;
+    if (sign == 0) continue;
+    force_ += p;
+    const int side = sign > 0 ? 0 : 1;
+    now[side] = true;
+    if (closed_[side]) continue;
+    if (!state_known) {
+      const Combination& rate = marcher.program().plan.velocity;
+      const auto T = static_cast<std::size_t>(T_);
+      for (std::size_t i = 0; i < position_.size(); ++i) {
+        position_[i] = view.slots[0][i * T];
+        velocity_[i] = 0;
+        for (std::size_t s = 0; s < rate.slots.size(); ++s) velocity_[i] += rate.slots[s] * view.slots[s][i * T];
+      }
+      state_known = true;
+    }
+    const double stop = side == 0 ? lane.lower[j] : lane.upper[j];
+    const double gap = row(position_, j) + marcher.support(0, t) - stop;
+    const double speed = row(velocity_, j) + marcher.support_rate(0, t);
+    double time = t;
+    if (gap * speed < 0) time += std::min(-gap / speed, 2 * h_);
+    if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
+    onset[side] = std::min(onset[side], time);
+  }
+  if (changed) ++changes_;
+  impulse_ += h_ * force_;
+  for (const int side : {0, 1}) {
+    if (now[side] && !closed_[side]) {
+      double tip = marcher.support_rate(0, t);
+      const RowMatrix& rows = model_.tip();
+      for (std::size_t e = 0; e < rows.index.size(); ++e)
+        tip += rows.value[e] * velocity_[static_cast<std::size_t>(rows.index[e])];
+      events_.push_back({std::clamp(onset[side], t - h_, t + h_), side == 0 ? -1 : 1, true, tip});
+    } else if (!now[side] && closed_[side]) {
+      events_.push_back({t, side == 0 ? -1 : 1, false, 0});
+    }
+    closed_[side] = now[side];
+  }
+}
+
+MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid)
+    : marcher_(marcher),
+      grid_(grid),
+      log_(marcher),
+      mass_(QuadraticForm::of(marcher.program().problem->inertia)),
+      stiffness_(marcher.program().problem->stiffness),
+      places_(displacement_rows(marcher.program().problem->space, grid.places)),
+      strains_(strain_rows(marcher.program().problem->space, grid.places)) {}
+
+void MotionSampler::keep() {
+  constexpr std::size_t window = 5;
+  states_.push_back({marcher_.step(), marcher_.position(0), log_.impulse()});
+  if (states_.size() > window) states_.pop_front();
+}
+
+const MotionSampler::State* MotionSampler::at(long long step) {
+  for (const State& state : states_)
+    if (state.step == step) return &state;
+  if (marcher_.step() < step) marcher_.march(step - marcher_.step(), &log_);
+  if (!marcher_.status(0).running || marcher_.step() != step) return nullptr;
+  keep();
+  return &states_.back();
+}
+
+bool MotionSampler::next() {
+  if (next_ >= grid_.times.size()) return false;
+  const SemiDiscrete& problem = *marcher_.program().problem;
+  if (!started_) {
+    started_ = true;
+    states_.push_back({0, problem.position, 0});
+    marcher_.start(&log_);
+    if (marcher_.step() > 0) keep();
+  }
+  const double h = marcher_.program().h, t = grid_.times[next_], ratio = t / h;
+  long long n = std::llround(ratio);
+  const bool whole = std::abs(ratio - static_cast<double>(n)) <= rounding_of_steps;
+  if (!whole) n = static_cast<long long>(std::floor(ratio));
+
+  Eigen::VectorXd w, v;
+  double impulse = 0;
+  if (whole && n == 0) {
+    w = problem.position;
+    v = problem.velocity;
+  } else if (whole) {
+    const std::array<const State*, 3> s = {at(n - 1), at(n), at(n + 1)};
+    if (!s[0] || !s[1] || !s[2]) return false;
+    w = s[1]->position;
+    v = (s[2]->position - s[0]->position) / (2 * h);
+    impulse = s[1]->impulse;
+  } else {
+    const long long first = std::max(n - 1, 0LL);
+    std::array<const State*, 4> s{};
+    for (int k = 0; k < 4; ++k)
+      if (!(s[static_cast<std::size_t>(k)] = at(first + k))) return false;
+    // Before the second step the window begins at 0: the same cubic, seen from further left.
+    const double local = ratio - static_cast<double>(first + 1);
+    const Cubic weights = cubic(local);
+    w = Eigen::VectorXd::Zero(problem.dofs());
+    v = Eigen::VectorXd::Zero(problem.dofs());
+    for (std::size_t k = 0; k < 4; ++k) {
+      w += weights.value[k] * s[k]->position;
+      v += weights.slope[k] / h * s[k]->position;
+    }
+    const std::size_t left = static_cast<std::size_t>(n - first);
+    const double share = ratio - static_cast<double>(n);
+    impulse = (1 - share) * s[left]->impulse + share * s[left + 1]->impulse;
+  }
+  const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);
+  double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
+  if (marcher_.program().contact && marcher_.law().reads()) {
+    const Eigen::VectorXd touched = problem.contact * w;
+    for (int j = 0; j < problem.points(); ++j)
+      if (const double depth = marcher_.depth(0, j, touched[j], support); depth > 0)
+        energy += marcher_.law().potential(depth, 0);
+  }
+  motion_.tip.push_back((problem.tip * w)[0] + support);
+  motion_.tip_velocity.push_back((problem.tip * v)[0] + rate);
+  motion_.energy.push_back(energy);
+  motion_.impulse.push_back(impulse);
+  const Eigen::VectorXd u = (places_ * w).array() + support, strain = strains_ * w,
+                        velocity = (places_ * v).array() + rate;
+  motion_.displacement.insert(motion_.displacement.end(), u.begin(), u.end());
+  motion_.strain.insert(motion_.strain.end(), strain.begin(), strain.end());
+  motion_.velocity.insert(motion_.velocity.end(), velocity.begin(), velocity.end());
+  ++next_;
+  return true;
+}
+
+SampledMotion MotionSampler::finish() {
+  motion_.events = log_.events();
+  return std::move(motion_);
+}
+
+}  // namespace ricochet
