@@ -9,14 +9,14 @@
 namespace ricochet {
 namespace {
 
-constexpr double above_floor = 4;        // e over what it is measured against, to count
-constexpr double dip_depth = 4;          // under its neighbours' interpolation
-constexpr double largest_scatter = 0.4;  // of ln e: a factor of 1.5
-constexpr double slope_change = 0.1;     // from end to end, that does not matter
-constexpr double end_miss = 0.05;        // of ln e at an end, that does not matter
-constexpr double falling = 0.3;          // slope below which errors do not fall
-constexpr double trust = 0.02;           // relative, of any error
-constexpr double chance = 0.995;         // two-sided 99 %
+constexpr double above_floor = 4;                          // e over what it is measured against, to count
+constexpr double dip_depth = 4;                            // under its neighbours' interpolation
+constexpr double largest_scatter = 0.4;                    // of ln e: a factor of 1.5
+constexpr double slope_change = 0.1;                       // from end to end, that does not matter
+constexpr double end_miss = 0.05;                          // of ln e at an end, that does not matter
+constexpr double falling = 0.3;                            // slope below which errors do not fall
+constexpr double trust = 0.02;                             // relative, of any error
+constexpr double chance_bend = 0.975, chance_end = 0.995;  // two-sided 95 % and 99 %
 constexpr double widest = 0.5, widest_near = 0.3, near = 0.05, margin = 0.1;
 
 double student(double p, std::size_t freedom) {
@@ -64,10 +64,24 @@ Line line_through(const Logs& logs, const Window& w) {
   return line;
 }
 
+/// Whether the slopes from point to point only rise, or only fall: +1, −1 towards the fine end; 0 neither.
+int drift(const Logs& logs, const Window& w) {
+  int sign = 0;
+  double last = 0;
+  for (std::size_t k = w.from; k + 1 < w.to; ++k) {
+    const double slope = (logs.y[k + 1] - logs.y[k]) / (logs.x[k + 1] - logs.x[k]);
+    const int change = k == w.from ? 0 : slope > last ? 1 : slope < last ? -1 : 0;
+    if (k > w.from && (change == 0 || (sign != 0 && change != sign))) return 0;
+    sign = change;
+    last = slope;
+  }
+  return sign;
+}
+
 /// Change of slope from end to end by a quadratic term, and whether it is more than chance.
 struct Bend {
   double change = 0;
-  bool significant = false;
+  bool significant = false, steady = false;
 };
 
 Bend bend_of(const Logs& logs, const Window& w, const Line& line) {
@@ -84,8 +98,9 @@ Bend bend_of(const Logs& logs, const Window& w, const Line& line) {
   }
   const double coefficient = uy / uu, left = std::max(0.0, line.squares - coefficient * uy);
   const double error = std::sqrt(left / static_cast<double>(w.count() - 3) / uu);
+  const bool steady = drift(logs, w) != 0;
   return {2 * coefficient * (logs.x[w.to - 1] - logs.x[w.from]),
-          std::abs(coefficient) > student(chance, w.count() - 3) * error};
+          (steady && w.count() >= 6) || std::abs(coefficient) > student(chance_bend, w.count() - 3) * error, steady};
 }
 
 /// Whether the others predict the point `end`.
@@ -94,7 +109,7 @@ bool predicted(const Logs& logs, const Window& others, std::size_t end) {
   const double dx = logs.x[end] - line.mean_x;
   const double reach = line.scatter() * std::sqrt(1 + 1 / static_cast<double>(others.count()) + dx * dx / line.sxx);
   return std::abs(logs.y[end] - line.at(logs.x[end])) <=
-         std::max(end_miss, student(chance, others.count() - 2) * reach);
+         std::max(end_miss, student(chance_end, others.count() - 2) * reach);
 }
 
 bool straight(const Logs& logs, const Window& w) {
@@ -128,7 +143,7 @@ Fit fit(const Logs& logs, const Window& w) {
   for (std::size_t k = w.from; k < w.to; ++k)
     out.half += std::abs(logs.x[k] - out.line.mean_x) / out.line.sxx * logs.trust[k];
   const Bend bend = bend_of(logs, w, out.line);
-  if (bend.significant) out.half += 0.5 * std::abs(bend.change);
+  if (bend.significant || bend.steady) out.half += 0.5 * std::abs(bend.change);
   return out;
 }
 
@@ -196,7 +211,7 @@ std::string too_few(const std::vector<OrderPoint>& points, const OrderQuestion& 
   std::size_t floored = 0, dominated = 0;
   for (const OrderPoint& p : points) {
     if (!std::isfinite(p.error)) continue;
-    if (p.error <= above_floor * question.other_error)
+    if (question.other_error > 0 && p.error <= above_floor * question.other_error)
       ++dominated;
     else if (p.error <= above_floor * p.floor || p.error == 0)
       ++floored;
@@ -209,7 +224,19 @@ std::string too_few(const std::vector<OrderPoint>& points, const OrderQuestion& 
   return out;
 }
 
-void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& span) {
+/// Whether the finer points of a window lean towards `target`: then its line says what was, not what will be.
+bool leans_towards(const Logs& logs, const Fit& fitted, double target) {
+  const Window& w = fitted.window;
+  const double gap = target - fitted.slope();
+  const auto slope = [&](std::size_t k) { return (logs.y[k + 1] - logs.y[k]) / (logs.x[k + 1] - logs.x[k]); };
+  const int towards = drift(logs, w);
+  if (towards * gap > 0 && std::abs(slope(w.to - 2) - slope(w.from)) >= slope_change) return true;
+  if (w.count() < 5) return false;
+  const double finer = line_through(logs, {w.to - std::max<std::size_t>(3, (w.count() + 1) / 2), w.to}).slope;
+  return std::abs(target - finer) < 0.5 * std::abs(gap);
+}
+
+void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& span, bool leans) {
   if (!question.declared) {
     fitted.reason = "no order is declared; " + span;
     return;
@@ -223,6 +250,9 @@ void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& s
     fitted.reason = fmt::format("agrees with the declared {:.3g}; {}", declared, span);
   } else if (away == 0) {
     fitted.reason = fmt::format("the interval of ±{:.2g} is too wide to tell; {}", half, span);
+  } else if (leans) {
+    fitted.reason =
+        fmt::format("{} than the declared {:.3g}, but the finer points move towards it; {}", side, declared, span);
   } else if (away >= margin) {
     fitted.verdict = OrderVerdict::refuted;
     fitted.reason = *fitted.high < falling
@@ -283,10 +313,10 @@ OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& q
     return out;
   }
   bool stops_falling = false;
-  if (best->slope() < falling) {
+  if (!best->falls()) {
     if (const auto coarser = longest(logs, 0, best->window.from + 1, falls))
       best = coarser;
-    else if (best->window.from > 0)
+    else if (best->slope() < falling && best->window.from > 0)
       stops_falling = logs.y[0] - logs.y[best->window.from] > std::log(10.0);
   }
   // A finer range that falls as well: the coarser one was not asymptotic yet.
@@ -309,13 +339,13 @@ OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& q
     if (points[k].size < points[out.first].size && points[k].size > points[out.last].size) out.left_out.push_back(k);
   out.gci = index_of(points, logs, w);
   std::string span = span_text(points, out, question);
-  if (w.from > 0) span += fmt::format("; {} coarser pre-asymptotic", w.from);
+  if (w.from > 0) span += fmt::format("; {} coarser left as pre-asymptotic", w.from);
   if (w.to < logs.size()) span += fmt::format("; {} finer do not follow", logs.size() - w.to);
   if (stops_falling)
     out.reason = fmt::format("the error stops falling at {:.2g}: something other than the {} dominates; {}",
                              std::exp(best->line.mean_y), question.refined, span);
   else
-    judge(out, question, span);
+    judge(out, question, span, question.declared && leans_towards(logs, *best, *question.declared));
   return out;
 }
 

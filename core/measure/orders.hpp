@@ -13,30 +13,32 @@
 ///    again: a signed error on its way through zero) is left out, one in five points at most.
 /// 2. A window of at least three neighbouring points is *straight* when ln e over ln r scatters by at most 0.4 around
 ///    its line (a factor of 1.5, as impacts do), bends by no more than chance or by less than 0.1 in slope from end to
-///    end (quadratic term, t test at 99 %), and predicts each of its ends from the others (within 5 % or by t at 99 %).
+///    end (quadratic term, t test at 95 %; six points or more whose slopes only rise or only fall bend), and predicts
+///    each of its ends from the others (within 5 % or by t at 99 %).
 /// 3. The longest straight window is taken, the finer of equals. It gives way to a straight window that lies beyond it
 ///    by three finer points and falls (low end of its interval above 0.3): the coarser one was pre-asymptotic. One that
-///    does not fall (slope below 0.3) gives way to a coarser one that does: there the errors meet a floor.
+///    does not fall gives way to a coarser one that does: there the errors meet a floor.
 /// 4. p is the least-squares slope. Half its 95 % interval is
 ///
 ///        t_{0.975, m−2} s / √S_xx · √((1+ρ)/(1−ρ)) + Σ_k |w_k| δ_k + d,    w_k = (ln r_k − mean) / S_xx
 ///
 ///    with s the scatter, ρ ∈ [0, 0.8] the lag-one correlation of the residuals (m ≥ 5), and d half the change of slope
-///    from end to end where it is more than chance. δ_k is the larger of 0.02 and −ln(1 − (floor + other)/e_k): no
-///    error is trusted to better than 2 %, so that points exactly on a line still have an interval.
+///    from end to end where it is more than chance or goes one way only. δ_k is the larger of 0.02 and
+///    −ln(1 − (floor + other)/e_k): no error is trusted to better than 2 %, so that points exactly on a line still have
+///    an interval.
 namespace ricochet {
 
 /// One error of a refinement.
 struct OrderPoint {
-  double size = 0;              ///< r: the step (s) or the length of an element (m), > 0
-  double error = 0;             ///< e ≥ 0; what is not finite is left out
-  double floor = 0;             ///< uncertainty of what e is measured against, in the unit of e
-  std::optional<double> value;  ///< the quantity itself, signed: then the GCI is its own, else that of the errors
+  double size = 0;                ///< r: the step (s) or the length of an element (m), > 0
+  double error = 0;               ///< e ≥ 0; what is not finite is left out
+  double floor = 0;               ///< uncertainty of what e is measured against, in the unit of e
+  std::optional<double> value{};  ///< the quantity itself, signed: then the GCI is its own, else that of the errors
 };
 
 /// What is asked of a fit besides the points.
 struct OrderQuestion {
-  std::optional<double> declared;
+  std::optional<double> declared{};
   std::string refined = "step";  ///< what r is, for sentences
   double other_error = 0;        ///< estimate of the error that refining r does not lower, in the unit of e
   std::string other = "the other refinement";  ///< where that error comes from, for sentences: "the mesh"
@@ -58,7 +60,8 @@ struct OrderFit {
 };
 
 /// Fits the order. Confirmed: the interval holds the declared order and is no wider than ±0.5, or |p − declared| ≤ 0.05
-/// with ±0.3. Refuted: the interval is 0.1 or more away from it. Otherwise undecided, with the reason: too few usable
+/// with ±0.3. Refuted: the interval is 0.1 or more away from it, and the finer points do not move towards it (slopes
+/// that go one way, or the finer half nearer to it by half). Otherwise undecided, with the reason: too few usable
 /// points, too wide an interval, another error that dominates, errors that stop falling, nothing declared. Points in
 /// any order; equal sizes are taken together (geometric mean). Throws std::invalid_argument on a size that is not
 /// positive, on a negative error or floor.
