@@ -114,6 +114,8 @@ enum class Restitution { exact, asymptotic, ignored };
 /// What a scheme declares of itself; the conformance suite measures each and fails the plugin that is wrong.
 struct SchemeFacts {
   double order = 1;  ///< in h, without contact, with the start rule chosen
+  /// In h, at rigid stops: of displacements, impact times and impulses once an impact has happened.
+  double contact_order = 1;
   Restitution restitution = Restitution::ignored;
   bool needs_regular_mass = false;
   /// Largest stable h·ω on the undamped oscillator, none when unconditionally stable.

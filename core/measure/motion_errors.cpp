@@ -50,6 +50,13 @@ class Comparison {
       error.value = mean([&](std::size_t k) { return std::abs(a_.energy[k] - b_.energy[k]); });
     } else if (name == "impulse") {
       error.value = largest(a_.impulse, b_.impulse);
+      const auto none = [](const SampledMotion& motion) {
+        return std::all_of(motion.impulse.begin(), motion.impulse.end(), [](double value) { return value == 0; });
+      };
+      if (none(a_) && none(b_)) {
+        error.value.reset();
+        error.reason = "neither motion touches a stop";
+      }
     } else if (name == "impact-times") {
       impact_times(error);
     } else {

@@ -41,6 +41,10 @@ void remove_stale_curves(const std::filesystem::path& folder, const StudyResults
   for (const auto& file : stale) std::filesystem::remove(file, ignored);
 }
 
+void write_derived(const std::filesystem::path& folder, const StudyResults& results) {
+  for (const DerivedTable& table : results.derived) write_file(folder / (table.name + ".csv"), derived_csv(table));
+}
+
 }  // namespace
 
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
@@ -51,6 +55,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   write_curves(folder / "curves", results, changed);
   remove_stale_curves(folder / "curves", results);
   write_file(folder / "cases.csv", cases_csv(results));
+  write_derived(folder, results);
   write_file(folder / "report.html", render(results));
 }
 
@@ -58,6 +63,7 @@ void write_tables(const std::filesystem::path& folder, const StudyResults& resul
   make_folder(folder);
   write_curves(folder / "curves", results, nullptr);
   write_file(folder / "cases.csv", cases_csv(results));
+  write_derived(folder, results);
   write_file(folder / "measures.csv", measures_csv());
   write_file(folder / "left_out.csv", left_out_csv(results));
   write_file(folder / "notes.csv", notes_csv(results));

@@ -3,93 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ctime>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy_audit.hpp>
 
+#include "runners/execution/prepare_case.hpp"
+
 namespace ricochet {
 namespace {
-
-// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from
-// start to end.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// Steps that fit in the duration; what is left over is said.
-long long whole_steps(const StudyCase& study_case, std::vector<std::string>& notes) {
-  const double ratio = study_case.duration / study_case.step;
-  const auto nearest = std::llround(ratio);
-  // A ratio of two decimal numbers is whole up to a few roundings.
-  if (std::abs(ratio - static_cast<double>(nearest)) <= 1e-9 * ratio) return nearest;
-  const auto steps = static_cast<long long>(std::floor(ratio));
-  notes.push_back(
-      fmt::format("the duration {:g} s is no multiple of the step {:g} s: the run ends at the last whole step, "
-                  "t = {:.9g} s",
-                  study_case.duration, study_case.step, static_cast<double>(steps) * study_case.step));
-  return steps;
-}
-
-template <class Found>
-const Found& registered(const Found* found, Role role, const std::string& name) {
-  if (!found) throw std::logic_error(fmt::format("{} '{}' is not registered", role_name(role), name));
-  return *found;
-}
-
-struct Prepared {
-  std::shared_ptr<const SemiDiscrete> problem;
-  std::optional<Program> program;
-  std::string refusal;
-  long long steps = 0;
-  std::vector<std::string> notes;
-};
-
-Prepared prepare(const StudyCase& study_case, const Registry& registry) {
-  Prepared prepared;
-  prepared.steps = whole_steps(study_case, prepared.notes);
-  const auto& mass_entry = registered(registry.mass(study_case.mass.name), Role::mass, study_case.mass.name);
-  const auto& law_entry = registered(registry.contact(study_case.contact.name), Role::contact, study_case.contact.name);
-  const auto& scheme_entry = registered(registry.time(study_case.time.name), Role::time, study_case.time.name);
-  const auto mass = mass_entry.make(study_case.mass.parameters);
-  auto law = law_entry.make(study_case.contact.parameters);
-  const auto scheme = scheme_entry.make(study_case.time.parameters);
-
-  auto discretised = discretise(study_case.scene, study_case.elements, *mass);
-  if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
-    prepared.refusal = refusal->sentence;
-    return prepared;
-  }
-  prepared.problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
-  prepared.notes.insert(prepared.notes.end(), prepared.problem->notes.begin(), prepared.problem->notes.end());
-  auto plan = scheme->plan(study_case.step, problem_facts(*prepared.problem, *law));
-  if (const auto* refusal = std::get_if<Refusal>(&plan)) {
-    prepared.refusal = refusal->sentence;
-    return prepared;
-  }
-  const StepPlan& steps = std::get<StepPlan>(plan);
-  if (law->reads() && steps.facts.restitution != Restitution::ignored)
-    for (const auto& [key, value] : study_case.time.parameters.values())
-      if (key == "restitution" && std::holds_alternative<double>(value) && std::get<double>(value) != 0)
-        prepared.notes.push_back(
-            "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
-  CompileOptions options;
-  options.expected_steps = prepared.steps;
-  auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
-                          {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
-  if (const auto* refusal = std::get_if<Refusal>(&compiled))
-    prepared.refusal = refusal->sentence;
-  else
-    prepared.program.emplace(std::move(std::get<Program>(compiled)));
-  return prepared;
-}
-
-std::vector<std::pair<std::string, std::string>> left_out_pairs(const Program& program) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (const LeftOut& item : program.left_out) pairs.emplace_back(item.item, item.reason);
-  return pairs;
-}
 
 // The audit of every step costs about this much more than the step alone.
 constexpr double audit_seconds_per_step = 6e-7;
@@ -164,7 +84,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
 
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   CasePlan plan;
-  const Prepared prepared = prepare(study_case, registry);
+  const Prepared prepared = prepare_case(study_case, registry);
   plan.refusal = prepared.refusal;
   plan.steps = prepared.steps;
   plan.notes = prepared.notes;
@@ -182,7 +102,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.id = study_case.id;
   record.axes = study_case.axes;
   const double set_up = thread_seconds();
-  Prepared prepared = prepare(study_case, registry);
+  Prepared prepared = prepare_case(study_case, registry);
   record.notes = prepared.notes;
   if (!prepared.program) {
     record.status = "refused";
@@ -197,17 +117,19 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Sampler sampler;
   record.setup_seconds = thread_seconds() - set_up;
 
-  const double run = thread_seconds();
+  const double run = thread_seconds(), budget = budget_of(study_case);
+  bool spent = false;
   marcher.start(&audit);
   if (marcher.step() > 0) sampler.take(marcher, audit);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
-  for (long long k = 1; k <= samples && marcher.any_running(); ++k) {
+  for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
     // Samples at equal fractions of the run, on whole steps.
     const auto target = static_cast<long long>(
         std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
-    while (marcher.step() < target && marcher.any_running()) {
+    while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
       marcher.march(std::min<long long>(target - marcher.step(), 20000), &audit);
+      spent = thread_seconds() - run > budget;
     }
     if (marcher.any_running() && marcher.step() == target) sampler.take(marcher, audit);
   }
@@ -215,7 +137,11 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.steps = marcher.step();
   record.curve = sampler.finish();
   const LaneStatus& status = marcher.status(0);
-  if (status.running) {
+  if (status.running && marcher.step() < prepared.steps) {
+    record.status = "failed";
+    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
+                                prepared.steps, marcher.time());
+  } else if (status.running) {
     record.status = "done";
   } else {
     const bool law = status.cause.starts_with("the contact law");

@@ -1,10 +1,34 @@
 #include "runners/execution/run_study.hpp"
 
+#include <fmt/format.h>
+
+#include <set>
+
 #include "runners/execution/environment.hpp"
+#include "runners/execution/run_comparison.hpp"
 #include "runners/execution/study_runner.hpp"
 #include "runners/report/report.hpp"
+#include "runners/study/field.hpp"
 
 namespace ricochet {
+namespace {
+
+// A study none of whose scenes has a reference is told so before anything runs.
+void require_reference(const Study& study, References& references, const std::atomic<bool>& stop) {
+  std::set<std::string> scenes, refusals;
+  for (const StudyCase& one : study.cases) {
+    if (one.excluded || !scenes.insert(one.scene_json.dump()).second) continue;
+    const ReferenceSet set = references.of(one, stop);
+    if (!set.applicable.empty()) return;
+    refusals.insert(set.refusals.begin(), set.refusals.end());
+  }
+  if (refusals.empty()) return;
+  throw InputError("/reference", fmt::format("no reference applies to this scene: {}; \"{}\" applies wherever the "
+                                             "methods march",
+                                             fmt::join(refusals, "; "), marched_reference));
+}
+
+}  // namespace
 
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options) {
   StudyRunner runner;
@@ -12,6 +36,20 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
     return run_case(study_case, registry, stop);
   };
+  std::unique_ptr<References> references;
+  if (study.resolved.contains("reference")) {
+    runner.open = [&](MotionShelf shelf, const std::atomic<bool>& stop) {
+      references = std::make_unique<References>(study, registry, std::move(shelf));
+      require_reference(study, *references, stop);
+    };
+    runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return run_comparison(study_case, registry, *references, stop);
+    };
+  }
+  if (study.resolved.contains("repeats"))
+    runner.time = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return time_case(study_case, registry, stop);
+    };
   runner.libraries = [&](const StudyCase& study_case) {
     return std::vector<std::filesystem::path>{registry.file(Role::mass, study_case.mass.name),
                                               registry.file(Role::contact, study_case.contact.name),

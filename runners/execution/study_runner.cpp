@@ -7,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "runners/execution/derive.hpp"
 #include "runners/execution/environment.hpp"
 #include "runners/execution/progress.hpp"
 #include "runners/execution/say.hpp"
@@ -89,9 +90,13 @@ int run_in(const StudyRunner& runner, const Study& study, const RunOptions& opti
   std::atomic<bool>& stop = signals.requested();
   Store store(folder, options.fresh);
   const std::set<std::string> kept = store.begin(header(study), expected_cases(runner, study));
+  if (runner.open)
+    runner.open({[&](const std::string& key) { return store.motion(key); },
+                 [&](const std::string& key, const std::string& content) { store.save_motion(key, content); }},
+                stop);
   std::vector<CaseRecord> excluded;
   std::vector<PendingCase> pending;
-  const std::set<std::string> missing = find_missing(runner, study, kept, excluded, pending);
+  std::set<std::string> missing = find_missing(runner, study, kept, excluded, pending);
   if (!missing.empty()) {
     const Environment now = runner.environment();
     store.save_environment(kept.empty() ? now : merge_environments(now, store.load().environment));
@@ -119,7 +124,15 @@ int run_in(const StudyRunner& runner, const Study& study, const RunOptions& opti
   }
   if (ran < static_cast<int>(running)) return interrupted(runner, store, folder);
 
-  const StudyResults results = store.load();
+  if (runner.time) {
+    const std::vector<CaseRecord> timed =
+        time_cases(runner, study, store.load(), study.resolved.value("repeats", 1), stop);
+    if (stop) return interrupted(runner, store, folder);
+    store.save(timed);
+    for (const CaseRecord& record : timed) missing.insert(record.id);
+  }
+
+  const StudyResults results = with_tables(store.load());
   write_outputs(folder, results, runner.render, &missing);
   const int code = results_exit_code(results);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -138,6 +151,8 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
       options.out.empty() ? std::filesystem::path("results") / study.name : options.out;
   try {
     return run_in(runner, study, options, folder);
+  } catch (const Interrupted&) {
+    return kInterrupted;
   } catch (const StoreError& error) {
     say(runner.messages, fmt::format("error: {}\n", error.what()));
     return kStoreUnusable;
@@ -146,7 +161,7 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
 
 int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
   try {
-    const StudyResults results = read_store(folder);
+    const StudyResults results = with_tables(read_store(folder));
     write_outputs(folder, results, render);
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     return 0;
@@ -158,7 +173,7 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
 
 int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to) {
   try {
-    write_tables(to, read_store(folder));
+    write_tables(to, with_tables(read_store(folder)));
     say(stdout, fmt::format("tables: {}\n", to.string()));
     return 0;
   } catch (const StoreError& error) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runners/execution/outputs.hpp"
+#include "runners/execution/references.hpp"
 #include "runners/execution/run_case.hpp"
 #include "runners/execution/run_study.hpp"
 
@@ -19,6 +20,10 @@ struct StudyRunner {
       libraries;  ///< of its three methods; "" when in-process
   std::function<Environment()> environment;
   RenderReport render;
+  /// Called once, when the store is open and before any case runs; throws InputError for what only shows then.
+  std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
+  /// Processor seconds of one case's marching, alone; none: cases of this kind are not timed apart.
+  std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
   std::FILE* out = stdout;       ///< the summary
   std::FILE* messages = stderr;  ///< progress and errors
 };
@@ -38,6 +43,12 @@ struct PendingCase {
   const StudyCase* study_case = nullptr;
   double predicted_seconds = 0;
 };
+
+/// Times the finished cases that have no time yet, one at a time on this thread, `repeats` rounds in turn: measures
+/// timed_seconds (median), timed_low and timed_high (smallest and largest), and a note when other programs took the
+/// processor meanwhile. Ends early when `stop` becomes true, then without any time. Returns the records to save.
+std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
+                                   int repeats, const std::atomic<bool>& stop);
 
 /// Runs the cases on `jobs` threads, longest predicted first so that all threads end together, and calls `finished` for
 /// each record, in the thread that made it. Ends early when `stop` becomes true. An exception of `finished` sets `stop`

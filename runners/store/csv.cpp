@@ -10,7 +10,9 @@ namespace {
 
 std::vector<std::string> measure_columns(const StudyResults& results) {
   std::vector<std::string> columns;
-  for (const MeasureInfo& measure : trajectory_measures()) columns.emplace_back(measure.name);
+  // The measures of a trajectory stand in every trajectory's table; other kinds show what they have.
+  if (results.kind == "trajectory")
+    for (const MeasureInfo& measure : trajectory_measures()) columns.emplace_back(measure.name);
   for (const CaseRecord& record : results.cases)
     for (const auto& measure : record.measures)
       if (std::find(columns.begin(), columns.end(), measure.first) == columns.end()) columns.push_back(measure.first);
@@ -96,6 +98,18 @@ std::string curve_csv(const Curve& curve) {
     table += csv_line(fields);
   }
   return table;
+}
+
+std::string derived_csv(const DerivedTable& table) {
+  std::vector<std::string> fields;
+  for (const std::string& column : table.columns) fields.push_back(csv_field(column));
+  std::string text = csv_line(fields);
+  for (const auto& row : table.rows) {
+    fields.clear();
+    for (const auto& cell : row) fields.push_back(csv_value(cell));
+    text += csv_line(fields);
+  }
+  return text;
 }
 
 std::string measures_csv() {

@@ -27,6 +27,9 @@ std::string cases_csv(const StudyResults& results);
 /// curves/ID.csv: one column per series, one line per sample.
 std::string curve_csv(const Curve& curve);
 
+/// A derived table: its columns, then one line per row; empty fields for null.
+std::string derived_csv(const DerivedTable& table);
+
 /// The meaning of the measures: measure, unit, text.
 std::string measures_csv();
 /// id, item, reason.

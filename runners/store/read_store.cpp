@@ -93,13 +93,13 @@ StudyResults read_tables(SQLite::Database& database) {
              record.curve.names.push_back(row.getColumn(1).getString());
              record.curve.columns.push_back(series(row.getColumn(2)));
            });
-  per_case(database, cases, "SELECT case_id, name, content FROM case_tables ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
-             const Json content = Json::parse(row.getColumn(2).getString());
-             record.tables.push_back({row.getColumn(1).getString(),
-                                      content.at("columns").get<std::vector<std::string>>(),
-                                      content.at("rows").get<std::vector<std::vector<Json>>>()});
-           });
+  per_case(
+      database, cases, "SELECT case_id, name, content FROM case_tables ORDER BY case_id, position",
+      [](CaseRecord& record, Statement& row) {
+        const Json content = Json::parse(row.getColumn(2).getString());
+        record.tables.push_back({row.getColumn(1).getString(), content.at("columns").get<std::vector<std::string>>(),
+                                 content.at("rows").get<std::vector<std::vector<Json>>>()});
+      });
 
   SQLite::Statement environment(database, "SELECT name, value FROM environment ORDER BY position");
   while (environment.executeStep())

@@ -130,7 +130,10 @@ void Store::save_one(const CaseRecord& record) {
   if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
   SQLite::Database& database = *database_;
 
-  SQLite::Statement add(database, "INSERT OR REPLACE INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  // A case that is saved again (timed after it ran) takes its rows with it.
+  SQLite::Statement remove(database, "DELETE FROM cases WHERE id = ?");
+  insert(remove, record.id);
+  SQLite::Statement add(database, "INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   insert(add, record.id, case_position, fingerprint, record.status, record.reason,
          static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name);

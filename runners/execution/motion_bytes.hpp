@@ -1,0 +1,13 @@
+#pragma once
+#include <ricochet/contract/reference.hpp>
+#include <string>
+
+namespace ricochet {
+
+/// A reference motion as bytes: each vector as its length and its numbers (little-endian doubles), texts likewise.
+std::string to_bytes(const ReferenceMotion& motion);
+
+/// The motion that to_bytes() was given; throws std::runtime_error for bytes that are none.
+ReferenceMotion motion_from_bytes(const std::string& bytes);
+
+}  // namespace ricochet
