@@ -1,0 +1,113 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+/// \file
+/// The linear oscillator, solved exactly, in forms that keep their digits in every regime: under-, critically and
+/// over-damped, without stiffness, forced at rest, in resonance, near each of these.
+///
+///     y'' + 2δ y' + λ y = f e^{στ}                   δ ≥ 0, λ ≥ 0, σ = 0 or iω
+///     y = y₀ c + v₀ s + f r                           c(0) = s'(0) = 1, c'(0) = s(0) = 0, r(0) = r'(0) = 0
+///
+/// r is the second divided difference of e^{·τ} at the two roots s₁, s₂ and σ. Where they are all near, it is summed;
+/// where σ is near one root, it is the difference of two first divided differences.
+namespace ricochet::reference {
+
+using Complex = std::complex<double>;
+
+/// (e^z − 1)/z, 1 at z = 0.
+inline Complex relative_growth(Complex z) {
+  if (std::abs(z) < 1e-300) return 1;
+  const double half = std::sin(z.imag() / 2), grown = std::expm1(z.real());
+  const Complex rise{grown * std::cos(z.imag()) - 2 * half * half, (grown + 1) * std::sin(z.imag())};
+  return rise / z;
+}
+
+/// ∫₀^τ e^{σx} dx, with e^{στ} at hand and the start's phase left out.
+inline Complex integrated(Complex exponent, double tau) {
+  return tau * relative_growth(exponent * tau);
+}
+
+/// First divided difference (e^{aτ} − e^{στ})/(a − σ): the response from rest of z' = a z + e^{στ}. Re a ≤ 0.
+inline Complex first_order_response(Complex a, Complex exponent, double tau, Complex phasor) {
+  return phasor * tau * relative_growth((a - exponent) * tau);
+}
+
+/// y, y', y''.
+struct Motion {
+  double value = 0, rate = 0, curve = 0;
+};
+
+/// δ (1/s) and λ (1/s²) of y'' + 2δ y' + λ y.
+class LinearMode {
+ public:
+  LinearMode() = default;
+  LinearMode(double decay, double square) : decay_(decay), square_(square), gap_(square - decay * decay) {
+    root_ = std::sqrt(std::abs(gap_));
+    if (gap_ > 0) return;
+    fast_ = decay + root_;
+    slow_ = fast_ > 0 ? square / fast_ : 0;
+  }
+  double decay() const { return decay_; }
+  double square() const { return square_; }
+  /// The largest of |s₁| and |s₂|, rad/s.
+  double pulsation() const { return gap_ > 0 ? std::sqrt(square_) : fast_; }
+
+  /// c, s and s' at τ; c' = −λ s.
+  struct Fundamental {
+    double c = 1, s = 0, s_rate = 1;
+  };
+  Fundamental fundamental(double tau) const {
+    if (gap_ > 0) {
+      const double shrunk = std::exp(-decay_ * tau), turn = root_ * tau;
+      const double sine = shrunk * std::sin(turn) / root_, cosine = shrunk * std::cos(turn);
+      return {cosine + decay_ * sine, sine, cosine - decay_ * sine};
+    }
+    const double late = std::exp(-slow_ * tau), early = std::exp(-fast_ * tau), spread = 2 * root_ * tau;
+    const double sine = late * tau * (spread > 0 ? -std::expm1(-spread) / spread : 1);
+    return {late + slow_ * sine, sine, early - slow_ * sine};
+  }
+
+  /// r and r' at τ; `phasor` is e^{στ}.
+  struct Response {
+    Complex value, rate;
+  };
+  Response response(Complex exponent, double tau, Complex phasor, const Fundamental& at) const {
+    const double nearby = std::max(pulsation(), std::abs(exponent));
+    if (nearby * tau <= 1) return summed(exponent, tau);
+    const Complex detuning = square_ + exponent * (2 * decay_ + exponent);
+    const bool apart = gap_ > 0 ? std::abs(detuning) > 0.05 * (square_ + std::norm(exponent)) : root_ <= 0.05 * fast_;
+    if (apart)
+      return {(phasor - at.c - exponent * at.s) / detuning,
+              (exponent * phasor + square_ * at.s - exponent * at.s_rate) / detuning};
+    const Complex first = gap_ > 0 ? Complex(-decay_, root_) : Complex(-slow_);
+    const Complex second = gap_ > 0 ? Complex(-decay_, -root_) : Complex(-fast_);
+    const Complex one = first_order_response(first, exponent, tau, phasor);
+    const Complex two = first_order_response(second, exponent, tau, phasor);
+    return {(one - two) / (first - second), (first * one - second * two) / (first - second)};
+  }
+
+ private:
+  /// Σ_k a_k τ^{k+2}/(k+2)!, Σ a_k z^k = 1/((1 + 2δz + λz²)(1 − σz)): for |s₁τ|, |s₂τ|, |στ| ≤ 1, to round-off.
+  Response summed(Complex exponent, double tau) const {
+    Complex sum = 0;
+    double before = 0, term = 1, factorial = tau;
+    Response total{};
+    for (int k = 0; k < 22; ++k) {
+      sum = term + exponent * sum;
+      total.rate += sum * factorial;
+      factorial *= tau / (k + 2);
+      total.value += sum * factorial;
+      const double next = -2 * decay_ * term - square_ * before;
+      before = term;
+      term = next;
+    }
+    return total;
+  }
+
+  double decay_ = 0, square_ = 0, gap_ = 0, root_ = 0, fast_ = 0, slow_ = 0;
+};
+
+}  // namespace ricochet::reference
