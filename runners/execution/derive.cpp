@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ricochet/measure/effects.hpp>
 #include <ricochet/measure/orders.hpp>
 #include <set>
 
@@ -183,6 +184,44 @@ void collect(StudyResults& results) {
     }
 }
 
+std::string cell_text(const Json& value) {
+  return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+// Measures whose spread says nothing of the motion.
+bool of_the_motion(const std::string& measure) {
+  static const std::set<std::string> others = {"microseconds_per_step", "timed_seconds", "timed_low", "timed_high",
+                                               "declared_order",        "horizon"};
+  return others.count(measure) == 0 && !measure.starts_with("floor.");
+}
+
+DerivedTable effects_table(const StudyResults& results) {
+  DerivedTable table{"effects", {"measure", "factor", "share", "low", "high", "log"}, {}};
+  std::vector<std::vector<std::string>> cells;
+  std::vector<std::string> measures;
+  for (const CaseRecord& record : results.cases) {
+    std::vector<std::string> row;
+    for (const Json& value : axes_of(record, results.columns)) row.push_back(cell_text(value));
+    cells.push_back(std::move(row));
+    for (const auto& [name, value] : record.measures)
+      if (of_the_motion(name) && std::find(measures.begin(), measures.end(), name) == measures.end())
+        measures.push_back(name);
+  }
+  std::vector<Factor> factors = factors_of(results.columns, cells).factors;
+  std::erase_if(factors, [](const Factor& factor) { return factor.levels.size() < 2; });
+  if (factors.size() < 2) return table;
+  for (const std::string& name : measures) {
+    std::vector<std::optional<double>> values;
+    for (const CaseRecord& record : results.cases)
+      values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
+    const Effects effects = effects_of(name, factors, values);
+    for (const EffectShare& share : effects.shares)
+      table.rows.push_back(
+          {name, share.factor, number(share.share), number(share.low), number(share.high), effects.log});
+  }
+  return table;
+}
+
 }  // namespace
 
 void derive_tables(StudyResults& results) {
@@ -193,6 +232,8 @@ void derive_tables(StudyResults& results) {
   }
   if (results.kind == "work-precision") results.derived.push_back(work_precision_table(results));
   collect(results);
+  if (DerivedTable effects = effects_table(results); !effects.rows.empty())
+    results.derived.push_back(std::move(effects));
 }
 
 }  // namespace ricochet

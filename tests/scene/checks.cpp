@@ -57,8 +57,8 @@ TEST_CASE("a structure that cannot exist") {
 
 TEST_CASE("stops that cross, depend on time, have no value, or stand nowhere") {
   CHECK(refused([](SceneSpec& s) { s.stops.lower = Formula(0.2); }) ==
-        "/scene/stops/lower: at x = 0.007505 m the lower stop, 0.2 m, is not below the upper stop, 0.1 m; expected "
-        "lower < upper everywhere");
+        "/scene/stops/lower: at x = 0.007505 m the lower stop, 0.2 m, is above the upper stop, 0.1 m; expected "
+        "lower ≤ upper everywhere");
   // They cross between two nodes of this mesh only.
   CHECK_THAT(refused([](SceneSpec& s) { s.stops.lower = in_x("abs(x-0.22) < 0.02 ? 0.3 : -0.1"); }),
              StartsWith("/scene/stops/lower: at x = 0.2"));
@@ -74,7 +74,7 @@ TEST_CASE("stops that cross, depend on time, have no value, or stand nowhere") {
   };
   CHECK(at({0.5, 1.501}) == "no error");
   CHECK(at({0.5, 1.6}) ==
-        "/scene/stops/at/1: a stop at x = 1.6 m is not on the free part of the beam; expected 0 < x ≤ 1.501 m");
+        "/scene/stops/at/1: a stop at x = 1.6 m is not on the free part of the structure; expected 0 < x ≤ 1.501 m");
   CHECK_THAT(at({0.0}), StartsWith("/scene/stops/at/0: "));
   CHECK_THAT(at({0.5, 0.7, 0.5}), StartsWith("/scene/stops/at/2: two stops at x = 0.5 m"));
   CHECK_THAT(at({}), StartsWith("/scene/stops/at: the list of positions is empty"));
