@@ -1,6 +1,7 @@
 #pragma once
 #include <complex>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
@@ -51,6 +52,9 @@ struct StepSpectrum {
 };
 using SpectrumOrRefusal = std::variant<StepSpectrum, Refusal>;
 
+/// How much of a spectrum is wanted: the radius alone (of closed sets: of the first unstable one), or everything.
+enum class Detail { radius, full };
+
 /// Spectra of the steps of any plan on one semi-discrete problem and one law.
 ///
 /// Open: per mode of M φ = μ K φ, hence exact up to the modes' own accuracy, whatever the step. Closed and rigid: per
@@ -64,14 +68,14 @@ class StabilityPredictor {
   StabilityPredictor(StabilityPredictor&&) noexcept;
 
   /// Refused above 1200 dofs, where modes cost more than marching.
-  SpectrumOrRefusal open(const StepPlan& plan, double h) const;
+  SpectrumOrRefusal open(const StepPlan& plan, double h, Detail detail = Detail::full) const;
   /// Closed sets that are looked at: each point alone where there are at most 20 (else the tip and the middle one),
   /// and all together. Empty without contact, above 160 dofs, and for laws without a constant stiffness: notes() say
   /// which.
   const std::vector<ClosedSet>& sets() const { return sets_; }
-  SpectrumOrRefusal closed(const StepPlan& plan, double h, const ClosedSet& set) const;
-  /// The set with the largest radius; among marginal sets of the same radius the first that has a name for it.
-  SpectrumOrRefusal worst_closed(const StepPlan& plan, double h) const;
+  SpectrumOrRefusal closed(const StepPlan& plan, double h, const ClosedSet& set, Detail detail = Detail::full) const;
+  /// The set with the largest radius; of stable sets the first that has marginal roots.
+  SpectrumOrRefusal worst_closed(const StepPlan& plan, double h, Detail detail = Detail::full) const;
 
   /// First and last pulsation of the structure, contact open (rad/s); 0 where not known.
   double first_pulsation() const;
@@ -80,14 +84,17 @@ class StabilityPredictor {
 
  private:
   struct Modes;
-  struct Held;
-  SpectrumOrRefusal held(const StepPlan& plan, double h, const ClosedSet& set) const;
-  SpectrumOrRefusal sprung(const StepPlan& plan, double h, const ClosedSet& set) const;
+  class Collector;
+  void choose_sets();
+  const Modes& held_modes(const ClosedSet& set) const;
+  std::optional<Refusal> add_modes(Collector& found, const StepPlan& plan, const Modes& modes, int first) const;
+  SpectrumOrRefusal held(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;
+  SpectrumOrRefusal dense(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;
 
   std::shared_ptr<const SemiDiscrete> problem_;
   LinearLaw law_;
   std::unique_ptr<Modes> modes_;
-  mutable std::vector<std::unique_ptr<Modes>> held_modes_;  // per set, once asked for
+  mutable std::map<std::vector<int>, std::unique_ptr<Modes>> held_modes_;  // by points, once asked for
   std::vector<ClosedSet> sets_;
   std::vector<std::string> notes_;
 };

@@ -117,7 +117,8 @@ Eigen::VectorXd balance(MatrixXd& A) {
     moved = false;
     for (Index i = 0; i < n; ++i) {
       const double column = A.col(i).lpNorm<1>() - std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - std::abs(A(i, i));
-      if (column == 0 || row == 0) continue;
+      // Against round-off there is nothing to balance: it would make a defective matrix look diagonal.
+      if (std::min(column, row) <= 1e-13 * std::max(column, row)) continue;
       const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
       if (!std::isfinite(factor) || (column * factor + row / factor) >= 0.95 * (column + row)) continue;
       scale[i] *= factor;
@@ -172,6 +173,19 @@ std::optional<MatrixXd> held_point_map(const StepPlan& plan) {
       map(j, static_cast<Index>(i)) -= update.z * held.slots[i] / held.z;
   }
   return map;
+}
+
+MatrixXd in_metres(MatrixXd step, const StepPlan& plan, double h, Index rows, double stiffness) {
+  for (std::size_t j = 0; j < plan.slots.size(); ++j) {
+    const auto& [position, velocity] = plan.initial[j];
+    const double metres = position != 0 ? 1.0 : velocity != 0 ? h / velocity : h * h;
+    step.middleRows(static_cast<Index>(j) * rows, rows) *= metres;
+    step.middleCols(static_cast<Index>(j) * rows, rows) /= metres;
+  }
+  const Index efforts = step.rows() - rows * static_cast<Index>(plan.slots.size());
+  step.bottomRows(efforts) /= stiffness;
+  step.rightCols(efforts) *= stiffness;
+  return step;
 }
 
 std::vector<Root> step_roots(const MatrixXd& matrix, bool vectors) {

@@ -42,6 +42,11 @@ StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, co
 /// stages, without impact measure, or whose measure no effort can move.
 std::optional<Eigen::MatrixXd> held_point_map(const StepPlan& plan);
 
+/// The same step in like units: slots of `rows` numbers each in metres per step (velocities times h, slots that do not
+/// start from q₀ or v₀ times h²), past efforts as lengths p/κ. Eigenvalues do not depend on it, their accuracy does.
+Eigen::MatrixXd in_metres(Eigen::MatrixXd step, const StepPlan& plan, double h, Eigen::Index rows,
+                          double stiffness = 1);
+
 /// Eigenvalues that round-off cannot tell apart, as one.
 struct Root {
   std::complex<double> value;  ///< their mean: far better known than each, where the matrix is defective
