@@ -131,14 +131,18 @@ std::string percent(double share) {
   return share < 0.095 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
-/// What a share is of: `members` are factor names.
+/// What a share is of: `members` are factor names, none for what lies beyond triples.
 std::string source(const std::vector<std::string>& members, const std::string& first) {
+  if (members.empty()) return "interactions of more than three choices";
   if (members.size() == 1) return spoken(members[0]);
-  std::vector<std::string> others;
-  for (const std::string& member : members)
-    if (member != first) others.push_back(spoken(member));
-  if (others.size() < members.size()) return fmt::format("its interaction with {}", fmt::join(others, " and "));
-  return fmt::format("the interaction of {}", fmt::join(others, " and "));
+  std::string others;
+  const bool own = std::find(members.begin(), members.end(), first) != members.end();
+  for (const std::string& member : members) {
+    if (member == first) continue;
+    const bool last = member == (members.back() == first ? members[members.size() - 2] : members.back());
+    others += (others.empty() ? "" : last ? " and " : ", ") + spoken(member);
+  }
+  return (own ? "its interaction with " : "the interaction of ") + others;
 }
 
 /// One number per combination of the active factors' levels.
@@ -320,6 +324,7 @@ Effects effects_of(const std::string& measure, const std::vector<Factor>& factor
   if (sizes.size() > highest_order) {
     out.shares.push_back({"higher"});
     set_interval(out.shares.back(), shares[sets.size()], draws[sets.size()]);
+    named.push_back({shares[sets.size()], {}});
   }
   if (table.repeats > 0) {
     out.shares.push_back({"repeats"});

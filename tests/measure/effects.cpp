@@ -143,6 +143,21 @@ TEST_CASE("shares of anything add up to one, and each is that of the definition"
   CHECK(share(e, "b × d").share == Approx(pair / variance).margin(round_off));
 }
 
+TEST_CASE("the sentence names the largest parts, interactions as they are") {
+  const auto three = [](double sign) {
+    return effects(study({"mass", "time", "step"}, {2, 2, 2}, [&](const Levels& l) {
+      return (l[0] ? 1.0 : sign) * (l[1] ? 1.0 : -1.0) * (l[2] ? 1.0 : -1.0);
+    }));
+  };
+  CHECK(three(-1).sentence ==
+        "100 % of the spread of final energy comes from the interaction of the mass matrix, the time scheme and the "
+        "step.");
+  const Effects four = effects(study({"a", "b", "c", "d"}, {2, 2, 2, 2},
+                                     [](const Levels& l) { return (l[0] + l[1] + l[2] + l[3]) % 2 ? 1.0 : -1.0; }));
+  CHECK(share(four, "higher").share == Approx(1));
+  CHECK(four.sentence == "100 % of the spread of final energy comes from interactions of more than three choices.");
+}
+
 TEST_CASE("the order of cells, levels and factors, shifts and scales do not matter") {
   std::mt19937 random(6);
   std::normal_distribution<double> normal;
