@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "runners/execution/minimal_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/csv.hpp"
 
@@ -21,10 +22,10 @@ void write_curves(const std::filesystem::path& folder, const StudyResults& resul
 }
 
 /// Only files named like a case: ten hexadecimal digits.
-bool is_case_file(const std::filesystem::path& file) {
+bool is_case_file(const std::filesystem::path& file, const char* extension) {
   constexpr std::size_t digits = 10;
   const std::string stem = file.stem().string();
-  return file.extension() == ".csv" && stem.size() == digits &&
+  return file.extension() == extension && stem.size() == digits &&
          stem.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
@@ -35,7 +36,7 @@ void remove_stale_curves(const std::filesystem::path& folder, const StudyResults
     const auto has_curve = [&](const CaseRecord& record) {
       return record.id == entry.path().stem().string() && !record.curve.names.empty();
     };
-    if (is_case_file(entry.path()) && std::none_of(results.cases.begin(), results.cases.end(), has_curve))
+    if (is_case_file(entry.path(), ".csv") && std::none_of(results.cases.begin(), results.cases.end(), has_curve))
       stale.push_back(entry.path());
   }
   for (const auto& file : stale) std::filesystem::remove(file, ignored);
@@ -43,6 +44,28 @@ void remove_stale_curves(const std::filesystem::path& folder, const StudyResults
 
 void write_derived(const std::filesystem::path& folder, const StudyResults& results) {
   for (const DerivedTable& table : results.derived) write_file(folder / (table.name + ".csv"), derived_csv(table));
+}
+
+/// failures/ID.json, one study per case that went wrong; files of cases that do no longer are removed.
+void write_failures(const std::filesystem::path& folder, const StudyResults& results) {
+  constexpr int indent = 2;
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  std::set<std::string> wanted;
+  for (const CaseRecord& record : results.cases) {
+    // A case without a step of its own (stability) is no run that could be repeated.
+    const bool stepped =
+        std::any_of(record.axes.begin(), record.axes.end(), [](const auto& axis) { return axis.first == "step"; });
+    if (!went_wrong(record) || !stepped) continue;
+    if (wanted.empty()) make_folder(folder);
+    wanted.insert(record.id);
+    write_file(folder / (record.id + ".json"), minimal_study(results, record).dump(indent, ' ', false, replace) + '\n');
+  }
+  std::vector<std::filesystem::path> stale;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (is_case_file(entry.path(), ".json") && wanted.count(entry.path().stem().string()) == 0)
+      stale.push_back(entry.path());
+  for (const auto& file : stale) std::filesystem::remove(file, ignored);
 }
 
 }  // namespace
@@ -56,6 +79,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   remove_stale_curves(folder / "curves", results);
   write_file(folder / "cases.csv", cases_csv(results));
   write_derived(folder, results);
+  write_failures(folder / "failures", results);
   write_file(folder / "report.html", render(results));
 }
 

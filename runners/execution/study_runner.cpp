@@ -140,7 +140,10 @@ int run_in(const StudyRunner& runner, const Study& study, const RunOptions& opti
       fmt::format("{}\n{} ({} run now in {}, {} kept)\nreport: {}\n", case_table(results), totals_text(results),
                   missing.size(), duration_text(seconds), kept.size(), (folder / "report.html").string()));
   if (code != 0)
-    say(runner.out, fmt::format("exit code {}: some cases diverged or failed, the others are usable\n", code));
+    say(runner.out,
+        fmt::format(
+            "exit code {}: some cases diverged or failed, the others are usable; {} holds a study of each alone\n",
+            code, (folder / "failures").string()));
   return code;
 }
 

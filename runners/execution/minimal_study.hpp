@@ -1,0 +1,13 @@
+#pragma once
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// The smallest study that shows what happened to one case: kind `trajectory`, its scene and methods alone, every list
+/// replaced by the case's value, without excludes. Runs as it stands.
+nlohmann::ordered_json minimal_study(const StudyResults& results, const CaseRecord& record);
+
+/// Whether a case deserves one: it went wrong (diverged, failed), rather than being refused or done.
+bool went_wrong(const CaseRecord& record);
+
+}  // namespace ricochet

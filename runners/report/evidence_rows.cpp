@@ -1,0 +1,112 @@
+#include "runners/report/evidence_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/report/html.hpp"
+
+namespace ricochet::report {
+namespace {
+
+std::string text_of(const nlohmann::ordered_json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return exact_text(value.get<double>());
+  return value.dump();
+}
+
+void extend(std::string& key, std::string_view column, const std::string& text) {
+  if (text.empty()) return;
+  key += column;
+  key += '\x1e' + text + '\x1f';
+}
+
+}  // namespace
+
+EvidenceRows::EvidenceRows(const StudyResults& results, std::string_view table, std::vector<std::string> keys)
+    : keys_(std::move(keys)) {
+  for (const DerivedTable& one : results.derived)
+    if (one.name == table) table_ = &one;
+  if (!table_) return;
+  for (const std::string& column : table_->columns)
+    if (std::find(results.columns.begin(), results.columns.end(), column) != results.columns.end())
+      axes_.push_back(column);
+  for (size_t row = 0; row < size(); ++row) {
+    std::string key;
+    for (const std::string& column : axes_) extend(key, column, text(row, column));
+    for (const std::string& column : keys_) extend(key, column, text(row, column));
+    places_.emplace(std::move(key), row);
+  }
+}
+
+const nlohmann::ordered_json* EvidenceRows::cell(size_t row, std::string_view column) const {
+  const auto found = std::find(table_->columns.begin(), table_->columns.end(), column);
+  if (found == table_->columns.end()) return nullptr;
+  const auto at = static_cast<size_t>(found - table_->columns.begin());
+  return at < table_->rows[row].size() ? &table_->rows[row][at] : nullptr;
+}
+
+std::string EvidenceRows::text(size_t row, std::string_view column) const {
+  const auto* value = cell(row, column);
+  return value ? text_of(*value) : "";
+}
+
+std::optional<double> EvidenceRows::number(size_t row, std::string_view column) const {
+  const auto* value = cell(row, column);
+  if (!value || !value->is_number()) return std::nullopt;
+  const double number = value->get<double>();
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+bool EvidenceRows::flag(size_t row, std::string_view column) const {
+  const auto* value = cell(row, column);
+  return value && value->is_boolean() && value->get<bool>();
+}
+
+std::vector<std::string> EvidenceRows::values(std::string_view column) const {
+  std::vector<std::string> out;
+  for (size_t row = 0; row < size(); ++row) {
+    std::string value = text(row, column);
+    if (std::find(out.begin(), out.end(), value) == out.end()) out.push_back(std::move(value));
+  }
+  return out;
+}
+
+std::optional<size_t> EvidenceRows::find(const CaseRecord& record, const std::vector<std::string>& keys,
+                                         const std::vector<std::string>& but) const {
+  std::string key;
+  for (const std::string& column : axes_)
+    if (std::find(but.begin(), but.end(), column) == but.end()) extend(key, column, CaseView::text(record, column));
+  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend(key, keys_[k], keys[k]);
+  const auto found = places_.find(key);
+  return found == places_.end() ? std::nullopt : std::optional(found->second);
+}
+
+const CaseRecord* EvidenceRows::example(size_t row, const StudyResults& results) const {
+  for (const CaseRecord& record : results.cases)
+    if (std::all_of(axes_.begin(), axes_.end(), [&](const std::string& column) {
+          const std::string value = text(row, column);
+          return value.empty() || value == CaseView::text(record, column);
+        }))
+      return &record;
+  return nullptr;
+}
+
+Quantity error_quantity(const std::string& error) {
+  static const std::map<std::string, std::string> units = {
+      {"tip-linf", "m"}, {"tip-l2", "m"}, {"energy", "J"}, {"impact-times", "s"}, {"impulse", "N s"}};
+  const auto found = units.find(error);
+  return {"error " + error, found == units.end() ? "1" : found->second};
+}
+
+std::string power_text(double value) {
+  const double exponent = std::log10(value);
+  if (std::abs(exponent - std::round(exponent)) > 1e-9) return number_text(value);
+  static constexpr const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const auto whole = std::lround(exponent);
+  std::string out = whole < 0 ? "10⁻" : "10";
+  for (const char c : std::to_string(std::abs(whole))) out += digits[c - '0'];
+  return out;
+}
+
+}  // namespace ricochet::report
