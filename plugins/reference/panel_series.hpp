@@ -32,13 +32,13 @@ class PanelSeries {
   double slope(double x) const { return derivative(x, 1) * 2 / width_; }
   double curvature(double x) const { return derivative(x, 2) * 4 / (width_ * width_); }
 
-  /// ∫₀ᴸ g(x) dx by the Gauss points of `panels` equal panels.
-  template <class Function>
-  static double integral(const Function& g, double length, int panels) {
-    double sum = 0;
+  /// ∫₀ᴸ g(x) dx by the Gauss points of `panels` equal panels; g a number or an array like `zero`.
+  template <class Function, class Value = double>
+  static Value integral(const Function& g, double length, int panels, const Value& zero = Value{}) {
+    Value sum = zero;
     for (int i = 0; i < panels; ++i)
       for (int j = 0; j < points; ++j) sum += weight(j) * g((i + 0.5 * (1 + abscissa(j))) * length / panels);
-    return sum * length / (2 * panels);
+    return sum * (length / (2 * panels));
   }
 
  private:
