@@ -61,13 +61,21 @@ double energy_scale(const Program& program) {
       if (compliance > 0) scale = std::max(scale, 0.5 * reach * reach / compliance);
     }
   }
-  if (program.load) {
-    Eigen::VectorXd load(problem.dofs());
-    problem.load->assemble(0.0, load.data());
-    const double energy = load.allFinite() ? static_energy(problem.stiffness, load) : 0;
-    // A force on a structure that nothing holds back: no energy is too large.
-    if (energy == 0 && !problem.space.left_fixed && !problem.space.right_fixed) return infinity;
-    scale = std::max(scale, energy);
+  return scale;
+}
+
+// The largest static energy of the distributed load at evenly spaced times up to t; infinite where nothing holds the
+// structure back, so that no energy is too large.
+double load_scale(const Program& program, double t) {
+  const SemiDiscrete& problem = *program.problem;
+  if (!program.load) return 0;
+  Eigen::VectorXd load = Eigen::VectorXd::Ones(problem.dofs());
+  if (static_energy(problem.stiffness, load) == 0) return infinity;
+  constexpr int looks = 64;
+  double scale = 0;
+  for (int k = 0; k <= (program.load_constant || t == 0 ? 0 : looks); ++k) {
+    problem.load->assemble(t * k / looks, load.data());
+    if (load.allFinite()) scale = std::max(scale, static_energy(problem.stiffness, load));
   }
   return scale;
 }
@@ -199,8 +207,9 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
         upper_.at(i, lane) = spec.upper[i];
       }
   }
-  energy_bound_ = divergence_factor * energy_scale(program_);
-  if (energy_bound_ == 0) energy_bound_ = infinity;
+  energy_bound_ = divergence_factor * std::max(energy_scale(program_), load_scale(program_, 0));
+  const bool later = program_.load && !program_.load_constant;
+  if (energy_bound_ == 0 && !later) energy_bound_ = infinity;
   if (program_.load) {
     load_window_ = std::make_unique<LoadWindow>();
     for (auto& entry : load_window_->entries) entry.value.resize(static_cast<std::size_t>(rows));
@@ -560,6 +569,16 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   }
 }
 
+bool Marcher::beyond_bound(double energy) {
+  if (!(energy > energy_bound_)) return false;
+  // A load that depends on time may have grown since the start.
+  if (program_.load && !program_.load_constant && time() > bound_known_until_) {
+    bound_known_until_ = 2 * time();
+    energy_bound_ = std::max(energy_bound_, divergence_factor * load_scale(program_, bound_known_until_));
+  }
+  return energy > energy_bound_;
+}
+
 void Marcher::check_lanes() {
   BandStep step;
   step.rows = program_.model->rows();
@@ -577,7 +596,7 @@ void Marcher::check_lanes() {
       for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
     if (!finite)
       freeze(lane, fmt::format("the state is not finite (lanes are checked every {} steps)", check_interval));
-    else if (energy > energy_bound_)
+    else if (beyond_bound(energy))
       freeze(lane, fmt::format("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", energy,
                                energy_bound_, divergence_factor));
   }

@@ -88,6 +88,8 @@ class Marcher {
   void freeze(int lane, const std::string& cause);
   /// Energy (J) above which a lane counts as diverged; stated with the cause.
   double energy_bound() const { return energy_bound_; }
+  /// Whether an energy is beyond it; looks again at a load that depends on time before it says so.
+  bool beyond_bound(double energy);
 
  private:
   class StageDelassus;
@@ -123,7 +125,7 @@ class Marcher {
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
   long long step_ = 0;
-  double energy_bound_ = 0;
+  double energy_bound_ = 0, bound_known_until_ = 0;
   double sine_ = 0, cosine_ = 1;
 };
 

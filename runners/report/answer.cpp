@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "runners/report/evidence.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {
@@ -364,6 +365,8 @@ std::string answer_html(const CaseView& view) {
   const Cases done = view.with_status("done");
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
   if (done.empty()) return "<p>No case has finished with a result; the table below says why.</p>\n";
+  const StudyResults& results = view.results();
+  if (results.kind != "trajectory") return work_precision_html(view) + orders_html(view);
   const bool energies = extremes(done, measured("energy_end")).count > 0;
   if (!energies) return "<p>These cases have no energy measures; their figures are in the table below.</p>\n";
   return headline(view) + "<ul class=\"answer\">\n" + mass_sentences(view) + "</ul>\n" + work_sentence(view) +

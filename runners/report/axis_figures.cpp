@@ -301,14 +301,4 @@ std::vector<Figure> axis_figures(const CaseView& view) {
   return out;
 }
 
-std::vector<Figure> make_figures(const CaseView& view, CurveData& curves) {
-  if (view.results().kind != "trajectory") return {};
-  std::vector<Figure> out = axis_figures(view), over_time = time_figures(view, curves);
-  // What the energy ends at, how it gets there, and the rest.
-  const auto rest =
-      std::find_if(out.begin(), out.end(), [](const Figure& f) { return !f.id.starts_with("final-energy"); });
-  out.insert(rest, std::make_move_iterator(over_time.begin()), std::make_move_iterator(over_time.end()));
-  return out;
-}
-
 }  // namespace ricochet::report

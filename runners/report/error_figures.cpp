@@ -13,9 +13,11 @@
 namespace ricochet::report {
 namespace {
 
-constexpr double follows = 1.5;  // factor within which a point follows the fitted line
+constexpr double follows = 2;          // factor within which a point follows the fitted line
+constexpr double mark_height = 0.085;  // of the frame
 constexpr const char* grey = "#b3b3b3";
 constexpr const char* floor_name = "error floor";
+constexpr const char* floor_colour = "#7a7a7a";
 
 /// An error of a case, drawn at x.
 struct Point {
@@ -28,12 +30,13 @@ struct Slope {
   double at(double x) const { return constant * std::pow(x, power); }
 };
 
-/// The longest run of points above their floor that stays within a factor of `follows` of a line of this power.
+/// The longest run of three or more points above their floor that stays within a factor of `follows` of a line of this
+/// power.
 std::optional<Slope> slope_line(const std::vector<Point>& points, double power) {
   std::vector<Point> above;
   for (const Point& p : points)
     if (p.error > p.floor && p.error > 0) above.push_back(p);
-  for (size_t count = above.size(); count >= 2; --count)
+  for (size_t count = above.size(); count >= 3; --count)
     for (size_t from = 0; from + count <= above.size(); ++from) {
       double mean = 0;
       for (size_t k = from; k < from + count; ++k)
@@ -59,6 +62,13 @@ class ErrorFigure {
     for (const MethodFacet& facet : curves_.facets())
       for (const CaseRecord* record : facet.cases)
         if (const auto x = CaseView::number(*record, refined_)) x_range_.include(*x);
+    for (const MethodFacet& facet : curves_.facets()) {
+      std::map<double, double> marks;
+      for (const CaseRecord* record : facet.cases)
+        if (record->status != "done")
+          gutter_ = std::max(gutter_, ++marks[CaseView::number(*record, refined_).value_or(x_range_.low)]);
+    }
+    gutter_ = gutter_ > 0 ? std::min(0.5, 0.05 + mark_height * gutter_) : 0;
   }
 
   std::optional<Figure> make() const {
@@ -85,7 +95,7 @@ class ErrorFigure {
         figure.charts[f].views.push_back(chart_view(error, curves_.facets()[f], range, floors));
     }
     if (figure.views.empty()) return std::nullopt;
-    if (floors) figure.legend.push_back({floor_name, "#7a7a7a", "2 3", ""});
+    if (floors) figure.legend.push_back({floor_name, floor_colour, svg_dash(2), ""});
     return figure;
   }
 
@@ -142,7 +152,8 @@ class ErrorFigure {
     out.x = x_;
     out.y = error_quantity(error);
     Json x = log_axis(x_, x_range_, false), y = log_axis(out.y, range, true);
-    const double lowest = y["min"].get<double>();
+    const double lowest = y["min"].get<double>(), highest = y["max"].get<double>();
+    y["max"] = highest * std::pow(highest / lowest, gutter_ / (1 - gutter_));
     const Json gutter = {{"type", "value"}, {"min", 0}, {"max", 1}, {"show", false}};
     out.option = base_option(std::move(x), Json::array({std::move(y), gutter}), false, true);
     out.option["grid"]["right"] = 46;
@@ -161,7 +172,7 @@ class ErrorFigure {
         const double at = CaseView::number(*record, refined_).value_or(x_range_.low);
         const auto p = point(*record, error);
         if (record->status != "done") {
-          marks.push_back({{"value", {at, 0.95 - 0.085 * stacked[at]++}},
+          marks.push_back({{"value", {at, 0.95 - mark_height * stacked[at]++}},
                            {"mark", status_mark(record->status)},
                            {"text", record->status + ": " + record->reason}});
           continue;
@@ -208,8 +219,8 @@ class ErrorFigure {
                                       {"symbol", floor.size() == 1 ? "rect" : "none"},
                                       {"symbolSize", {24, 1.5}},
                                       {"z", 1},
-                                      {"color", "#7a7a7a"},
-                                      {"lineStyle", {{"color", "#7a7a7a"}, {"width", 1.2}, {"type", line_dash(2)}}},
+                                      {"color", floor_colour},
+                                      {"lineStyle", {{"color", floor_colour}, {"width", 1.2}, {"type", line_dash(2)}}},
                                       {"areaStyle", {{"color", "#000000"}, {"opacity", 0.05}, {"origin", "start"}}},
                                       {"data", std::move(floor)}});
     } else if (!floor_at.empty()) {
@@ -253,6 +264,7 @@ class ErrorFigure {
   MethodCurves curves_;
   Quantity x_;
   Interval x_range_ = Interval::nothing();
+  double gutter_ = 0;  ///< share of the frame's height that marks of cases without an error take
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/curve_data.hpp"
+#include "runners/report/evidence.hpp"
 #include "runners/report/figures.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/page.hpp"
@@ -174,6 +175,8 @@ std::string render_page(const StudyResults& results, std::string_view library, s
     out += "<noscript><p class=\"banner\">Charts need JavaScript; the tables do not.</p></noscript>\n</section>\n";
     for (const Figure& figure : figures) out += figure_html(figure);
   }
+  if (const std::string effects = effects_html(view); !effects.empty())
+    out += "<section id=\"effects\">\n<h2>How much is owed to each choice</h2>\n" + effects + "</section>\n";
   out += "<section id=\"all-cases\">\n<h2>All cases</h2>\n" + case_table_html(view) + "</section>\n";
   out += "<section id=\"left-out\">\n<h2>What was left out</h2>\n" + left_out_html(view) + notes_html(view) +
          "</section>\n";
