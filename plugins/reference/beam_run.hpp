@@ -105,16 +105,19 @@ class BeamRun {
     const double step = problem_.displacement(0) - support.at(0), slope = displacement.slope(0);
     if (std::abs(step) > 1e-9 * scale_ || std::abs(slope) * L > 1e-6 * scale_)
       return Refusal{
-          fmt::format("the initial displacement does not follow the clamp: u − φ is {:.3g} m at x = 0 and its slope "
-                      "{:.3g}, where both are 0; a continuous beam has no finite energy then",
+          fmt::format("the initial displacement does not follow the clamp: at x = 0, u − φ is {:.3g} m and its slope "
+                      "{:.3g} where both are 0, and a continuous beam has no finite energy then; start from a shape "
+                      "that the clamp allows, or use `self`",
                       step, slope)};
     const double tip = problem_.displacement(L), touching = 1e-9 * scale_;
     if (tip < lower_ - touching || tip > upper_ + touching)
       return Refusal{
           fmt::format("the tip starts at {:g} m, beyond its stops [{:g}, {:g}] m: start between them or move the stops",
                       tip, lower_, upper_)};
-    a_ = Beam::projection([&](double x) { return problem_.displacement(x) - support.at(0); }, beam_.free, L);
-    b_ = Beam::projection([&](double x) { return problem_.velocity(x) - support.rate(0); }, beam_.free, L);
+    const auto position = [&](double x) { return problem_.displacement(x) - support.at(0); };
+    const auto rate = [&](double x) { return problem_.velocity(x) - support.rate(0); };
+    a_ = Beam::projection(position, beam_.free, L);
+    b_ = Beam::projection(rate, beam_.free, L);
     state_ = flight_.start(0, a_, b_);
     sample_start(displacement);
     const double hair = std::abs(flight_.look(state_).value - tip);
@@ -124,7 +127,12 @@ class BeamRun {
       guard.on = false;
       guard.slack = 4 * hair + 10 * tolerance();
       if (held() || goes_out(guard, guard.slack)) {
-        impact(-guard.inside, problem_.velocity(L));
+        // Straight from the formulas: the modes of flight converge slowly towards a beam that is held.
+        const auto against_lift = [&](const auto& f) {
+          return PanelSeries::integral([&](double x) { return f(x) * beam_.lift(x); }, L, settings_.modes);
+        };
+        enter_contact(-guard.inside, problem_.velocity(L), against_lift(position), against_lift(rate),
+                      Beam::projection(position, beam_.pinned, L), Beam::projection(rate, beam_.pinned, L));
         break;
       }
     }
@@ -161,13 +169,20 @@ class BeamRun {
   }
 
   void impact(int side, double velocity) {
+    flight_.whole(state_, state_.time, a_, b_);
+    enter_contact(side, velocity, (beam_.lift_free * a_).sum(), (beam_.lift_free * b_).sum(),
+                  beam_.change.transpose() * a_.matrix(), beam_.change.transpose() * b_.matrix());
+  }
+
+  /// With ⟨w,p⟩, ⟨w_t,p⟩ and all ⟨w,ψ_n⟩, ⟨w_t,ψ_n⟩.
+  void enter_contact(int side, double velocity, double on_lift, double rate_on_lift, const Eigen::ArrayXd& on_modes,
+                     const Eigen::ArrayXd& rate_on_modes) {
     const double t = state_.time;
-    flight_.whole(state_, t, a_, b_);
     side_ = side;
     out_.events.push_back({t, side, true, velocity});
-    momentum_ = momentum(t, (beam_.lift_free * b_).sum(), (beam_.lift_free * a_).sum());
-    state_ = contact_.start(t, (beam_.change.transpose() * a_.matrix()).array() - lift(t) * beam_.lift_pinned,
-                            (beam_.change.transpose() * b_.matrix()).array() - lift_rate(t) * beam_.lift_pinned);
+    momentum_ = momentum(t, rate_on_lift, on_lift);
+    state_ =
+        contact_.start(t, on_modes - lift(t) * beam_.lift_pinned, rate_on_modes - lift_rate(t) * beam_.lift_pinned);
     contact_.set_offset(3 * stop() / std::pow(beam_.length, 3));
     guards_ = {Guard{0, -side}, Guard{-infinity, 1}};
     if (held()) guards_[0] = guards_[1];
