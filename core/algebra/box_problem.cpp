@@ -12,6 +12,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t remembered_sets = 32;
 
+// Dot products of shorter rows are not worth the vector instructions.
+constexpr int short_row = 16;
+
 // splitmix64: a set's fingerprint is the sum over its points.
 std::uint64_t fingerprint(int point, int side) {
   std::uint64_t z =
@@ -58,6 +61,7 @@ LaneOutcome BoxSolver::solve(DelassusColumns& W, double reach, double compliance
                              const double* lower, const double* upper, double* p, int points, int stride) {
   assert(points >= 0 && static_cast<std::size_t>(points) <= free_.size());
   const Operator A{W, reach, compliance};
+  known_ = 0;
   if (points == 1) return solve_alone(A, *free, *lower, *upper, *p);
   LaneOutcome outcome;
   if (!read(free, lower, upper, points, stride)) {
@@ -202,12 +206,20 @@ void BoxSolver::try_set(const Operator& A) {
 }
 
 // A_SS = L D Lᵀ row by row; points that depend on earlier ones, and immobile ones, leave the set.
+// Neighbouring sets of one search begin alike: the rows of what they share stay.
 void BoxSolver::factorise(const Operator& A) {
+  const int known = known_;
+  bool shared = true;
   count_ = 0;
   dropped_ = -1;
   const auto row_length = static_cast<std::size_t>(points_);
   for (int i = 0; i < points_; ++i) {
     if (!active(i)) continue;
+    shared = shared && count_ < known && set_[count_] == i;
+    if (shared) {
+      ++count_;
+      continue;
+    }
     const double* column = A.columns.column(i);
     const double a = A.reach * column[i] + A.compliance;
     if (!(a > 0)) {
@@ -219,7 +231,10 @@ void BoxSolver::factorise(const Operator& A) {
     for (int j = 0; j < count_; ++j) {
       const double* earlier = factor_.data() + j * row_length;
       double w = A.reach * column[set_[j]];
-      for (int t = 0; t < j; ++t) w -= earlier[t] * row[t];
+      if (j < short_row)
+        for (int t = 0; t < j; ++t) w -= earlier[t] * row[t];
+      else
+        w -= Eigen::Map<const Eigen::VectorXd>(earlier, j).dot(Eigen::Map<const Eigen::VectorXd>(row, j));
       row[j] = w;
     }
     for (int j = 0; j < count_; ++j) {
@@ -240,6 +255,7 @@ void BoxSolver::factorise(const Operator& A) {
     diagonal_[count_] = a;
     pivot_[count_++] = d;
   }
+  known_ = count_;
 }
 
 void BoxSolver::substitute() {

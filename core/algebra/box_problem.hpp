@@ -89,6 +89,7 @@ class BoxSolver {
   int set_limit_ = -1;
   int points_ = 0;    // m
   int count_ = 0;     // k, points in the set
+  int known_ = 0;     // rows of the factor that hold for this operator
   int dropped_ = -1;  // a point that depends on the first `rank_` of the set, and its side
   int rank_ = 0;
   Side dropped_side_ = Side::none;

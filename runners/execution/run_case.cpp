@@ -119,6 +119,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   bool spent = false;
+  long long chunk = 16;
   marcher.start(&audit);
   if (marcher.step() > 0) sampler.take(marcher, audit);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
@@ -128,8 +129,13 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
         std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
-      marcher.march(std::min<long long>(target - marcher.step(), 20000), &audit);
-      spent = thread_seconds() - run > budget;
+      const double before = thread_seconds();
+      marcher.march(std::min(target - marcher.step(), chunk), &audit);
+      const double now = thread_seconds();
+      spent = now - run > budget;
+      // Long enough to cost nothing, short enough to stop soon.
+      chunk =
+          now - before < 0.01 ? std::min(2 * chunk, 20000LL) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
     }
     if (marcher.any_running() && marcher.step() == target) sampler.take(marcher, audit);
   }
