@@ -219,6 +219,26 @@ double StabilityPredictor::last_pulsation() const {
   return modes_ && modes_->regular > 0 ? modes_->pulsation(modes_->regular - 1) : 0.0;
 }
 
+Excitation StabilityPredictor::excite(const Modes& modes, double h) const {
+  Excitation out{VectorXd::Zero(problem_->dofs()), VectorXd::Zero(problem_->dofs())};
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  for (int i = 0; i < modes.size(); ++i) {
+    if (modes.stiffness[i] == 0) continue;
+    const double sign = std::fmod(golden * (i + 1), 1.0) < 0.5 ? -1.0 : 1.0;
+    const double lift = sign / std::sqrt(modes.stiffness[i]);
+    out.position += lift * modes.shapes.col(i);
+    out.velocity += (i < modes.regular ? sign / std::sqrt(modes.mass[i]) : 0.5 * lift / h) * modes.shapes.col(i);
+  }
+  return out;
+}
+Excitation StabilityPredictor::excitation(double h) const {
+  return modes_ ? excite(*modes_, h) : Excitation{};
+}
+Excitation StabilityPredictor::excitation(const ClosedSet& set, double h) const {
+  const bool moves = modes_ && problem_->dofs() > static_cast<int>(set.points.size());
+  return moves ? excite(held_modes(set), h) : Excitation{};
+}
+
 // Modes from `first` on, each by itself.
 std::optional<Refusal> StabilityPredictor::add_modes(Collector& found, const StepPlan& plan, const Modes& modes,
                                                      int first) const {
@@ -264,6 +284,7 @@ const StabilityPredictor::Modes& StabilityPredictor::held_modes(const ClosedSet&
   const MatrixXd K = basis.transpose() * MatrixXd(problem_->stiffness) * basis;
   const bool free = modes_->regular > 0 && modes_->stiffness.head(modes_->regular).minCoeff() == 0;
   held = std::make_unique<Modes>(M, K, kernel, free);
+  held->shapes = basis * held->shapes;
   return *held;
 }
 

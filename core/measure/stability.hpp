@@ -55,6 +55,12 @@ using SpectrumOrRefusal = std::variant<StepSpectrum, Refusal>;
 /// How much of a spectrum is wanted: the radius alone (of closed sets: of the first unstable one), or everything.
 enum class Detail { radius, full };
 
+/// A state in which every mode has the same energy (1 J), half of it elastic and half kinetic, and signs that do not
+/// repeat. Ker M moves by half of its own displacement in a step, Ker K rests. Empty where the modes are not known.
+struct Excitation {
+  Eigen::VectorXd position, velocity;
+};
+
 /// Spectra of the steps of any plan on one semi-discrete problem and one law.
 ///
 /// Open: per mode of M φ = μ K φ, hence exact up to the modes' own accuracy, whatever the step. Closed and rigid: per
@@ -77,6 +83,10 @@ class StabilityPredictor {
   /// The set with the largest radius; of stable sets the first that has marginal roots.
   SpectrumOrRefusal worst_closed(const StepPlan& plan, double h, Detail detail = Detail::full) const;
 
+  /// Of the free structure, or of the one held at the points of `set` (rigid).
+  Excitation excitation(double h) const;
+  Excitation excitation(const ClosedSet& set, double h) const;
+
   /// First and last pulsation of the structure, contact open (rad/s); 0 where not known.
   double first_pulsation() const;
   double last_pulsation() const;
@@ -87,6 +97,7 @@ class StabilityPredictor {
   class Collector;
   void choose_sets();
   const Modes& held_modes(const ClosedSet& set) const;
+  Excitation excite(const Modes& modes, double h) const;
   std::optional<Refusal> add_modes(Collector& found, const StepPlan& plan, const Modes& modes, int first) const;
   SpectrumOrRefusal held(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;
   SpectrumOrRefusal dense(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;

@@ -377,6 +377,31 @@ TEST_CASE("free structures have steps too") {
     }
 }
 
+TEST_CASE("a bar that nothing holds keeps its step, one mode of it drifting") {
+  SceneSpec scene;
+  BarSpec bar;
+  bar.fixed = BarSpec::Fixed::none;
+  scene.structure = bar;
+  scene.stops.lower = Formula(-0.1);
+  scene.stops.place = StopsSpec::Place::tip;
+  const int elements = 8;
+  const auto problem = problem_of(scene, elements, {"consistent"});
+  const auto predicted = predictor(problem, {"signorini"});
+  CHECK(predicted.first_pulsation() == 0);
+  // Consistent linear elements: λ_max = 12 EA/(ρA ℓ²).
+  CHECK(predicted.last_pulsation() == Approx(std::sqrt(12.0) * elements).epsilon(1e-10));
+  const double h = 1e-3;
+  for (const Choice& time : {dumont_paoli(0.25), Choice{"newmark", {}}, Choice{"moreau-jean", {}}}) {
+    const StepSpectrum open = known(predicted.open(plan(time, h), h));
+    CHECK(open.radius == Approx(1).epsilon(1e-10));
+    CHECK(open.marginal.empty());
+    CHECK(known(predicted.worst_closed(plan(time, h), h)).stable());
+  }
+  const StepLimit limit = open_limit(predicted, dumont_paoli(0), decades(1e-4, 1));
+  REQUIRE(limit.step);
+  CHECK(*limit.step == Approx(2 / (std::sqrt(12.0) * elements)).epsilon(3e-6));
+}
+
 TEST_CASE("closed sets: each point and all of them, or what says why not") {
   SceneSpec scene = working_set();
   scene.stops.place = StopsSpec::Place::nodes;
