@@ -44,11 +44,13 @@ struct OperatorWeights {
 };
 
 /// Velocity-level closure: which sides take part in the box problem, and how fast they rebound.
-/// Gap test: the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h). Approach test: with
-/// w⁻ = H·approach − (bound rate at the approach levels), w⁻ does not leave that side (up to 1e-10 of the largest speed
-/// the lane has shown at its stops, so that a point at rest on a stop stays in contact whatever its round-off). A side
-/// that passes both has the bound −e·w⁻ on y, relative to the bound's rate at the measure's levels; any other has none.
-/// Then every effort meets w⁻ + w⁺ = (1−e)w⁻ against it: contact never gives energy, for 0 ≤ e ≤ 1.
+/// Gap test: the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h); other sides are open.
+/// Approach, w⁻ = H·approach − (bound rate at the approach levels): where w⁻ does not leave the side (up to 1e-10 of
+/// the largest speed the lane has shown at its stops, so that a point at rest on a stop stays there whatever its
+/// round-off) the bound on y is −e·w⁻; where it leaves, −w⁻: a point that goes is not held, and not thrown back faster
+/// than it went. Both relative to the bound's rate at the measure's levels. Then every effort meets w⁻ + w⁺ = (1−e)w⁻
+/// against it, or 0: contact never gives energy, for 0 ≤ e ≤ 1, and a load cannot press a leaving point through its
+/// stop for more than a step.
 struct VelocityGate {
   Combination predictor;
   Levels predictor_bound;

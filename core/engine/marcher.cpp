@@ -449,10 +449,11 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
     const double still = 1e-10 * fastest;
     for (int i = 0; i < points; ++i) {
       const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
-      const bool lower = gap <= lower_.at(i, lane) && speed <= still;
-      const bool upper = gap >= upper_.at(i, lane) && speed >= -still;
-      state.gate_lower.at(i, lane) = lower ? -gate.restitution * std::min(speed, 0.0) : -infinity;
-      state.gate_upper.at(i, lane) = upper ? -gate.restitution * std::max(speed, 0.0) : infinity;
+      const bool lower = gap <= lower_.at(i, lane), upper = gap >= upper_.at(i, lane);
+      const double from_lower = speed > still ? -speed : -gate.restitution * std::min(speed, 0.0);
+      const double from_upper = speed < -still ? -speed : -gate.restitution * std::max(speed, 0.0);
+      state.gate_lower.at(i, lane) = lower ? from_lower : -infinity;
+      state.gate_upper.at(i, lane) = upper ? from_upper : infinity;
     }
   }
   for (int i = 0; i < points; ++i)

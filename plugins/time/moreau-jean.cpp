@@ -11,8 +11,8 @@ using namespace ricochet;
 ///     (M/h + θC + hθ²K) z = (1−θ)F(t) + θF(t+h) − C v − K(q + θh v) + Hᵀp
 ///     v ← v + z,   q ← q + h v + hθ z,   y = H v_{n+1} on the sides that the gap test finds closed
 ///
-/// Gap test at q + (h/2)v, approach test on v. On a side that passes both, v⁺ may not fall below −e v⁻ (relative to the
-/// stop). Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
+/// Gap test at q + (h/2)v. On a side that passes it, v⁺ may not fall below −e v⁻ (relative to the stop), or below −v⁻
+/// where v⁻ leaves it. Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
 class MoreauJean final : public TimeScheme {
  public:
   MoreauJean(double theta, double restitution) : theta_(theta), e_(restitution) {}
@@ -69,7 +69,8 @@ void register_all(Registry& registry) {
        .text =
            "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
            "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
-           "does not leave its stop; other points are free. With both tests contact never gives energy (θ = ½, any e "
+           "does not leave its stop; one that leaves is not thrown back faster than it went. So contact never gives "
+           "energy (θ = ½, any e "
            "in "
            "[0, 1]). Positions may pass the stop by O(h). Contact points without mass have no velocity to restitute: "
            "refused for e > 0, and for θ = ½.",
