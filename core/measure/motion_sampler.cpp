@@ -29,6 +29,38 @@ Cubic cubic(double s) {
            (b * c + a * c + a * b) / 6}};
 }
 
+// Where in time a scheme's velocity stands at the end of a step, in steps: 0, or −½ where it is a mean over the step. A
+// unit mass under a unit force, from rest.
+double velocity_offset(const StepPlan& plan) {
+  const std::size_t slots = plan.slots.size();
+  std::vector<double> x(slots, 0.0), next(slots);
+  const auto apply = [&](const std::vector<Stage>& stages) {
+    for (const Stage& stage : stages) {
+      double b = 0, z = 0;
+      for (std::size_t j = 0; j < stage.history.size(); ++j) b += stage.history[j].M * x[j];
+      for (const Level& level : stage.load) b += level.weight;
+      if (stage.matrix.M != 0) z = b / stage.matrix.M;
+      for (std::size_t j = 0; j < slots; ++j) {
+        const Combination& update = stage.update[j];
+        next[j] = update.z * z;
+        for (std::size_t i = 0; i < update.slots.size(); ++i) next[j] += update.slots[i] * x[i];
+      }
+      x = next;
+    }
+  };
+  apply(plan.start);
+  constexpr int few = 4;
+  for (int n = 0; n < few; ++n) apply(plan.stages);
+  double twice = 0, once = 0;
+  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) once += plan.velocity.slots[j] * x[j];
+  apply(plan.stages);
+  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) twice += plan.velocity.slots[j] * x[j];
+  // One step more adds h: that is the scale.
+  const double h = twice - once, steps = few + (plan.start_advances ? 1 : 0);
+  const double offset = h > 0 ? once / h - steps : 0;
+  return std::abs(offset + 0.5) < 0.25 ? -0.5 : 0.0;
+}
+
 // A time is a step when it is one up to the rounding of two decimal numbers.
 constexpr double rounding_of_steps = 1e-6;
 
@@ -125,7 +157,8 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid)
       mass_(QuadraticForm::of(marcher.program().problem->inertia)),
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),
-      strains_(strain_rows(marcher.program().problem->space, grid.places)) {}
+      strains_(strain_rows(marcher.program().problem->space, grid.places)),
+      offset_(velocity_offset(marcher.program().plan)) {}
 
 void MotionSampler::keep() {
   constexpr std::size_t window = 5;
@@ -166,7 +199,7 @@ bool MotionSampler::next() {
     if (!s[0] || !s[1] || !s[2]) return false;
     w = s[1]->position;
     v = (s[2]->position - s[0]->position) / (2 * h);
-    impulse = s[1]->impulse;
+    impulse = s[1]->impulse - offset_ * (s[2]->impulse - s[1]->impulse);
   } else {
     const long long first = std::max(n - 1, 0LL);
     std::array<const State*, 4> s{};
@@ -182,7 +215,7 @@ bool MotionSampler::next() {
       v += weights.slope[k] / h * s[k]->position;
     }
     const std::size_t left = static_cast<std::size_t>(n - first);
-    const double share = ratio - static_cast<double>(n);
+    const double share = ratio - static_cast<double>(n) - offset_;
     impulse = (1 - share) * s[left]->impulse + share * s[left + 1]->impulse;
   }
   const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);

@@ -46,7 +46,8 @@ class ContactLog final : public StepObserver {
 ///
 /// Positions at a time t between steps n and n+1 are the cubic through steps n−1 … n+2, velocities its derivative; at a
 /// time that is a step, q_n and (q_{n+1} − q_{n−1})/2h. Both are second-order accurate or better, whatever the scheme
-/// keeps as its own velocity. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at that time. The march goes up to two
+/// keeps as its own velocity. Impulses of a scheme whose momentum stands at mid-step (d/h) are those of mid-steps, and
+/// are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at that time. The march goes up to two
 /// steps beyond the last time.
 class MotionSampler {
  public:
@@ -79,6 +80,7 @@ class MotionSampler {
   ContactLog log_;
   QuadraticForm mass_, stiffness_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> places_, strains_;
+  double offset_ = 0;  // of the impulses kept, in steps
   std::deque<State> states_;
   SampledMotion motion_;
   std::size_t next_ = 0;

@@ -72,6 +72,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   record.left_out = left_out_pairs(*prepared.program);
   const bool rigid = !prepared.program->law->reads();
   const SchemeFacts facts = prepared.program->plan.facts;
+  const bool point_mass = prepared.problem->space.elements.empty();
   Marcher marcher(std::move(*prepared.program));
   record.setup_seconds = thread_seconds() - set_up;
 
@@ -105,7 +106,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
     record.status = "done";
     if (events.empty())
       put(record, "declared_order", facts.order);
-    else if (rigid)
+    else if (rigid && point_mass)
       put(record, "declared_order", std::min(facts.order, facts.contact_order));
     put(record, "tip_displacement_end", sampler.motion().tip.back());
     put(record, "energy_start", sampler.motion().energy.front());
