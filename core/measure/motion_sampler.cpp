@@ -135,7 +135,15 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
     onset[side] = std::min(onset[side], time);
   }
   if (changed) ++changes_;
-  impulse_ += h_ * force_;
+  // What the step gives to the momentum: the scheme's own mean of this effort and the last ones.
+  double given = force_;
+  if (view.plan->work && view.plan->work->effort.size() > 1) {
+    given = 0;
+    const std::vector<double>& weights = view.plan->work->effort;
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      for (int j = 0; view.effort[k] && j < problem_.points(); ++j) given += weights[k] * view.effort[k][j * T_];
+  }
+  impulse_ += h_ * given;
   for (const int side : {0, 1}) {
     if (now[side] && !closed_[side]) {
       double tip = marcher.support_rate(0, t);

@@ -9,7 +9,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/table.hpp"
-#include "runners/execution/run_case.hpp"
+#include "runners/execution/run_study.hpp"
 
 namespace ricochet {
 namespace {
@@ -108,7 +108,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
         table.add(std::move(row));
         continue;
       }
-      const CasePlan plan = plan_case(study_case, open.registry);
+      const CasePlan plan = plan_for(study.kind, study_case, open.registry);
       if (!plan.refusal.empty()) {
         ++costs.refused;
         row.insert(row.end(), {"", "", "", "refused: " + plan.refusal});
@@ -125,8 +125,9 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
     }
 
     out << study.name << (study.question.empty() ? "" : ": " + study.question) << "\n"
-        << fmt::format("kind {}, {} cases, duration {} s\n", study.kind, study.cases.size(),
-                       study.cases.front().duration);
+        << fmt::format("kind {}, {} case{}{}\n", study.kind, study.cases.size(), study.cases.size() == 1 ? "" : "s",
+                       study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
+                                                        : std::string());
     if (!same.empty()) out << "the same throughout: " << same << "\n";
     out << "\n" << table.text();
     print_grouped("left out:", left_out, static_cast<std::size_t>(costs.runnable), out);

@@ -6,6 +6,7 @@
 
 #include "runners/execution/environment.hpp"
 #include "runners/execution/run_comparison.hpp"
+#include "runners/execution/run_stability.hpp"
 #include "runners/execution/study_runner.hpp"
 #include "runners/report/report.hpp"
 #include "runners/study/field.hpp"
@@ -30,9 +31,13 @@ void require_reference(const Study& study, References& references, const std::at
 
 }  // namespace
 
+CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry) {
+  return kind == "stability" ? plan_stability(study_case, registry) : plan_case(study_case, registry);
+}
+
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options) {
   StudyRunner runner;
-  runner.plan = [&](const StudyCase& study_case) { return plan_case(study_case, registry); };
+  runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
   runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
     return run_case(study_case, registry, stop);
   };
@@ -46,6 +51,10 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
       return run_comparison(study_case, registry, *references, stop);
     };
   }
+  if (study.kind == "stability")
+    runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return run_stability(study_case, registry, stop);
+    };
   if (study.resolved.contains("repeats"))
     runner.time = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return time_case(study_case, registry, stop);

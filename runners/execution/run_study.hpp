@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/execution/run_case.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -14,6 +15,9 @@ struct RunOptions {
   int jobs = 0;               ///< 0: all processors
   bool fresh = false;         ///< forget what the folder holds
 };
+
+/// What would run for a case of a study of this kind, decided without running it.
+CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry);
 
 /// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/,
 /// study.json and report.html, and prints one line per case. Returns the exit code of design §5 (0, 3, 5, 130).

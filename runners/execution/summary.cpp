@@ -42,7 +42,23 @@ std::string signed_percent(double ratio) {
   return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
 }
 
+// What a comparing or a stability case has to say: its first errors, its step limits.
+std::string kind_text(const CaseRecord& record) {
+  std::vector<std::string> parts;
+  constexpr std::size_t shown_errors = 3;
+  for (const auto& [name, value] : record.measures)
+    if (name.starts_with("error.") && parts.size() < shown_errors)
+      parts.push_back(fmt::format("{} {:.2e}", name.substr(std::string("error.").size()), value));
+  const auto predicted = measure(record, "limit_predicted"), observed = measure(record, "limit_observed");
+  if (predicted) parts.push_back(fmt::format("step limit predicted {:.4g} s", *predicted));
+  if (observed) parts.push_back(fmt::format("observed {:.4g} s", *observed));
+  if (const auto radius = measure(record, "largest_radius"); radius && !predicted)
+    parts.push_back(fmt::format("largest spectral radius {:.6g}", *radius));
+  return parts.empty() ? "" : fmt::format("done: {}", fmt::join(parts, ", "));
+}
+
 std::string done_text(const CaseRecord& record) {
+  if (std::string text = kind_text(record); !text.empty()) return text;
   std::vector<std::string> parts;
   auto start = measure(record, "energy_start");
   auto end = measure(record, "energy_end");

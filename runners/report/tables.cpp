@@ -28,12 +28,6 @@ std::string cell_number(double value, const std::string& classes, int digits = 5
                      exact_text(value), number_text(value, digits));
 }
 
-const MeasureInfo* info_of(const std::string& name) {
-  for (const MeasureInfo& info : trajectory_measures())
-    if (name == info.name) return &info;
-  return nullptr;
-}
-
 std::string spaced(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -63,7 +57,7 @@ std::string header_cell(const Column& column) {
 std::string glossary(const std::vector<std::string>& measures) {
   std::string rows;
   for (const std::string& name : measures)
-    if (const MeasureInfo* info = info_of(name))
+    if (const MeasureInfo* info = measure_info(name))
       rows +=
           fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(with_unit({spaced(name), info->unit})), escape(info->text));
   return rows.empty() ? ""
@@ -90,7 +84,7 @@ std::string case_table_html(const CaseView& view) {
   columns.push_back({"set-up (s)", "Time before the first step", "number extra"});
   columns.push_back({"run (s)", "Time of marching", "number"});
   for (const std::string& name : measures) {
-    const MeasureInfo* info = info_of(name);
+    const MeasureInfo* info = measure_info(name);
     columns.push_back({with_unit({spaced(name), info ? info->unit : ""}), info ? info->text : "",
                        aside.contains(name) ? "number extra" : "number"});
   }
@@ -143,7 +137,7 @@ std::string case_table_html(const CaseView& view) {
       const std::string extra = aside.contains(name) ? " extra" : "";
       const auto value = CaseView::measure(record, name);
       // Ratios are near 1, where what counts is far behind the point.
-      const MeasureInfo* info = info_of(name);
+      const MeasureInfo* info = measure_info(name);
       const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
       out += value ? cell_number(*value, extra, digits) : fmt::format("<td class=\"number absent{}\">–</td>", extra);
     }

@@ -114,8 +114,9 @@ std::string derived_csv(const DerivedTable& table) {
 
 std::string measures_csv() {
   std::string table = csv_line({"measure", "unit", "text"});
-  for (const MeasureInfo& measure : trajectory_measures())
-    table += csv_line({measure.name, csv_field(measure.unit), csv_field(measure.text)});
+  for (const auto* list : {&trajectory_measures(), &further_measures()})
+    for (const MeasureInfo& measure : *list)
+      table += csv_line({measure.name, csv_field(measure.unit), csv_field(measure.text)});
   return table;
 }
 

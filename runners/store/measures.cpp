@@ -45,4 +45,38 @@ const std::vector<MeasureInfo>& trajectory_measures() {
   return measures;
 }
 
+const std::vector<MeasureInfo>& further_measures() {
+  static const std::vector<MeasureInfo> measures = {
+      {"horizon", "s", "Time up to which the motion is compared with its reference."},
+      {"declared_order", "1", "Order in the step that the scheme declares for such a run."},
+      {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},
+      {"error.tip-l2", "m", "Root mean square over time of the difference of the tip's displacement."},
+      {"error.displacement-l2", "m^3/2",
+       "Root mean square over time of the L² norm along x of the difference of the displacement."},
+      {"error.displacement-h2", "m^-1/2",
+       "Root mean square over time of the L² norm of the difference of the curvature (a bar: of the strain)."},
+      {"error.velocity-l2", "m^3/2/s", "Root mean square over time of the L² norm of the difference of the velocity."},
+      {"error.energy", "J", "Mean over time of the modulus of the difference of the mechanical energy."},
+      {"error.impact-times", "s",
+       "Largest distance from an impact of the reference to the nearest impact on the same side."},
+      {"error.impulse", "N s",
+       "Largest difference of the impulse so far: the contact force in the dual norm of W^{1,1}."},
+      {"timed_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats."},
+      {"timed_low", "s", "The fastest repeat."},
+      {"timed_high", "s", "The slowest repeat."},
+      {"limit_predicted", "s", "Largest stable step of the range, from the plan alone."},
+      {"limit_observed", "s", "Largest stable step of the range, found by marching and bisection."},
+      {"largest_radius", "1", "Largest spectral radius of the step over the range."},
+      {"agreement", "1", "Observed over predicted step limit."},
+  };
+  return measures;
+}
+
+const MeasureInfo* measure_info(const std::string& name) {
+  for (const auto* list : {&trajectory_measures(), &further_measures()})
+    for (const MeasureInfo& info : *list)
+      if (name == info.name) return &info;
+  return nullptr;
+}
+
 }  // namespace ricochet

@@ -60,5 +60,9 @@ struct MeasureInfo {
   const char* text;
 };
 const std::vector<MeasureInfo>& trajectory_measures();
+/// The measures that only other kinds have.
+const std::vector<MeasureInfo>& further_measures();
+/// What a measure means; null for one that nothing is known of.
+const MeasureInfo* measure_info(const std::string& name);
 
 }  // namespace ricochet

@@ -107,12 +107,15 @@ TEST_CASE("csv: a curve is its columns, and a value that is not finite is empty"
 
 TEST_CASE("measures: names are unique, units and texts are there") {
   std::vector<std::string> names;
-  for (const MeasureInfo& measure : trajectory_measures()) {
-    CHECK(std::find(names.begin(), names.end(), measure.name) == names.end());
-    names.emplace_back(measure.name);
-    CHECK_FALSE(std::string(measure.unit).empty());
-    CHECK(std::string(measure.text).back() == '.');
-  }
+  for (const auto* list : {&trajectory_measures(), &further_measures()})
+    for (const MeasureInfo& measure : *list) {
+      CHECK(std::find(names.begin(), names.end(), measure.name) == names.end());
+      names.emplace_back(measure.name);
+      CHECK_FALSE(std::string(measure.unit).empty());
+      CHECK(std::string(measure.text).back() == '.');
+      CHECK(measure_info(measure.name) == &measure);
+    }
   CHECK(names.front() == "scheme_energy_start");
-  CHECK(names.back() == "microseconds_per_step");
+  CHECK(trajectory_measures().back().name == std::string("microseconds_per_step"));
+  CHECK(measure_info("no such measure") == nullptr);
 }
