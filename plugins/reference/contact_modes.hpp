@@ -1,0 +1,392 @@
+#pragma once
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <vector>
+
+#include "linear_mode.hpp"
+
+/// \file
+/// The semi-discrete problem while its contact set stays as it is: linear, with constant coefficients, hence a sum of
+/// modes. One ContactModes per set; nothing in it depends on when or how the set is entered.
+namespace ricochet::reference {
+
+/// Rows of signals: column k multiplies e^{σ_k t}, and the real part is meant.
+using Signals = Eigen::MatrixXcd;
+
+/// Per contact point the sign of its force: +1 on its lower stop, −1 on its upper stop, 0 open.
+using ContactSet = std::vector<signed char>;
+
+/// M w'' + C w' + K w = F + Hᵀp, lower ≤ H w ≤ upper, C = αK + ηM; everything that moves is a signal.
+struct LinearStructure {
+  Eigen::MatrixXd mass, stiffness;  ///< n × n, M may be singular
+  Eigen::MatrixXd contact;          ///< H, m × n
+  double alpha = 0, eta = 0;        ///< s, 1/s
+  double spring = 0;                ///< κ of a compliant stop, N/m; 0: rigid
+  std::vector<Complex> exponents;   ///< σ, the first is 0
+  Signals force;                    ///< F, n rows
+  Signals lower, upper;             ///< m rows; ±∞ in the first column where absent
+  Eigen::VectorXd scale;            ///< of the dofs, so that K has a unit diagonal
+  double shift = 0;                 ///< s of K + sM, positive definite; 0 where K is
+
+  Eigen::Index dofs() const { return mass.rows(); }
+  Eigen::Index points() const { return contact.rows(); }
+  Eigen::VectorXcd sigma() const {
+    return Eigen::Map<const Eigen::VectorXcd>(exponents.data(), static_cast<Eigen::Index>(exponents.size()));
+  }
+  Signals rate(const Signals& of) const { return of * sigma().asDiagonal(); }
+  Eigen::MatrixXd damping() const { return alpha * stiffness + eta * mass; }
+  const Signals& bound(int sign) const { return sign > 0 ? lower : upper; }
+
+  /// Chooses scale and shift.
+  void prepare();
+};
+
+/// The modes of (M, K) that keep E w = 0: M-normalised shapes with their λ, and the massless ones, K-normalised. All
+/// are K- and M-orthogonal. Found as M x = μ K x, which keeps the digits of the slow ones.
+struct Pencil {
+  Eigen::MatrixXd shapes;    ///< n × r
+  Eigen::VectorXd squares;   ///< λ, r
+  Eigen::MatrixXd massless;  ///< n × k
+};
+
+inline Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness,
+                     const Eigen::MatrixXd& closed) {
+  const Eigen::Index n = structure.dofs(), a = closed.rows();
+  const Eigen::MatrixXd whole = stiffness + structure.shift * structure.mass;
+  // Springs may be far stiffer than the structure: the dof they act on is scaled by them.
+  const Eigen::VectorXd scale = whole.diagonal().cwiseSqrt().cwiseInverse();
+  const auto S = scale.asDiagonal();
+  const Eigen::MatrixXd M = S * structure.mass * S, K = S * whole * S;
+  Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(n, n);
+  if (a > 0) {
+    const Eigen::MatrixXd across = (closed * S).transpose();
+    kept = Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(across).householderQ()).rightCols(n - a);
+  }
+  Pencil result;
+  result.shapes.resize(n, 0);
+  result.massless.resize(n, 0);
+  if (kept.cols() == 0) return result;
+  // The kernel is judged where springs have no part in it.
+  const Eigen::VectorXd ratio = scale.cwiseQuotient(structure.scale);
+  const Eigen::MatrixXd plain = Eigen::HouseholderQR<Eigen::MatrixXd>(ratio.asDiagonal() * kept).householderQ() *
+                                Eigen::MatrixXd::Identity(n, kept.cols());
+  const auto P = structure.scale.asDiagonal();
+  const Eigen::MatrixXd light = P * structure.mass * P;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> inertia(plain.transpose() * light * plain);
+  const Eigen::Index k = (inertia.eigenvalues().array() <= 1e-11 * light.diagonal().maxCoeff()).count();
+  if (k > 0) {
+    const Eigen::MatrixXd Z = ratio.cwiseInverse().asDiagonal() * (plain * inertia.eigenvectors().leftCols(k));
+    const Eigen::LLT<Eigen::MatrixXd> normal(Z.transpose() * K * Z);
+    const Eigen::MatrixXd massless = normal.matrixL().solve(Z.transpose()).transpose();
+    result.massless = S * massless;
+    const Eigen::MatrixXd pulled = kept.transpose() * (K * massless);
+    const Eigen::MatrixXd turned = Eigen::HouseholderQR<Eigen::MatrixXd>(pulled).householderQ();
+    kept = (kept * turned.rightCols(kept.cols() - k)).eval();
+  }
+  if (kept.cols() == 0) return result;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> moving(kept.transpose() * M * kept,
+                                                                         kept.transpose() * K * kept);
+  const Eigen::VectorXd mu = moving.eigenvalues();
+  result.shapes = S * (kept * (moving.eigenvectors() * mu.cwiseSqrt().cwiseInverse().asDiagonal()));
+  result.squares = mu.cwiseInverse().array() - structure.shift;
+  for (double& square : result.squares)
+    if (square < 1e-9 * structure.shift) square = 0;
+  return result;
+}
+
+inline void LinearStructure::prepare() {
+  const auto rescale = [&](double by) {
+    shift = by;
+    scale = (stiffness + by * mass).diagonal().cwiseSqrt().cwiseInverse();
+  };
+  const double total = std::max(stiffness.trace(), 0.0);
+  if (stiffness.diagonal().minCoeff() > 0) {
+    rescale(0);
+    const Eigen::MatrixXd unit = scale.asDiagonal() * stiffness * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread(unit, Eigen::EigenvaluesOnly);
+    if (spread.eigenvalues()[0] > 1e-12) return;
+  }
+  rescale(total > 0 ? total / mass.trace() : 1);
+  // Rigid motions are known now; the slowest other mode is a better shift than the average.
+  double slowest = shift;
+  for (const double square : pencil(*this, stiffness, Eigen::MatrixXd(0, dofs())).squares)
+    if (square > 1e-8 * shift) slowest = std::min(slowest, square);
+  rescale(slowest);
+}
+
+/// What ends a phase when it falls below zero: a gap of an open point, the force or the depth of a closed one.
+struct Watch {
+  int point = 0;
+  int sign = 0;         ///< of the force that acts there, or would
+  bool closed = false;  ///< false: the gap
+};
+
+/// w = X q + Re(D e),  q in three kinds: oscillators q'' + 2δq' + λq = Re(f e), first-order modes z' = s z + g e (real
+/// ones, or complex ones of which real and imaginary part take a column each), and what follows at once, in D.
+struct ContactModes {
+  Eigen::MatrixXd shapes;                      ///< X, n × columns
+  Signals offset;                              ///< D, n rows
+  Eigen::VectorXd rates;                       ///< the fastest rate of each column, 1/s
+  std::vector<LinearMode> oscillators;         ///< the first columns
+  Signals oscillator_force;                    ///< f
+  Eigen::MatrixXd oscillator_reader;           ///< XᵀM: q = XᵀM(w − D)
+  std::vector<Complex> relaxations;            ///< s
+  std::vector<bool> single;                    ///< of each s: real, one column
+  Eigen::MatrixXcd relaxation_force;           ///< g; columns: 0, σ₁, −σ₁, σ₂, −σ₂, …
+  Eigen::MatrixXcd place_reader, rate_reader;  ///< z = P(w − D) + R(w' − D')
+  std::vector<Watch> watches;
+  Eigen::MatrixXd watch_place, watch_rate;  ///< value = A q + B q' + Re(c e)
+  Signals watch_signal;                     ///< c
+
+  Eigen::Index columns() const { return shapes.cols(); }
+};
+
+namespace detail {
+
+inline Eigen::MatrixXd closed_rows(const LinearStructure& structure, const ContactSet& set, Signals& bounds,
+                                   std::vector<Watch>& closed) {
+  for (std::size_t i = 0; i < set.size(); ++i)
+    if (set[i] != 0) closed.push_back({static_cast<int>(i), set[i], true});
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(closed.size()), structure.dofs());
+  bounds.resize(rows.rows(), structure.force.cols());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const Watch& watch = closed[static_cast<std::size_t>(i)];
+    rows.row(i) = structure.contact.row(watch.point);
+    bounds.row(i) = structure.bound(watch.sign).row(watch.point);
+  }
+  return rows;
+}
+
+/// Re(g e^{σt}) = ½ g e^{σt} + ½ ḡ e^{σ̄t}
+inline Eigen::MatrixXcd two_sided(const Eigen::MatrixXcd& reader, const Signals& force) {
+  Eigen::MatrixXcd result(reader.rows(), 2 * force.cols() - 1);
+  result.col(0) = reader * force.col(0);
+  for (Eigen::Index k = 1; k < force.cols(); ++k) {
+    result.col(2 * k - 1) = 0.5 * (reader * force.col(k));
+    result.col(2 * k) = 0.5 * (reader * force.col(k).conjugate());
+  }
+  return result;
+}
+
+class Builder {
+ public:
+  Builder(const LinearStructure& structure, const ContactSet& set) : at_(structure) {
+    rows_ = closed_rows(structure, set, bounds_, closed_);
+    set_ = &set;
+  }
+
+  ContactModes rigid() {
+    const Eigen::MatrixXd lift = static_lift();
+    modes_.offset = lift * bounds_;
+    separate(pencil(at_, at_.stiffness, rows_), at_.force - pull(modes_.offset));
+    watch_gaps();
+    watch_forces(lift);
+    return std::move(modes_);
+  }
+
+  /// Springs without stiffness-proportional damping, or no spring touched.
+  ContactModes springs() {
+    modes_.offset = Signals::Zero(at_.dofs(), at_.force.cols());
+    separate(pencil(at_, supported(), Eigen::MatrixXd(0, at_.dofs())), pushed());
+    watch_gaps();
+    watch_depths();
+    return std::move(modes_);
+  }
+
+  /// The springs do not damp as the structure does. With K' = K + κEᵀE, its modes, and y = (√λ q, z) of energy ½|y|²:
+  ///
+  ///     Λ^{−½} q'' + (α K̂ + η Λ^{−1}) y' + y = F̂,  K̂ = 1 − κ ÊᵀÊ,     that is     ξ = B ξ' + (F̂, 0),  ξ = (y, q')
+  ///
+  /// B, and not its inverse, so that slow motions keep their digits beside a stiff spring.
+  ContactModes damped_springs() {
+    const Pencil modes = pencil(at_, supported(), Eigen::MatrixXd(0, at_.dofs()));
+    const Eigen::Index r = modes.shapes.cols(), k = modes.massless.cols(), size = 2 * r + k;
+    const Eigen::VectorXd unit = modes.squares.cwiseSqrt();
+    Eigen::MatrixXd shapes(at_.dofs(), r + k);
+    shapes << modes.shapes * unit.cwiseInverse().asDiagonal(), modes.massless;
+    const Eigen::MatrixXd touch = rows_ * shapes;
+    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
+    B.topLeftCorner(r + k, r + k) =
+        at_.alpha * (at_.spring * touch.transpose() * touch - Eigen::MatrixXd::Identity(r + k, r + k));
+    B.diagonal().head(r) -= at_.eta * modes.squares.cwiseInverse();
+    B.topRightCorner(r, r).diagonal() = -unit.cwiseInverse();
+    B.bottomLeftCorner(r, r).diagonal() = unit.cwiseInverse();
+
+    const Eigen::EigenSolver<Eigen::MatrixXd> eigen(B);
+    const Eigen::MatrixXcd vectors = eigen.eigenvectors();
+    const Eigen::MatrixXcd back = Eigen::PartialPivLU<Eigen::MatrixXcd>(vectors).inverse();
+    const Eigen::MatrixXcd displacement = shapes * vectors.topRows(r + k);
+    const Eigen::MatrixXd placed =
+        (Eigen::MatrixXd(r + k, at_.dofs()) << unit.asDiagonal() * (modes.shapes.transpose() * at_.mass),
+         modes.massless.transpose() * supported())
+            .finished();
+    const Signals force = shapes.transpose() * pushed();
+    modes_.offset = Signals::Zero(at_.dofs(), at_.force.cols());
+    modes_.oscillator_force.resize(0, at_.force.cols());
+    modes_.oscillator_reader.resize(0, at_.dofs());
+    std::vector<Eigen::VectorXd> columns;
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index j = 0; j < size; ++j) {
+      if (eigen.eigenvalues()[j].imag() > 0) continue;
+      kept.push_back(j);
+      Complex s = 1.0 / eigen.eigenvalues()[j];
+      // Nothing here grows; the fastest rates are round-off.
+      if (s.real() > 0) s = {-s.real(), s.imag()};
+      modes_.relaxations.push_back(s);
+      modes_.single.push_back(s.imag() == 0);
+      if (modes_.single.back()) {
+        columns.emplace_back(displacement.col(j).real());
+      } else {
+        columns.emplace_back(2 * displacement.col(j).real());
+        columns.emplace_back(-2 * displacement.col(j).imag());
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(kept.size());
+    Eigen::MatrixXcd reader(count, size), answer(count, r + k);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      reader.row(j) = back.row(kept[static_cast<std::size_t>(j)]);
+      answer.row(j) = -modes_.relaxations[static_cast<std::size_t>(j)] * reader.row(j).head(r + k);
+    }
+    modes_.place_reader = reader.leftCols(r + k) * placed;
+    modes_.rate_reader = reader.rightCols(r) * (modes.shapes.transpose() * at_.mass);
+    modes_.relaxation_force = two_sided(answer, force);
+    modes_.shapes.resize(at_.dofs(), static_cast<Eigen::Index>(columns.size()));
+    for (Eigen::Index j = 0; j < modes_.shapes.cols(); ++j) modes_.shapes.col(j) = columns[static_cast<std::size_t>(j)];
+    finish_rates();
+    watch_gaps();
+    watch_depths();
+    return std::move(modes_);
+  }
+
+ private:
+  /// G = K⁻¹Eᵀ(E K⁻¹ Eᵀ)⁻¹: E G = 1, and K G lies in the rows of E.
+  Eigen::MatrixXd static_lift() const {
+    const auto S = at_.scale.asDiagonal();
+    if (rows_.rows() == 0) return Eigen::MatrixXd(at_.dofs(), 0);
+    const Eigen::MatrixXd K = S * (at_.stiffness + at_.shift * at_.mass) * S, across = (rows_ * S).transpose();
+    const Eigen::MatrixXd bent = K.llt().solve(across);
+    return S * (bent * (across.transpose() * bent).llt().solve(Eigen::MatrixXd::Identity(rows_.rows(), rows_.rows())));
+  }
+
+  /// M D'' + C D' + K D
+  Signals pull(const Signals& D) const {
+    const Signals rate = at_.rate(D);
+    return at_.mass * at_.rate(rate) + at_.damping() * rate + at_.stiffness * D;
+  }
+  /// K + κEᵀE
+  Eigen::MatrixXd supported() const { return at_.stiffness + at_.spring * rows_.transpose() * rows_; }
+  Signals pushed() const {
+    Signals force = at_.force;
+    if (rows_.rows() > 0) force += at_.spring * rows_.transpose() * bounds_;
+    return force;
+  }
+
+  void separate(const Pencil& modes, const Signals& force) {
+    const Eigen::Index r = modes.shapes.cols(), k = modes.massless.cols();
+    for (Eigen::Index i = 0; i < r; ++i)
+      modes_.oscillators.emplace_back((at_.alpha * modes.squares[i] + at_.eta) / 2, modes.squares[i]);
+    modes_.oscillator_force = modes.shapes.transpose() * force;
+    modes_.oscillator_reader = modes.shapes.transpose() * at_.mass;
+    massless_force_ = modes.massless.transpose() * force;
+    massless_ = modes.massless;
+    const bool relaxes = at_.alpha > 0 && k > 0;
+    modes_.shapes.resize(at_.dofs(), r + (relaxes ? k : 0));
+    modes_.shapes.leftCols(r) = modes.shapes;
+    modes_.place_reader.resize(0, at_.dofs());
+    modes_.rate_reader.resize(0, at_.dofs());
+    modes_.relaxation_force.resize(0, 2 * force.cols() - 1);
+    if (relaxes) {
+      modes_.shapes.rightCols(k) = modes.massless;
+      modes_.relaxations.assign(static_cast<std::size_t>(k), -1 / at_.alpha);
+      modes_.single.assign(static_cast<std::size_t>(k), true);
+      modes_.place_reader = (modes.massless.transpose() * at_.stiffness).cast<Complex>();
+      modes_.rate_reader = Eigen::MatrixXcd::Zero(k, at_.dofs());
+      modes_.relaxation_force = two_sided(modes.massless.transpose() / at_.alpha, force);
+    } else if (k > 0) {
+      modes_.offset += modes.massless * massless_force_;
+    }
+    finish_rates();
+  }
+
+  void finish_rates() {
+    std::vector<double> rates;
+    for (const LinearMode& mode : modes_.oscillators) rates.push_back(mode.pulsation());
+    for (std::size_t j = 0; j < modes_.relaxations.size(); ++j)
+      rates.insert(rates.end(), modes_.single[j] ? 1 : 2, std::abs(modes_.relaxations[j]));
+    modes_.rates = Eigen::Map<const Eigen::VectorXd>(rates.data(), static_cast<Eigen::Index>(rates.size()));
+  }
+
+  void watch(const Watch& what, const Eigen::RowVectorXd& place, const Eigen::RowVectorXd& rate,
+             const Eigen::RowVectorXcd& signal) {
+    const auto count = static_cast<Eigen::Index>(modes_.watches.size());
+    modes_.watches.push_back(what);
+    modes_.watch_place.conservativeResize(count + 1, modes_.columns());
+    modes_.watch_rate.conservativeResize(count + 1, modes_.columns());
+    modes_.watch_signal.conservativeResize(count + 1, at_.force.cols());
+    modes_.watch_place.row(count) = place;
+    modes_.watch_rate.row(count) = rate;
+    modes_.watch_signal.row(count) = signal;
+  }
+
+  /// sign·(H w − bound), at `point`: the gap where it is open, minus the depth of a spring.
+  void watch_distance(const Watch& what, double factor) {
+    const Eigen::RowVectorXd row = factor * at_.contact.row(what.point);
+    watch(what, row * modes_.shapes, Eigen::RowVectorXd::Zero(modes_.columns()),
+          row * modes_.offset - factor * at_.bound(what.sign).row(what.point));
+  }
+  void watch_gaps() {
+    modes_.watch_place.resize(0, modes_.columns());
+    modes_.watch_rate.resize(0, modes_.columns());
+    modes_.watch_signal.resize(0, at_.force.cols());
+    for (std::size_t i = 0; i < set_->size(); ++i)
+      for (const int sign : {1, -1}) {
+        const auto point = static_cast<Eigen::Index>(i);
+        if ((*set_)[i] != 0 || !std::isfinite(at_.bound(sign)(point, 0).real())) continue;
+        watch_distance({static_cast<int>(i), sign, false}, sign);
+      }
+  }
+  void watch_depths() {
+    for (const Watch& spring : closed_) watch_distance(spring, -spring.sign);
+  }
+
+  /// p = Gᵀ(M w'' + C w' + K w − F), where w'' is known from the modes: p = a(q + αq') + signals.
+  void watch_forces(const Eigen::MatrixXd& lift) {
+    if (closed_.empty()) return;
+    const auto r = static_cast<Eigen::Index>(modes_.oscillators.size());
+    const Eigen::MatrixXd X = modes_.shapes.leftCols(r);
+    const Eigen::MatrixXd heavy = lift.transpose() * at_.mass * X, stiff = lift.transpose() * at_.stiffness;
+    Eigen::VectorXd squares(r);
+    for (Eigen::Index i = 0; i < r; ++i) squares[i] = modes_.oscillators[static_cast<std::size_t>(i)].square();
+    Eigen::MatrixXd place = Eigen::MatrixXd::Zero(lift.cols(), modes_.columns());
+    place.leftCols(r) = stiff * X - heavy * squares.asDiagonal();
+    Signals signal = heavy * modes_.oscillator_force + lift.transpose() * (pull(modes_.offset) - at_.force);
+    if (at_.alpha > 0 && massless_.cols() > 0) signal += (stiff * massless_) * massless_force_;
+    for (std::size_t i = 0; i < closed_.size(); ++i) {
+      const double sign = closed_[i].sign;
+      const auto row = static_cast<Eigen::Index>(i);
+      watch(closed_[i], sign * place.row(row), sign * at_.alpha * place.row(row), sign * signal.row(row));
+    }
+  }
+
+  const LinearStructure& at_;
+  const ContactSet* set_ = nullptr;
+  Eigen::MatrixXd rows_;  // E
+  Signals bounds_;
+  std::vector<Watch> closed_;
+  Eigen::MatrixXd massless_;
+  Signals massless_force_;
+  ContactModes modes_;
+};
+
+}  // namespace detail
+
+inline ContactModes contact_modes(const LinearStructure& structure, const ContactSet& set) {
+  const bool touched = std::any_of(set.begin(), set.end(), [](signed char sign) { return sign != 0; });
+  detail::Builder builder(structure, set);
+  if (structure.spring == 0) return builder.rigid();
+  return touched && structure.alpha > 0 ? builder.damped_springs() : builder.springs();
+}
+
+}  // namespace ricochet::reference

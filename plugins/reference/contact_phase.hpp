@@ -1,0 +1,139 @@
+#pragma once
+#include "contact_modes.hpp"
+#include "first_fall.hpp"
+
+/// \file
+/// One phase of the semi-discrete motion: the modes of its contact set, entered from a state.
+namespace ricochet::reference {
+
+/// w and w' at a time.
+struct State {
+  double time = 0;
+  Eigen::VectorXd place, rate;
+};
+
+/// The columns of a phase and their first two derivatives, and the signals' exponentials.
+struct Columns {
+  Eigen::VectorXd value, rate, curve;
+  Eigen::VectorXcd phasors;                 ///< e^{σt}
+  Eigen::VectorXcd turned, doubled_turned;  ///< e^{στ}; of both sides
+};
+
+class ContactPhase {
+ public:
+  ContactPhase(const LinearStructure& structure, const ContactModes& modes, const State& from)
+      : structure_(&structure), modes_(&modes), start_(from.time) {
+    exponents_ = structure.sigma();
+    both_sides(exponents_, doubled_exponents_);
+    const Eigen::VectorXcd entered = (exponents_ * start_).array().exp();
+    const Eigen::VectorXd place = from.place - (modes.offset * entered).real();
+    const Eigen::VectorXd rate = from.rate - (structure.rate(modes.offset) * entered).real();
+    place_ = modes.oscillator_reader * place;
+    rate_ = modes.oscillator_reader * rate;
+    relaxed_ = modes.place_reader * place + modes.rate_reader * rate;
+    force_ = modes.oscillator_force * entered.asDiagonal();
+    Eigen::VectorXcd doubled;
+    both_sides(entered, doubled);
+    relaxing_force_ = modes.relaxation_force * doubled.asDiagonal();
+  }
+
+  const ContactModes& modes() const { return *modes_; }
+  double start() const { return start_; }
+
+  void read(double tau, Columns& at) const {
+    const Eigen::Index count = modes_->columns();
+    at.value.resize(count);
+    at.rate.resize(count);
+    at.curve.resize(count);
+    at.turned = (exponents_ * tau).array().exp();
+    at.phasors = (exponents_ * (start_ + tau)).array().exp();
+    if (relaxed_.size() > 0) both_sides(at.turned, at.doubled_turned);
+    for (Eigen::Index i = 0; i < place_.size(); ++i) read_oscillator(i, tau, at);
+    Eigen::Index column = place_.size();
+    for (Eigen::Index j = 0; j < relaxed_.size(); ++j) read_relaxation(j, tau, column, at);
+  }
+
+  State state(double tau) const {
+    Columns at;
+    read(tau, at);
+    State result{start_ + tau, modes_->shapes * at.value, modes_->shapes * at.rate};
+    result.place += (modes_->offset * at.phasors).real();
+    result.rate += (structure_->rate(modes_->offset) * at.phasors).real();
+    return result;
+  }
+
+  double watched(Eigen::Index row, const Columns& at) const {
+    return modes_->watch_place.row(row).dot(at.value) + modes_->watch_rate.row(row).dot(at.rate) +
+           std::real((modes_->watch_signal.row(row) * at.phasors).value());
+  }
+  double watched_rate(Eigen::Index row, const Columns& at) const {
+    return modes_->watch_place.row(row).dot(at.rate) + modes_->watch_rate.row(row).dot(at.curve) +
+           std::real((modes_->watch_signal.row(row) * exponents_.cwiseProduct(at.phasors)).value());
+  }
+  /// Of a gap: its acceleration.
+  double watched_curve(Eigen::Index row, const Columns& at) const {
+    return modes_->watch_place.row(row).dot(at.curve) +
+           std::real((modes_->watch_signal.row(row) * exponents_.cwiseAbs2().asDiagonal() * -at.phasors).value());
+  }
+
+ private:
+  /// x₀, x₁, x̄₁, x₂, x̄₂, …
+  static void both_sides(const Eigen::VectorXcd& of, Eigen::VectorXcd& result) {
+    result.resize(2 * of.size() - 1);
+    result[0] = of[0];
+    for (Eigen::Index k = 1; k < of.size(); ++k) {
+      result[2 * k - 1] = of[k];
+      result[2 * k] = std::conj(of[k]);
+    }
+  }
+
+  void read_oscillator(Eigen::Index i, double tau, Columns& at) const {
+    const LinearMode& mode = modes_->oscillators[static_cast<std::size_t>(i)];
+    const auto basis = mode.fundamental(tau);
+    double value = place_[i] * basis.c + rate_[i] * basis.s;
+    double rate = rate_[i] * basis.s_rate - mode.square() * place_[i] * basis.s;
+    double push = 0;
+    for (Eigen::Index k = 0; k < exponents_.size(); ++k) {
+      if (force_(i, k) == 0.0) continue;
+      const auto unit = mode.response(exponents_[k], tau, at.turned[k], basis);
+      value += std::real(force_(i, k) * unit.value);
+      rate += std::real(force_(i, k) * unit.rate);
+      push += std::real(force_(i, k) * at.turned[k]);
+    }
+    at.value[i] = value;
+    at.rate[i] = rate;
+    at.curve[i] = push - 2 * mode.decay() * rate - mode.square() * value;
+  }
+
+  void read_relaxation(Eigen::Index j, double tau, Eigen::Index& column, Columns& at) const {
+    const Complex s = modes_->relaxations[static_cast<std::size_t>(j)];
+    Complex value = relaxed_[j] * std::exp(s * tau), push = 0, change = 0;
+    for (Eigen::Index k = 0; k < doubled_exponents_.size(); ++k) {
+      const Complex force = relaxing_force_(j, k);
+      if (force == 0.0) continue;
+      const Complex turned = at.doubled_turned[k];
+      value += force * first_order_response(s, doubled_exponents_[k], tau, turned);
+      push += force * turned;
+      change += force * doubled_exponents_[k] * turned;
+    }
+    const Complex rate = s * value + push, curve = s * rate + change;
+    const auto put = [&](double a, double b, double c) {
+      at.value[column] = a;
+      at.rate[column] = b;
+      at.curve[column++] = c;
+    };
+    put(value.real(), rate.real(), curve.real());
+    if (!modes_->single[static_cast<std::size_t>(j)]) put(value.imag(), rate.imag(), curve.imag());
+  }
+
+  const LinearStructure* structure_;
+  const ContactModes* modes_;
+  double start_ = 0;
+  Eigen::VectorXd place_, rate_;  // of the oscillators, at the start
+  Eigen::VectorXcd relaxed_;
+  Signals force_;  // as it is at the start
+  Eigen::MatrixXcd relaxing_force_;
+  Eigen::VectorXcd exponents_, doubled_exponents_;
+};
+
+}  // namespace ricochet::reference
