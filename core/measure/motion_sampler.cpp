@@ -105,12 +105,15 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
   const double t = view.time;
   bool now[2] = {false, false}, changed = false, state_known = false;
   double onset[2] = {t + 2 * h_, t + 2 * h_};
-  for (int j = 0; j < problem_.points(); ++j) {
-    const double p = view.effort[0][j * T_];
+  const double* efforts = view.effort[0];
+  signed char* signs = signs_.data();
+  const int points = problem_.points();
+  for (int j = 0; j < points; ++j) {
+    const double p = efforts[j * T_];
+    if (p == 0 && signs[j] == 0) continue;
     const auto sign = static_cast<signed char>(p > 0 ? 1 : (p < 0 ? -1 : 0));
-    signed char& before = signs_[static_cast<std::size_t>(j)];
-    changed = changed || sign != before;
-    before = sign;
+    changed = changed || sign != signs[j];
+    signs[j] = sign;
     if (sign == 0) continue;
     force_ += p;
     const int side = sign > 0 ? 0 : 1;

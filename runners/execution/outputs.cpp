@@ -51,6 +51,7 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
   constexpr int indent = 2;
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   std::set<std::string> wanted;
+  if (!results.study.contains("scene")) return;  // nothing to make a study of
   for (const CaseRecord& record : results.cases) {
     // A case without a step of its own (stability) is no run that could be repeated.
     const bool stepped =

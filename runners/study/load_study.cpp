@@ -76,11 +76,11 @@ void check_steps(const Json& steps, double duration) {
   }
 }
 
-// An oscillator has one dof whatever the mesh: its study need not speak of one.
-void give_oscillator_its_mesh(Json& study) {
+// An oscillator has one dof whatever the mesh: its study need not speak of one. Any other must.
+void require_mesh(const Json& study) {
   const Json::json_pointer type("/scene/structure/type");
-  if (study.is_object() && study.contains(type) && study.at(type) == "oscillator" && !study.contains("mesh"))
-    study["mesh"] = {{"elements", 1}};
+  if (!study.is_object() || study.contains("mesh") || !study.contains(type)) return;
+  if (study.at(type) == "beam" || study.at(type) == "bar") throw InputError("/mesh", "missing; this key is required");
 }
 
 void check_kind(const Json& study) {
@@ -190,9 +190,9 @@ void add_columns(const Axes& axes, std::vector<std::string>& columns) {
 Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry) {
   std::vector<Axis> axes;
   Study study;
-  Json given = parse_json(text);
-  give_oscillator_its_mesh(given);
+  const Json given = parse_json(text);
   study.resolved = check_object(study_form(), given, "", axes);
+  require_mesh(given);
   Json& resolved = study.resolved;
   study.name = resolved["name"].get<std::string>();
   study.question = resolved["question"].get<std::string>();

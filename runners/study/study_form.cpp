@@ -262,7 +262,7 @@ ObjectForm study() {
       named(Field::Form::text, "question", Json(""), "The question that the study answers."),
       word("kind", study_kinds(), std::nullopt, "What is made of each case."),
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
-      object("mesh", std::nullopt, "The meshes.", mesh),
+      object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),
       object("methods", std::nullopt, "The methods whose combinations are run.", chosen),
       named(Field::Form::excludes, "exclude", Json::array(), "Combinations that are not run, each with its reason.")};
   keys.discriminator = "/kind";

@@ -15,6 +15,7 @@
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy_audit.hpp>
+#include <ricochet/measure/motion_sampler.hpp>
 
 #include "tests/benchmarks/fma_peak.hpp"
 
@@ -61,8 +62,13 @@ struct Case {
   std::vector<double> nanoseconds;
   std::unique_ptr<Marcher> marcher;
   std::unique_ptr<EnergyAudit> audit;
+  std::unique_ptr<MotionSampler> sampler;  ///< reads the motion every `steps_per_sample` steps, contact at each
   long long contact_steps = 0;
 };
+
+// What looks at the march: nothing, the energy audit at every step, or samples as a comparing study takes them.
+enum class Watch { nothing, energy, samples };
+constexpr int steps_per_sample = 500;
 
 // Time of one call, as the fastest of several batches: what a cost model should compare is the machine at rest.
 template <class Call>
@@ -122,10 +128,10 @@ int main(int argc, char** argv) {
   }
   std::vector<Case> cases;
   const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity,
-                       OperatorKind kind, bool audited = false) {
+                       OperatorKind kind, Watch watch = Watch::nothing) {
     for (const int lanes : {1, 8, 16, 32}) {
-      if (audited && lanes > 1) continue;
-      Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, 0};
+      if (watch != Watch::nothing && lanes > 1) continue;
+      Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, nullptr, 0};
       const auto* mass_entry = registry.mass(mass);
       std::map<std::string, ParameterValue> values;
       if (!velocity.empty()) values["velocity"] = velocity;
@@ -145,9 +151,17 @@ int main(int argc, char** argv) {
       auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), specs, options);
       one.name += fmt::format(" ({})", operator_name(std::get<Program>(program).kind));
       one.marcher = std::make_unique<Marcher>(std::move(std::get<Program>(program)));
-      if (audited) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
-      one.marcher->start(one.audit.get());
-      one.marcher->march(24000, one.audit.get());  // into the impacting regime
+      if (watch == Watch::samples) {
+        SampleGrid grid;
+        for (int k = 0; k < 4000; ++k) grid.times.push_back(k * steps_per_sample * h);
+        sample_places(1.501, 64, grid);
+        one.sampler = std::make_unique<MotionSampler>(*one.marcher, grid);
+        for (int k = 0; k < 24000 / steps_per_sample; ++k) one.sampler->next();
+      } else {
+        if (watch == Watch::energy) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
+        one.marcher->start(one.audit.get());
+        one.marcher->march(24000, one.audit.get());  // into the impacting regime
+      }
       cases.push_back(std::move(one));
     }
   };
@@ -159,7 +173,8 @@ int main(int argc, char** argv) {
   add("singular P1, tip", tip, "singular", "P1", OperatorKind::automatic);
   add("consistent, tip", tip, "consistent", "", OperatorKind::automatic);
   add("consistent, tip, band", tip, "consistent", "", OperatorKind::band);
-  add("consistent, all nodes, energy audit", nodes, "consistent", "", OperatorKind::band, true);
+  add("consistent, all nodes, energy audit", nodes, "consistent", "", OperatorKind::band, Watch::energy);
+  add("consistent, all nodes, sampled", nodes, "consistent", "", OperatorKind::band, Watch::samples);
   add("consistent, sparse", nodes, "consistent", "", OperatorKind::sparse);
 
   double peak = 0;
@@ -168,7 +183,10 @@ int main(int argc, char** argv) {
     for (Case& one : cases) {
       const long long steps = std::max(1500, 6000 / one.lanes * 2);
       const double start = thread_nanoseconds();
-      one.marcher->march(steps, one.audit.get());
+      if (one.sampler)
+        for (int k = 0; k < steps / steps_per_sample; ++k) one.sampler->next();
+      else
+        one.marcher->march(steps, one.audit.get());
       const double elapsed = thread_nanoseconds() - start;
       one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
     }

@@ -1,3 +1,4 @@
+#include "runners/study/field.hpp"
 #include "runners/study/load_study.hpp"
 
 #include <algorithm>
@@ -321,6 +322,8 @@ TEST_CASE("Every shipped study parses with the plugins of this build") {
     std::set<std::string> named;
     for (const StudyCase& one : study.cases)
       named.insert({"mass-" + one.mass.name, "contact-" + one.contact.name, "time-" + one.time.name});
+    for (const MethodChoice& reference : study.cases.front().references)
+      if (reference.name != marched_reference) named.insert("reference-" + reference.name);
     CHECK(catalogue.opened().size() == named.size());
     ++count;
   }
