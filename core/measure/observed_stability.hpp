@@ -63,7 +63,7 @@ ObservedOrRefusal observe_held(const std::shared_ptr<const SemiDiscrete>& proble
 
 /// The scene itself, impacts and loads included. Growing: at some step the energy exceeds everything that the initial
 /// state and the loads gave by as much again (the scheme's own energy where it has one, plus the springs' of compliant
-/// laws).
+/// laws), or the common energy is a thousand times that.
 ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                 std::unique_ptr<ContactLaw> law, const Parameters& parameters, const Horizon& horizon);
 

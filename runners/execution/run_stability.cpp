@@ -24,8 +24,10 @@ std::vector<double> steps_of(const StudyCase& study_case) {
   const double from = range.at("from").get<double>(), to = range.at("to").get<double>();
   const int count = range.at("count").get<int>();
   std::vector<double> steps;
+  // Twelve digits: 1e-05 rather than 9.999999999999999e-06.
   for (int i = 0; i < count; ++i)
-    steps.push_back(count == 1 || i == 0 ? from : i == count - 1 ? to : from * std::pow(to / from, i / (count - 1.0)));
+    steps.push_back(
+        std::stod(fmt::format("{:.12g}", count == 1 ? from : from * std::pow(to / from, i / (count - 1.0)))));
   return steps;
 }
 
@@ -215,37 +217,44 @@ class StabilityRun {
             {}};
   }
 
-  // Status and reason of one row: the prediction, what was seen, and whether they agree.
-  static std::pair<std::string, std::string> verdict(const Side& side, std::size_t i, bool observed) {
+  static std::string growth_text(const StepSpectrum& known, bool closed) {
+    const double growth = known.radius - 1;
+    return fmt::format(
+        "grows {} per step{} on {}",
+        growth < 1 ? fmt::format("by {:.3g} %", 100 * growth) : fmt::format("{:.3g} times", known.radius),
+        closed ? " with " + known.contact + " closed" : "", known.mode);
+  }
+
+  // Status and reason of one row: the prediction, what was seen, and whether they agree. A scene is open now and then:
+  // what grows there grows in it.
+  static std::pair<std::string, std::string> verdict(const Side& open, const Side& side, std::size_t i, bool observed) {
     std::string status, reason;
+    bool grows = false;
     if (const StepSpectrum* known = side.spectrum(i)) {
-      status = !known->stable() ? "unstable" : known->marginal.empty() ? "stable" : "marginal";
-      if (!known->stable()) {
-        const double growth = known->radius - 1;
-        append(reason, fmt::format("grows {} per step{} on {}",
-                                   growth < 1 ? fmt::format("by {:.3g} %", 100 * growth)
-                                              : fmt::format("{:.3g} times", known->radius),
-                                   side.closed ? " with " + known->contact + " closed" : "", known->mode));
-      } else if (side.closed && !known->marginal.empty()) {
+      const StepSpectrum* apart = side.closed ? open.spectrum(i) : nullptr;
+      const bool grows_open = apart && !apart->stable();
+      grows = !known->stable() || grows_open;
+      status = grows ? "unstable" : known->marginal.empty() ? "stable" : "marginal";
+      if (!known->stable())
+        append(reason, growth_text(*known, side.closed));
+      else if (side.closed && !known->marginal.empty())
         append(reason, known->contact + " closed");
-      }
+      if (grows_open) append(reason, "open, it " + growth_text(*apart, false));
     } else if (side.spectra[i]) {
       status = "refused";
       append(reason, "not predicted: " + std::get<Refusal>(*side.spectra[i]).sentence);
     } else {
       append(reason, "not predicted: the budget was spent");
     }
-    if (!observed) return {status.empty() ? "failed" : status, reason};
-    const auto& cell = side.cells[i];
+    const auto& cell = observed ? side.cells[i] : std::optional<ObservedCell>();
     if (!cell) {
-      if (status != "refused") append(reason, "not observed: the budget was spent");
+      if (observed && status != "refused") append(reason, "not observed: the budget was spent");
       return {status.empty() ? "failed" : status, reason};
     }
     const std::string seen = cell->behaviour == Behaviour::failed ? "failed" : cell->stable() ? "stable" : "unstable";
-    const bool predicted = status == "stable" || status == "marginal";
     if (seen != "stable") append(reason, "observed: " + cell->cause);
-    if (side.spectrum(i) && predicted != (seen == "stable"))
-      append(reason, predicted ? "the spectrum does not see it" : fmt::format("not observed in {} steps", cell->steps));
+    if (side.spectrum(i) && grows != (seen != "stable"))
+      append(reason, grows ? fmt::format("not observed in {} steps", cell->steps) : "the spectrum does not see it");
     if (cell->chatters())
       append(reason, fmt::format("chatter: {:.0f} % of the force's power is fast, {:.3g} changes of the active set per "
                                  "impact",
@@ -263,7 +272,7 @@ class StabilityRun {
     for (const Side& side : sides)
       for (std::size_t i = 0; i < steps_.size(); ++i) {
         const StepSpectrum* known = side.spectrum(i);
-        const auto [status, reason] = verdict(side, i, observed);
+        const auto [status, reason] = verdict(sides.front(), side, i, observed);
         table.rows.push_back({steps_[i], side.name(), known ? number(known->radius) : Cell(nullptr),
                               known ? known->marginal : "", number(side.predicted.step), number(side.observed.step),
                               status, reason});
@@ -279,10 +288,16 @@ class StabilityRun {
       }
     record_.tables.push_back(std::move(table));
     if (observed) record_.tables.push_back(std::move(seen));
-    for (const Side& side : sides) say_limits(side, observed);
+    for (const Side& side : sides) say_limits(sides, side, observed);
   }
 
-  void say_limits(const Side& side, bool observed) {
+  // The smaller of what is predicted for the contact state and, for scenes, for the open structure.
+  static std::optional<double> expected(const std::vector<Side>& sides, const Side& side) {
+    const auto &own = side.predicted.step, &open = sides.front().predicted.step;
+    return own && open ? std::optional(std::min(*own, *open)) : own ? own : open;
+  }
+
+  void say_limits(const std::vector<Side>& sides, const Side& side, bool observed) {
     const auto say = [&](std::string sentence) { record_.notes.push_back(std::string(side.name()) + ": " + sentence); };
     if (const auto& limit = side.predicted.step)
       say(fmt::format(
@@ -292,14 +307,15 @@ class StabilityRun {
     else if (side.predicted.beyond)
       say("no stable step is predicted");
     if (!observed) return;
-    if (side.observed.step && side.predicted.step)
+    const auto limit = expected(sides, side);
+    if (side.observed.step && limit)
       say(fmt::format("observed up to h = {:.4g} s, {:.4g} times the prediction", *side.observed.step,
-                      *side.observed.step / *side.predicted.step));
+                      *side.observed.step / *limit));
     else if (side.observed.step)
       say(fmt::format("observed up to h = {:.4g} s, where the spectrum sees no limit", *side.observed.step));
     else if (side.observed.below_range)
       say("unstable already at the smallest step of the range");
-    else if (side.predicted.step && !side.predicted.below_range)
+    else if (limit && *limit < steps_.back() && !side.predicted.below_range)
       say("no limit was observed");
     if (side.observed.returns) say("beyond the observed limit some steps are stable again");
   }
@@ -309,16 +325,14 @@ class StabilityRun {
       if (std::isfinite(value)) record_.measures.emplace_back(name, value);
     };
     const double none = std::numeric_limits<double>::infinity();
-    double predicted = none, observed = none, radius = -1, agreement = none, agreed = none;
+    double predicted = none, observed = none, radius = -1, agreement = none;
     for (const Side& side : sides) {
       predicted = std::min(predicted, side.predicted.step.value_or(none));
       observed = std::min(observed, side.observed.step.value_or(none));
       for (std::size_t i = 0; i < steps_.size(); ++i)
         if (const StepSpectrum* known = side.spectrum(i)) radius = std::max(radius, known->radius);
-      if (side.predicted.step && side.observed.step && *side.predicted.step < agreed) {
-        agreed = *side.predicted.step;
-        agreement = *side.observed.step / agreed;
-      }
+      const auto limit = expected(sides, side);
+      if (limit && side.observed.step && !std::isfinite(agreement)) agreement = *side.observed.step / *limit;
     }
     put("limit_predicted", predicted);
     put("limit_observed", observed);

@@ -1,0 +1,119 @@
+#include "runners/report/stability_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/report/html.hpp"
+
+namespace ricochet::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const DerivedTable* table_of(const CaseRecord& record, const std::string& name) {
+  const auto found = std::find_if(record.tables.begin(), record.tables.end(),
+                                  [&](const DerivedTable& table) { return table.name == name; });
+  return found == record.tables.end() ? nullptr : &*found;
+}
+
+const Json& cell(const DerivedTable& table, const std::vector<Json>& row, const std::string& column) {
+  static const Json none;
+  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+  const auto index = static_cast<size_t>(found - table.columns.begin());
+  return found == table.columns.end() || index >= row.size() ? none : row[index];
+}
+
+std::optional<double> number(const Json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+std::string text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
+}  // namespace
+
+std::optional<StabilityRange> stability_range(const CaseRecord& record, bool closed) {
+  const DerivedTable* predicted = table_of(record, "stability");
+  if (!predicted) return std::nullopt;
+  const DerivedTable* observed = table_of(record, "stability_observed");
+  const std::string contact = closed ? "closed" : "open";
+  StabilityRange out;
+  out.record = &record;
+  out.closed = closed;
+  for (const auto& row : predicted->rows) {
+    const auto step = number(cell(*predicted, row, "step"));
+    if (text(cell(*predicted, row, "contact")) != contact || !step) continue;
+    StabilityCell one;
+    one.step = *step;
+    one.radius = number(cell(*predicted, row, "radius"));
+    one.marginal = text(cell(*predicted, row, "marginal"));
+    one.status = text(cell(*predicted, row, "status"));
+    one.reason = text(cell(*predicted, row, "reason"));
+    out.predicted = number(cell(*predicted, row, "limit_predicted"));
+    out.observed = number(cell(*predicted, row, "limit_observed"));
+    if (observed)
+      for (const auto& seen : observed->rows)
+        if (text(cell(*observed, seen, "contact")) == contact && number(cell(*observed, seen, "step")) == step)
+          one.behaviour = text(cell(*observed, seen, "behaviour"));
+    out.cells.push_back(std::move(one));
+  }
+  if (out.cells.empty()) return std::nullopt;
+  out.expected = out.predicted;
+  for (StabilityCell& one : out.cells) one.worst = one.radius;
+  if (closed)
+    if (const auto open = stability_range(record, false)) {
+      if (open->predicted) out.expected = std::min(*open->predicted, out.predicted.value_or(*open->predicted));
+      for (StabilityCell& one : out.cells)
+        for (const StabilityCell& apart : open->cells)
+          if (apart.step == one.step && apart.radius && one.radius) one.worst = std::max(*one.radius, *apart.radius);
+    }
+  std::sort(out.cells.begin(), out.cells.end(),
+            [](const StabilityCell& a, const StabilityCell& b) { return a.step < b.step; });
+  return out;
+}
+
+std::vector<std::string> contact_columns(const CaseView& view) {
+  std::vector<std::string> out;
+  for (const std::string& column : view.varying())
+    if (role_of(column) == "contact") out.push_back(column);
+  return out;
+}
+
+Cases stability_cases(const CaseView& view, bool closed) {
+  Cases with;
+  for (const CaseRecord* record : view.all())
+    if (stability_range(*record, closed)) with.push_back(record);
+  if (closed) return with;
+  Cases out;
+  for (const CaseGroup& same : view.group(with, view.varying_without({"contact"}))) {
+    const auto done = std::find_if(same.cases.begin(), same.cases.end(),
+                                   [](const CaseRecord* record) { return record->status == "done"; });
+    out.push_back(done == same.cases.end() ? same.cases.front() : *done);
+  }
+  return out;
+}
+
+std::vector<std::string> disagreements(const StabilityRange& range) {
+  std::vector<std::string> out;
+  for (size_t i = 0; i < range.cells.size();) {
+    if (!range.cells[i].disagrees()) {
+      ++i;
+      continue;
+    }
+    size_t end = i;
+    const bool predicted = range.cells[i].predicted_unstable();
+    while (end < range.cells.size() && range.cells[end].disagrees() &&
+           range.cells[end].predicted_unstable() == predicted)
+      ++end;
+    const std::string from = number_text(range.cells[i].step, 3), to = number_text(range.cells[end - 1].step, 3);
+    out.push_back(fmt::format("h = {} s{}: predicted {}, observed {}", from,
+                              end - i > 1 ? fmt::format(" to {} s ({} steps)", to, end - i) : "",
+                              predicted ? "unstable" : "stable", predicted ? "stable" : "unstable"));
+    i = end;
+  }
+  return out;
+}
+
+}  // namespace ricochet::report
