@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t largest_table = 1'000'000, most_factors = 12, highest_order = 3;
-constexpr double decades_for_log = 2, equal = 1e-12, pairs_from = 1.25;
+constexpr double decades_for_log = 2, equal = 1e-12, pairs_from = 1.25, round_off = 1e-12;
 constexpr double work_of_draws = 4e7;  // combinations × draws
 constexpr int fewest_draws = 50;
 
@@ -229,14 +229,20 @@ std::vector<std::vector<double>> bootstrap(const Table& table, const std::vector
   return draws;
 }
 
+/// Round-off of a decomposition is neither a share nor the lack of one.
+double tidy(double share) {
+  return share < round_off ? 0 : share > 1 - round_off ? 1 : share;
+}
+
 void set_interval(EffectShare& out, double share, const std::vector<double>& sorted) {
+  share = tidy(share);
   out.share = out.low = out.high = share;
   if (sorted.empty()) return;
   const auto at = [&](double p) {
     return sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1) + 0.5)];
   };
-  out.low = std::min(share, at(0.025));
-  out.high = std::max(share, at(0.975));
+  out.low = std::min(share, tidy(at(0.025)));
+  out.high = std::max(share, tidy(at(0.975)));
 }
 
 /// A share with the names of its factors.

@@ -18,6 +18,7 @@ constexpr double falling = 0.3;                            // slope below which 
 constexpr double trust = 0.02;                             // relative, of any error
 constexpr double chance_bend = 0.975, chance_end = 0.995;  // two-sided 95 % and 99 %
 constexpr double widest = 0.5, widest_near = 0.3, near = 0.05, margin = 0.1;
+constexpr std::size_t fewest_faster = 5;
 
 double student(double p, std::size_t freedom) {
   return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), p);
@@ -236,7 +237,24 @@ bool leans_towards(const Logs& logs, const Fit& fitted, double target) {
   return std::abs(target - finer) < 0.5 * std::abs(gap);
 }
 
-void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& span, bool leans) {
+/// What a refutation must rule out.
+struct Doubt {
+  bool leans = false;     ///< the finer points move towards the declared order
+  std::size_t finer = 0;  ///< usable points beyond the range
+};
+
+/// Why an interval away from the declared order does not refute it, or "".
+std::string excuse(const OrderFit& fitted, const OrderQuestion& question, const Doubt& doubt) {
+  const bool faster = *fitted.order > *question.declared;
+  if (doubt.leans) return "but the finer points move towards it";
+  if (doubt.finer > 0) return "but the finer points do not follow";
+  if (faster && fitted.points < fewest_faster) return fmt::format("but over {} points only", fitted.points);
+  if (!faster && question.other_unknown)
+    return fmt::format("but the error of {}, which nothing tells, may dominate", question.other);
+  return "";
+}
+
+void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& span, const Doubt& doubt) {
   if (!question.declared) {
     fitted.reason = "no order is declared; " + span;
     return;
@@ -245,22 +263,22 @@ void judge(OrderFit& fitted, const OrderQuestion& question, const std::string& s
   const double away = std::max({*fitted.low - declared, declared - *fitted.high, 0.0});
   const bool close = std::abs(*fitted.order - declared) <= near && half <= widest_near;
   const char* side = *fitted.order > declared ? "faster" : "slower";
+  const std::string but = excuse(fitted, question, doubt);
   if (close || (away == 0 && half <= widest)) {
     fitted.verdict = OrderVerdict::confirmed;
     fitted.reason = fmt::format("agrees with the declared {:.3g}; {}", declared, span);
-  } else if (away == 0) {
+  } else if (away == 0 || (away < margin && half > widest)) {
     fitted.reason = fmt::format("the interval of ±{:.2g} is too wide to tell; {}", half, span);
-  } else if (leans) {
-    fitted.reason =
-        fmt::format("{} than the declared {:.3g}, but the finer points move towards it; {}", side, declared, span);
-  } else if (away >= margin) {
+  } else if (!but.empty()) {
+    fitted.reason = fmt::format("{} than the declared {:.3g}, {}; {}", side, declared, but, span);
+  } else if (away < margin) {
+    fitted.reason = fmt::format("slightly {} than the declared {:.3g}, by less than the margin of {}; {}", side,
+                                declared, margin, span);
+  } else {
     fitted.verdict = OrderVerdict::refuted;
     fitted.reason = *fitted.high < falling
                         ? fmt::format("the error does not fall; declared is order {:.3g}; {}", declared, span)
                         : fmt::format("converges {} than the declared {:.3g}; {}", side, declared, span);
-  } else {
-    fitted.reason = fmt::format("slightly {} than the declared {:.3g}, by less than the margin of {}; {}", side,
-                                declared, margin, span);
   }
 }
 
@@ -345,7 +363,8 @@ OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& q
     out.reason = fmt::format("the error stops falling at {:.2g}: something other than the {} dominates; {}",
                              std::exp(best->line.mean_y), question.refined, span);
   else
-    judge(out, question, span, question.declared && leans_towards(logs, *best, *question.declared));
+    judge(out, question, span,
+          {question.declared && leans_towards(logs, *best, *question.declared), logs.size() - w.to});
   return out;
 }
 

@@ -42,6 +42,7 @@ struct OrderQuestion {
   std::string refined = "step";  ///< what r is, for sentences
   double other_error = 0;        ///< estimate of the error that refining r does not lower, in the unit of e
   std::string other = "the other refinement";  ///< where that error comes from, for sentences: "the mesh"
+  bool other_unknown = false;  ///< there is such an error and nothing tells how large: too slow refutes nothing then
 };
 
 enum class OrderVerdict { confirmed, refuted, undecided };
@@ -60,11 +61,12 @@ struct OrderFit {
 };
 
 /// Fits the order. Confirmed: the interval holds the declared order and is no wider than ±0.5, or |p − declared| ≤ 0.05
-/// with ±0.3. Refuted: the interval is 0.1 or more away from it, and the finer points do not move towards it (slopes
-/// that go one way, or the finer half nearer to it by half). Otherwise undecided, with the reason: too few usable
-/// points, too wide an interval, another error that dominates, errors that stop falling, nothing declared. Points in
-/// any order; equal sizes are taken together (geometric mean). Throws std::invalid_argument on a size that is not
-/// positive, on a negative error or floor.
+/// with ±0.3. Refuted: the interval is 0.1 or more away from it, the range reaches the finest usable point, and the
+/// finer points do not move towards the declared order (slopes that go one way, or the finer half nearer to it by
+/// half); too fast only over five points or more, since errors that cancel fall faster for a while. Otherwise
+/// undecided, with the reason: too few usable points, too wide an interval, another error that dominates or may, errors
+/// that stop falling, nothing declared. Points in any order; equal sizes are taken together (geometric mean). Throws
+/// std::invalid_argument on a size that is not positive, on a negative error or floor.
 OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& question = {});
 
 /// Three grids of one constant ratio.

@@ -141,8 +141,8 @@ class ErrorFigure {
     if (!row) return "";
     const auto order = orders_.number(*row, "order"), low = orders_.number(*row, "low"),
                high = orders_.number(*row, "high");
-    std::string out = order && low && high ? fmt::format("order {} [{}, {}], ", number_text(*order, 3),
-                                                         number_text(*low, 3), number_text(*high, 3))
+    std::string out = order && low && high ? fmt::format("order {} [{}, {}], ", order_number(*order),
+                                                         order_number(*low), order_number(*high))
                                            : "no order, ";
     return out + orders_.text(*row, "verdict");
   }
@@ -248,7 +248,7 @@ class ErrorFigure {
             {"lineStyle", {{"color", lighten(curve.colour, 0.72)}, {"width", 7}, {"cap", "round"}}},
             {"endLabel",
              {{"show", true},
-              {"formatter", number_text(order, 3)},
+              {"formatter", order_number(order)},
               {"color", curve.colour},
               {"fontSize", 11},
               {"distance", 8}}},

@@ -22,7 +22,8 @@ std::vector<Figure> work_precision_figures(const CaseView& view);
 /// Shares of variance per measure, one bar per factor or interaction with its interval.
 std::vector<Figure> effects_figures(const CaseView& view);
 
-/// Method, refined, error, order with its interval, declared, verdict, reason; with a line that counts the verdicts.
+/// How many orders are confirmed, refuted and undecided; methods × errors with orders and verdicts; every order with
+/// its interval and reason, what is not confirmed first.
 std::string orders_html(const CaseView& view);
 
 /// For each error and each 10⁻ᵏ, the method that gets there in the least time with a step that was run, the runner-up,

@@ -1,5 +1,7 @@
 #include "runners/report/evidence_rows.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -97,6 +99,13 @@ Quantity error_quantity(const std::string& error) {
       {"tip-linf", "m"}, {"tip-l2", "m"}, {"energy", "J"}, {"impact-times", "s"}, {"impulse", "N s"}};
   const auto found = units.find(error);
   return {"error " + error, found == units.end() ? "1" : found->second};
+}
+
+std::string order_number(double order) {
+  std::string text = fmt::format("{:.2f}", order);
+  if (text == "-0.00") return "0.00";
+  if (text[0] == '-') text.replace(0, 1, "−");
+  return text;
 }
 
 std::string power_text(double value) {

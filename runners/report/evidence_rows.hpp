@@ -43,6 +43,9 @@ class EvidenceRows {
 /// A kind of error with its unit; "1" where the unit depends on the structure.
 Quantity error_quantity(const std::string& error);
 
+/// An order of convergence with two decimals: "1.00", "−0.03".
+std::string order_number(double order);
+
 /// 1e-3 as "10⁻³"; other numbers as they are.
 std::string power_text(double value);
 

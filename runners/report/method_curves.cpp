@@ -9,7 +9,7 @@ namespace ricochet::report {
 namespace {
 
 constexpr size_t curves_per_chart = 8;
-constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444", "#8C6D31"};
+constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31"};
 
 bool contains(const std::vector<std::string>& list, const std::string& item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -49,12 +49,12 @@ MethodCurves::MethodCurves(const CaseView& view, const Cases& cases, const std::
   }
   said_ = {along};
   said_.insert(said_.end(), curve_columns.begin(), curve_columns.end());
+  std::vector<std::string> names;
   for (const CaseGroup& group : view.group(cases, facet_columns)) {
     MethodFacet facet{group.label.empty() ? "all cases" : group.label, group.cases, {}};
     const std::vector<CaseGroup> styles = view.group(group.cases, not_mass);
     for (CaseGroup& one : view.group(group.cases, others)) {
       const CaseRecord* first = one.cases.front();
-      const size_t rank = facet.curves.size();
       const auto style = std::find_if(styles.begin(), styles.end(), [&](const CaseGroup& s) {
         return std::find(s.cases.begin(), s.cases.end(), first) != s.cases.end();
       });
@@ -63,8 +63,12 @@ MethodCurves::MethodCurves(const CaseView& view, const Cases& cases, const std::
       });
       std::string name = view.label(*first, curve_columns);
       if (name.empty()) name = view.mass_label(*first);
-      facet.curves.push_back({name.empty() ? "cases" : name,
-                              by_mass_ ? view.colour(*first) : colours[rank % colours.size()],
+      if (name.empty()) name = "cases";
+      // Without masses to tell apart, a name has its colour in every chart.
+      const auto known = std::find(names.begin(), names.end(), name);
+      const auto rank = static_cast<size_t>(known - names.begin());
+      if (known == names.end()) names.push_back(name);
+      facet.curves.push_back({std::move(name), by_mass_ ? view.colour(*first) : colours[rank % colours.size()],
                               by_mass_ ? static_cast<size_t>(style - styles.begin()) : rank, std::move(one.cases)});
     }
     facets_.push_back(std::move(facet));

@@ -9,23 +9,119 @@
 namespace ricochet::report {
 namespace {
 
-std::string number_cell(std::optional<double> value) {
-  return value ? fmt::format("<td class=\"number\" title=\"{}\">{}</td>", exact_text(*value), number_text(*value, 3))
-               : "<td class=\"number absent\">–</td>";
-}
-
-std::string order_cell(const EvidenceRows& rows, size_t row) {
-  const auto order = rows.number(row, "order"), low = rows.number(row, "low"), high = rows.number(row, "high");
-  if (!order) return "<td class=\"number absent\">–</td>";
-  std::string interval;
-  if (low && high) interval = fmt::format(" [{}, {}]", number_text(*low, 3), number_text(*high, 3));
-  return fmt::format("<td class=\"number\" title=\"{}\">{}{}</td>", exact_text(*order), number_text(*order, 3),
-                     interval);
+std::string interval_text(const EvidenceRows& rows, size_t row) {
+  const auto low = rows.number(row, "low"), high = rows.number(row, "high");
+  return low && high ? fmt::format("[{}, {}]", order_number(*low), order_number(*high)) : "";
 }
 
 /// The looks of a verdict: those of a status.
 std::string verdict_class(const std::string& verdict) {
   return verdict == "refuted" ? "status failed" : verdict == "undecided" ? "status refused" : "status";
+}
+
+/// One order as "0.99 ✓": ✓ confirmed, ✕ refuted, ? undecided, none where nothing is declared.
+std::string cell(const EvidenceRows& rows, std::optional<size_t> row) {
+  if (!row) return "<td class=\"number absent\">–</td>";
+  const std::string verdict = rows.text(*row, "verdict");
+  const auto order = rows.number(*row, "order");
+  const bool declared = rows.number(*row, "declared").has_value();
+  return fmt::format("<td class=\"number {}\" title=\"{}{}{}: {}\">{}{}</td>", verdict_class(declared ? verdict : ""),
+                     interval_text(rows, *row), order ? " " : "", escape(verdict), escape(rows.text(*row, "reason")),
+                     order ? order_number(*order) : "–",
+                     !declared                ? ""
+                     : verdict == "confirmed" ? " ✓"
+                     : verdict == "refuted"   ? " ✕"
+                                              : " ?");
+}
+
+/// What a row is about, without the kind of error.
+struct Method {
+  std::string head, key, refined;
+  std::vector<size_t> rows;
+};
+
+std::vector<Method> methods(const CaseView& view, const EvidenceRows& rows) {
+  std::vector<Method> out;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    // What the row does not say (the element count of a refinement of elements) is not said.
+    std::vector<std::string> columns;
+    std::string key = rows.text(row, "refined");
+    for (const std::string& column : rows.axes()) {
+      if (!rows.text(row, column).empty()) columns.push_back(column);
+      key += '\x1f' + rows.text(row, column);
+    }
+    auto found = std::find_if(out.begin(), out.end(), [&](const Method& m) { return m.key == key; });
+    if (found == out.end()) {
+      const CaseRecord* example = rows.example(row, view.results());
+      const std::string label = example ? view.label(*example, columns) : "";
+      std::string head =
+          example ? fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", view.colour(*example)) : "";
+      head += escape(label.empty() ? "the one method" : label);
+      found = out.insert(out.end(), {std::move(head), key, rows.text(row, "refined"), {}});
+    }
+    found->rows.push_back(row);
+  }
+  return out;
+}
+
+/// The orders that a method declares over its errors: "1", "1, 2".
+std::string declared_text(const EvidenceRows& rows, const Method& method) {
+  std::vector<std::string> said;
+  for (const size_t row : method.rows)
+    if (const auto declared = rows.number(row, "declared")) {
+      std::string text = number_text(*declared, 3);
+      if (std::find(said.begin(), said.end(), text) == said.end()) said.push_back(std::move(text));
+    }
+  return said.empty() ? "–" : fmt::format("{}", fmt::join(said, ", "));
+}
+
+/// Methods × errors.
+std::string matrix(const EvidenceRows& rows, const std::vector<Method>& all) {
+  const std::vector<std::string> errors = rows.values("error");
+  std::string out = fmt::format(
+      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>Order p of e ≈ C r<sup>p</sup>, r the step or the "
+      "length "
+      "of an element, fitted over the range that behaves so. ✓ confirms the declared order, ✕ refutes it, ? does not "
+      "decide; the tooltip has the 95 % interval and the reason.</caption>\n<thead><tr><th "
+      "scope=\"col\">method</th><th scope=\"col\">refined</th><th scope=\"col\" class=\"number\">declared</th>",
+      all.size() > 24 ? " tall" : "");
+  for (const std::string& error : errors) out += "<th scope=\"col\" class=\"number\">" + escape(error) + "</th>";
+  out += "</tr></thead>\n<tbody>\n";
+  for (const Method& method : all) {
+    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td>", method.head,
+                       escape(method.refined), declared_text(rows, method));
+    for (const std::string& error : errors) {
+      const auto found = std::find_if(method.rows.begin(), method.rows.end(),
+                                      [&](size_t row) { return rows.text(row, "error") == error; });
+      out += cell(rows, found == method.rows.end() ? std::nullopt : std::optional(*found));
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+/// Every order with its interval and reason, what is not confirmed first.
+std::string details(const EvidenceRows& rows, const std::vector<Method>& all) {
+  std::string out =
+      "<details><summary>Every order with its interval, verdict and reason</summary>\n<div class=\"scroll\"><table "
+      "class=\"matrix\"><thead><tr><th scope=\"col\">method</th><th scope=\"col\">refined</th><th "
+      "scope=\"col\">error</th><th scope=\"col\" class=\"number\">order</th><th scope=\"col\" "
+      "class=\"number\">declared</th><th scope=\"col\">verdict</th><th "
+      "scope=\"col\">reason</th></tr></thead>\n<tbody>\n";
+  for (const char* wanted : {"refuted", "undecided", "confirmed"})
+    for (const Method& method : all)
+      for (const size_t row : method.rows) {
+        const std::string verdict = rows.text(row, "verdict");
+        if (verdict != wanted) continue;
+        const auto order = rows.number(row, "order"), declared = rows.number(row, "declared");
+        out += fmt::format(
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"text\">{}</td><td class=\"number\">{} {}</td><td "
+            "class=\"number\">{}</td><td class=\"{}\">{}</td><td class=\"reason\">{}</td></tr>\n",
+            method.head, escape(method.refined), escape(rows.text(row, "error")), order ? order_number(*order) : "–",
+            interval_text(rows, row), declared ? number_text(*declared, 3) : "–", verdict_class(verdict), verdict,
+            escape(rows.text(row, "reason")));
+      }
+  return out + "</tbody></table></div></details>\n";
 }
 
 /// "24 orders against what the methods declare: 18 confirmed, 2 refuted, 4 undecided."
@@ -51,34 +147,8 @@ std::string counts(const EvidenceRows& rows) {
 std::string orders_html(const CaseView& view) {
   const EvidenceRows rows(view.results(), "orders");
   if (rows.empty()) return "";
-  std::string body;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const CaseRecord* example = rows.example(row, view.results());
-    // What the row does not say (the element count of a refinement of elements) is not said.
-    std::vector<std::string> columns;
-    for (const std::string& column : rows.axes())
-      if (!rows.text(row, column).empty()) columns.push_back(column);
-    const std::string label = example ? view.label(*example, columns) : "";
-    const std::string swatch =
-        example ? fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", view.colour(*example)) : "";
-    const std::string verdict = rows.text(row, "verdict");
-    body += fmt::format(
-        "<tr><th scope=\"row\">{}{}</th><td>{}</td><td>{}</td>{}{}<td class=\"{}\">{}</td><td "
-        "class=\"reason\">{}</td></tr>\n",
-        swatch, escape(label.empty() ? "the one method" : label), escape(rows.text(row, "refined")),
-        escape(rows.text(row, "error")), order_cell(rows, row), number_cell(rows.number(row, "declared")),
-        verdict_class(verdict), escape(verdict), escape(rows.text(row, "reason")));
-  }
-  return counts(rows) +
-         fmt::format(
-             "<div class=\"scroll{}\"><table class=\"matrix\"><caption>Order p of e ≈ C r<sup>p</sup>, r the step or "
-             "the "
-             "length of an element, fitted over the range that behaves so, with its 95 % interval.</caption>\n"
-             "<thead><tr><th scope=\"col\">method</th><th scope=\"col\">refined</th><th scope=\"col\">error</th><th "
-             "scope=\"col\" class=\"number\">order</th><th scope=\"col\" class=\"number\">declared</th><th "
-             "scope=\"col\">verdict</th><th "
-             "scope=\"col\">reason</th></tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-             rows.size() > 24 ? " tall" : "", body);
+  const std::vector<Method> all = methods(view, rows);
+  return counts(rows) + matrix(rows, all) + details(rows, all);
 }
 
 }  // namespace ricochet::report

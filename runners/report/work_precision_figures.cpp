@@ -81,6 +81,18 @@ class WorkFigure {
     return facet.cases;
   }
 
+  /// The methods on the front are said once, below the first chart of their scene.
+  bool first_of_scene(const MethodFacet& facet) const {
+    for (const MethodFacet& other : curves_.facets()) {
+      if (&other == &facet) return true;
+      const auto same = [&](const std::string& column) {
+        return CaseView::text(*other.cases.front(), column) == CaseView::text(*facet.cases.front(), column);
+      };
+      if (std::all_of(work_.scene_columns().begin(), work_.scene_columns().end(), same)) return false;
+    }
+    return true;
+  }
+
   ChartView chart_view(const Work& work, const std::string& error, const MethodFacet& facet, Interval x_range,
                        const Interval& y_range, bool gutter, bool& floors) const {
     ChartView out;
@@ -99,7 +111,7 @@ class WorkFigure {
                              Json::array({log_axis(out.y, y_range, true), hidden_y}), false, true);
 
     const std::vector<WorkPoint> all = work_.points(scene_of(facet), error);
-    if (work.front) draw_front(work, all, out);
+    if (work.front) draw_front(work, all, first_of_scene(facet), out);
     const std::vector<size_t> front = work.front ? pareto_front(all, work.of) : std::vector<size_t>{};
     const auto on_front = [&](const CaseRecord& record) {
       return std::any_of(front.begin(), front.end(), [&](size_t k) { return all[k].record == &record; });
@@ -161,7 +173,7 @@ class WorkFigure {
   }
 
   /// Low left corner of what was reached: its line, and the methods on it.
-  void draw_front(const Work& work, const std::vector<WorkPoint>& all, ChartView& out) const {
+  void draw_front(const Work& work, const std::vector<WorkPoint>& all, bool say, ChartView& out) const {
     Json data = Json::array();
     std::vector<std::string> columns = view_.varying_without({"step"}), on, near;
     std::erase_if(columns, [&](const std::string& c) {
@@ -177,10 +189,10 @@ class WorkFigure {
       add(on, view_.label(*all[k].record, columns));
     }
     for (const WorkPoint& p : all)
-      if (!told_from_front(p, all)) add(near, view_.label(*p.record, columns));
+      if (work.spread && !told_from_front(p, all)) add(near, view_.label(*p.record, columns));
     std::erase_if(near, [&](const std::string& text) { return std::find(on.begin(), on.end(), text) != on.end(); });
-    if (!on.empty()) out.notes.push_back(fmt::format("On the front: {}.", fmt::join(on, "; ")));
-    if (!near.empty())
+    if (say && !on.empty()) out.notes.push_back(fmt::format("On the front: {}.", fmt::join(on, "; ")));
+    if (say && !near.empty())
       out.notes.push_back(fmt::format("Not told from the front, since the spreads of their times overlap it: {}.",
                                       fmt::join(near, "; ")));
     out.option["series"].push_back({{"type", "line"},

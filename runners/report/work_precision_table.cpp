@@ -54,7 +54,7 @@ std::string row(const CaseView& view, const std::string& head, double tolerance,
   const WorkPoint &a = entries[0].point, &b = second->point;
   const bool overlap = b.low <= a.high;
   return out + fmt::format("<td class=\"number\">{} ×</td><td>{}</td></tr>\n", number_text(b.seconds / a.seconds, 3),
-                           overlap ? "overlap: not told apart" : "apart");
+                           overlap ? "overlap" : "apart");
 }
 
 }  // namespace
@@ -74,10 +74,15 @@ std::string work_precision_html(const CaseView& view) {
       if (points.empty()) continue;
       const auto [best, worst] = std::minmax_element(
           points.begin(), points.end(), [](const WorkPoint& a, const WorkPoint& b) { return a.known() < b.known(); });
-      std::string head = fmt::format("<td>{}</td>", escape(with_unit(error_quantity(error))));
+      Quantity quantity = error_quantity(error);
+      quantity.name = error;
+      std::string head = fmt::format("<td class=\"text\">{}</td>", escape(with_unit(quantity)));
       if (scenes.size() > 1) head += fmt::format("<td>{}</td>", escape(scene.label));
-      // From the power of ten that every case reaches to the last that one does.
-      for (int k = static_cast<int>(std::floor(-std::log10(worst->known())));; ++k) {
+      // From the power of ten that the worst case misses (or the first that some case reaches) to the last that one
+      // does.
+      int k = static_cast<int>(std::ceil(-std::log10(worst->known())));
+      while (best->known() > std::pow(10, -k)) --k;
+      for (;; ++k) {
         const double tolerance = std::pow(10, -k);
         const std::vector<Entry> entries = fastest(view, points, tolerance, method);
         if (entries.empty()) break;
@@ -89,8 +94,8 @@ std::string work_precision_html(const CaseView& view) {
   return fmt::format(
       "<div class=\"scroll{}\"><table class=\"matrix\"><caption>The cheapest method for an error of at most 10<sup>−k"
       "</sup>: of the steps that were run, the one that takes the least time. Spread: fastest to slowest repeat (in "
-      "the "
-      "time's tooltip).</caption>\n<thead><tr><th scope=\"col\">error</th>{}<th scope=\"col\" class=\"number\">at "
+      "the time's tooltip); where the spreads overlap, the two are not told apart.</caption>\n<thead><tr><th "
+      "scope=\"col\">error</th>{}<th scope=\"col\" class=\"number\">at "
       "most</th><th scope=\"col\">cheapest</th><th scope=\"col\">with step</th><th scope=\"col\" class=\"number\">run "
       "time "
       "(s)</th><th scope=\"col\">runner-up</th><th scope=\"col\">with step</th><th scope=\"col\" class=\"number\">run "
