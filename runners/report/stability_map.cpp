@@ -145,30 +145,38 @@ class Map {
       x.include(Interval{at.front(), at.back()});
       y.include(Interval{band.low, band.high});
     }
-    Json along = log_axis(out.x, x, false);
-    Json up = logarithmic_ ? log_axis(out.y, y, true) : value_axis(out.y, y, true);
-    along["min"] = x.low;
-    along["max"] = x.high;
-    up["min"] = y.low;
-    up["max"] = y.high;
-    for (Json* axis : {&along, &up}) {
-      (*axis)["splitLine"] = {{"show", false}};
-      // The frame ends half a cell beyond the outer values: no numbers to read.
-      (*axis)["axisLabel"]["showMinLabel"] = (*axis)["axisLabel"]["showMaxLabel"] = false;
-      const double decades = std::log10((*axis)["max"].get<double>() / (*axis)["min"].get<double>());
-      if ((*axis)["type"] == "log") (*axis)["interval"] = std::ceil(decades / 6);
-    }
+    Json along = frame(log_axis(out.x, x, false), x);
+    Json up = frame(logarithmic_ ? log_axis(out.y, y, true) : value_axis(out.y, y, true), y);
     out.option = base_option(std::move(along), std::move(up), false, true);
-    draw_background(bands, out);
+    draw_background(bands, x, y, out);
     draw_limits(bands, out);
     draw_marks(bands, out);
     return out;
   }
 
-  static void draw_background(const std::vector<Band>& bands, ChartView& out) {
+  /// The axis ends with the outer cells; over many decades, where labels need whole ones, with the next decade.
+  static Json frame(Json axis, Interval& range) {
+    axis["splitLine"] = {{"show", false}};
+    const bool many = axis["type"] == "log" && range.high > 1e9 * range.low;
+    if (many) {
+      range = whole_decades(range);
+      axis["interval"] = std::ceil(std::log10(range.high / range.low) / 6);
+    } else {
+      // Half a cell beyond the outer values: no numbers to read.
+      axis["axisLabel"]["showMinLabel"] = axis["axisLabel"]["showMaxLabel"] = false;
+    }
+    axis["min"] = range.low;
+    axis["max"] = range.high;
+    return axis;
+  }
+
+  static void draw_background(const std::vector<Band>& bands, const Interval& x, const Interval& y, ChartView& out) {
     std::map<std::string, Json> areas;
     for (const Band& band : bands) {
-      const std::vector<double> at = edges(band.range.cells);
+      std::vector<double> at = edges(band.range.cells);
+      at.front() = std::min(at.front(), x.low);
+      at.back() = std::max(at.back(), x.high);
+      const double low = &band == &bands.front() ? y.low : band.low, high = &band == &bands.back() ? y.high : band.high;
       for (size_t i = 0; i < band.range.cells.size(); ++i) {
         const StabilityCell& cell = band.range.cells[i];
         const std::string name = background_of(cell);
@@ -177,7 +185,7 @@ class Map {
                                    : name == "predicted marginal" ? marginal_colour
                                                                   : refused_colour;
         areas[name].push_back(Json::array(
-            {{{"coord", {at[i], band.low}}, {"itemStyle", {{"color", colour}}}}, {{"coord", {at[i + 1], band.high}}}}));
+            {{{"coord", {at[i], low}}, {"itemStyle", {{"color", colour}}}}, {{"coord", {at[i + 1], high}}}}));
       }
     }
     for (auto& [name, data] : areas)

@@ -21,11 +21,13 @@ std::string limit_text(const StabilityRange& range, const std::optional<double>&
   return !any ? "–" : bad ? "below the range" : "none";
 }
 
-/// What grows at the smallest unstable step, or why there is no prediction.
+/// What grows at the smallest unstable step, or why there is no prediction; what was seen there is left to the map.
 std::string why(const StabilityRange& range) {
   for (const StabilityCell& cell : range.cells)
-    if (cell.status == "unstable" || cell.status == "failed" || cell.status == "refused")
-      return fmt::format("h = {} s: {}", number_text(cell.step, 3), cell.reason);
+    if (cell.status == "unstable" || cell.status == "failed" || cell.status == "refused") {
+      const std::string first = cell.reason.substr(0, cell.reason.find("; "));
+      return cell.status == "refused" ? first : fmt::format("h = {} s: {}", number_text(cell.step, 3), first);
+    }
   return "";
 }
 
@@ -60,13 +62,14 @@ std::string stability_html(const CaseView& view) {
         ratio = number_text(*range.observed / *range.expected, 4);
       }
       apart += !disagreements(range).empty();
+      std::string limits = marginal(range);
+      if (const std::string grows = why(range); !grows.empty()) limits += (limits.empty() ? "" : "; ") + grows;
       rows += fmt::format(
           "<tr><th scope=\"row\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th><td>{}</td><td "
           "class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
-          "class=\"reason\">{}</td><td class=\"reason\">{}</td></tr>\n",
+          "class=\"reason\">{}</td></tr>\n",
           view.colour(*record), escape(label.empty() ? "the one method" : label), closed ? "closed" : "open",
-          limit_text(range, range.predicted, false), limit_text(range, range.observed, true), ratio,
-          escape(marginal(range)), escape(why(range)));
+          limit_text(range, range.predicted, false), limit_text(range, range.observed, true), ratio, escape(limits));
     }
   if (ranges == 0) return "";
   std::string lead = fmt::format("{} of steps.", count_text(ranges, "range", "ranges"));
@@ -85,8 +88,8 @@ std::string stability_html(const CaseView& view) {
       "the scene itself, which is open as well: the ratio is to the smaller of both "
       "predictions.</caption>\n<thead><tr><th scope=\"col\">method</th><th scope=\"col\">contact</th><th "
       "scope=\"col\" class=\"number\">predicted limit</th><th scope=\"col\" class=\"number\">observed limit</th><th "
-      "scope=\"col\" class=\"number\">observed / predicted</th><th scope=\"col\">marginal roots</th><th "
-      "scope=\"col\">first step that is not stable</th></tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      "scope=\"col\" class=\"number\">observed / predicted</th><th scope=\"col\">marginal roots, and what "
+      "grows at the first step that is not stable</th></tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
       lead, ranges > 24 ? " tall" : "", rows);
 }
 
