@@ -8,6 +8,7 @@
 
 #include "runners/report/evidence.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/stability_report.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -366,7 +367,7 @@ std::string answer_html(const CaseView& view) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
   if (done.empty()) return "<p>No case has finished with a result; the table below says why.</p>\n";
   const StudyResults& results = view.results();
-  if (results.kind != "trajectory") return work_precision_html(view) + orders_html(view);
+  if (results.kind != "trajectory") return stability_html(view) + work_precision_html(view) + orders_html(view);
   const bool energies = extremes(done, measured("energy_end")).count > 0;
   if (!energies) return "<p>These cases have no energy measures; their figures are in the table below.</p>\n";
   return headline(view) + "<ul class=\"answer\">\n" + mass_sentences(view) + "</ul>\n" + work_sentence(view) +
