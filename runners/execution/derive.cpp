@@ -99,6 +99,17 @@ double other_error(const StudyResults& results, const CaseRecord& finest, const 
   return std::abs(along[1].second - along[0].second) / std::max(1.0, along[1].first / along[0].first);
 }
 
+bool single_valued(const StudyResults& results, const std::string& column) {
+  std::set<std::string> values;
+  for (const CaseRecord& record : results.cases) values.insert(axis(record, column).dump());
+  return values.size() < 2;
+}
+
+// An oscillator has no mesh whose error could be in the way.
+bool meshed(const StudyResults& results) {
+  return results.study.at("scene").at("structure").at("type") != "oscillator";
+}
+
 DerivedTable orders_table(const StudyResults& results) {
   DerivedTable table{"orders", without(results.columns, "step"), {}};
   table.columns.insert(table.columns.end(),
@@ -135,6 +146,9 @@ DerivedTable orders_table(const StudyResults& results) {
         question.refined = refined == "step" ? "step" : "element length";
         question.other_error = other_error(results, *finest, other, "error." + name);
         question.other = refined == "step" ? "the mesh" : "the step";
+        // One mesh against a motion without a mesh (or one step): nothing tells how large its error is.
+        question.other_unknown = single_valued(results, other) && meshed(results) &&
+                                 (refined == "elements" || measure(*finest, "reference_of_mesh") != 1.0);
         const OrderFit fit = fit_order(points, question);
         Row row = axes_of(first, without(results.columns, "step"));
         if (refined == "elements")
@@ -190,8 +204,9 @@ std::string cell_text(const Json& value) {
 
 // Measures whose spread says nothing of the motion.
 bool of_the_motion(const std::string& measure) {
-  static const std::set<std::string> others = {"microseconds_per_step", "timed_seconds", "timed_low", "timed_high",
-                                               "declared_order",        "horizon"};
+  static const std::set<std::string> others = {
+      "microseconds_per_step", "timed_seconds", "timed_low",        "timed_high",
+      "declared_order",        "horizon",       "reference_of_mesh"};
   return others.count(measure) == 0 && !measure.starts_with("floor.");
 }
 

@@ -175,7 +175,7 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
 }
 
 KnownReference References::march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const {
-  KnownReference known{marched_reference, "", {}};
+  KnownReference known{marched_reference, "", coarsest_ == finest_, {}};
   const double smallest = smallest_step_;
   const int finest = finest_;
   const bool several = finest_ != coarsest_;
@@ -211,8 +211,8 @@ KnownReference References::march_finer(const StudyCase& study_case, const std::a
 KnownReference References::compute(const StudyCase& study_case, const MethodChoice& choice,
                                    const std::atomic<bool>& stop) const {
   if (choice.name == marched_reference) return march_finer(study_case, stop);
-  KnownReference known{choice.name, "", {}};
   const auto solver = registry_.reference(choice.name)->make(choice.parameters);
+  KnownReference known{choice.name, "", solver->of_the_mesh(), {}};
   const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
   ReferenceProblem problem = reference_problem(study_case, registry_);
   DiscreteProblem discrete;
@@ -243,8 +243,12 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
   const std::string name = key(study_case, choice);
   return once<ReferencePointer>(known_, name, [&]() -> ReferencePointer {
     if (shelf_.find)
-      if (const std::string stored = shelf_.find(name); !stored.empty())
-        return std::make_shared<const KnownReference>(KnownReference{choice.name, "", motion_from_bytes(stored)});
+      if (const std::string stored = shelf_.find(name); !stored.empty()) {
+        const bool marched = choice.name == marched_reference;
+        const bool mesh =
+            marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
+        return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, motion_from_bytes(stored)});
+      }
     KnownReference known = compute(study_case, choice, stop);
     if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
     return std::make_shared<const KnownReference>(std::move(known));

@@ -23,7 +23,8 @@ struct MotionShelf {
 /// A reference as cases are compared with it.
 struct KnownReference {
   std::string name;
-  std::string refusal;  ///< why it does not apply; then nothing else is set
+  std::string refusal;       ///< why it does not apply; then nothing else is set
+  bool of_the_mesh = false;  ///< it has the case's own mesh: what differs is the time scheme's error alone
   ReferenceMotion found;
 };
 using ReferencePointer = std::shared_ptr<const KnownReference>;

@@ -98,6 +98,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const bool whole = sampler.sampled() == set.grid.times.size();
   const auto& events = sampler.contact().events();
   put(record, "horizon", set.horizon);
+  put(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
   put(record, "impacts", static_cast<double>(std::count_if(events.begin(), events.end(), [](const ContactEvent& event) {
         return event.begins;
       })));

@@ -169,7 +169,7 @@ std::string render_page(const StudyResults& results, std::string_view library, s
         "zoom out; charts over time "
         "zoom together. Shift + wheel zooms along the horizontal axis, Alt + wheel along the vertical one. A legend "
         "entry hides or shows its "
-        "curve in every chart of the figure. Colour: mass matrix, the same everywhere.</p>\n";
+        "curve in every chart of the figure. Colour: mass matrix, the same everywhere, where the study has several.</p>\n";
     if (const std::string thinning = curves.thinning(); !thinning.empty())
       out += "<p class=\"fine\">" + escape(thinning) + "</p>\n";
     out += "<noscript><p class=\"banner\">Charts need JavaScript; the tables do not.</p></noscript>\n</section>\n";

@@ -48,6 +48,8 @@ const std::vector<MeasureInfo>& trajectory_measures() {
 const std::vector<MeasureInfo>& further_measures() {
   static const std::vector<MeasureInfo> measures = {
       {"horizon", "s", "Time up to which the motion is compared with its reference."},
+      {"reference_of_mesh", "1",
+       "1 where the reference has the case's own mesh, so that the error is the time scheme's; 0 where it has none."},
       {"declared_order", "1", "Order in the step that the scheme declares for such a run."},
       {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},
       {"error.tip-l2", "m", "Root mean square over time of the difference of the tip's displacement."},
