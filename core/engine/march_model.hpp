@@ -12,6 +12,14 @@ struct RowMatrix {
   std::vector<int> start{0}, index;
   std::vector<double> value;
   int rows() const { return static_cast<int>(start.size()) - 1; }
+  /// Σ_j a_ij x_j of one row i.
+  double times(int row, const double* x) const {
+    const auto i = static_cast<std::size_t>(row);
+    double sum = 0;
+    for (auto e = static_cast<std::size_t>(start[i]); e < static_cast<std::size_t>(start[i + 1]); ++e)
+      sum += value[e] * x[index[e]];
+    return sum;
+  }
   LaneRows view() const { return {rows(), start.data(), index.data(), value.data()}; }
   static RowMatrix from(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
 };

@@ -45,15 +45,6 @@ void EnergyAudit::combine(const double* const* slots, const double* z, const Com
   for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
 }
 
-double EnergyAudit::contact_row(const std::vector<double>& x, int point) const {
-  const RowMatrix& rows = model_.contact();
-  double sum = 0;
-  for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
-    sum +=
-        rows.value[static_cast<std::size_t>(e)] * x[static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)])];
-  return sum;
-}
-
 double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
   double energy = 0;
   for (const QuadraticTerm& term : marcher.program().plan.energy) {
@@ -119,7 +110,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
         for (std::size_t k = 0; k < work.effort.size(); ++k)
           if (view.effort[k]) effort += work.effort[k] * view.effort[k][j * T_ + lane];
         if (effort == 0) continue;
-        state.step_contact += effort * (contact_row(s, j) + lift);
+        state.step_contact += effort * (model_.contact().times(j, s.data()) + lift);
         state.step_loads -= effort * lift;
       }
     }
@@ -178,14 +169,13 @@ void EnergyAudit::step_done(Marcher& marcher) {
       if (compliant_) {
         const double phi = 0.5 * (marcher.support(lane, t) + marcher.support(lane, t - h_));
         for (int j = 0; j < model_.problem().points(); ++j) {
-          const double depth = marcher.depth(lane, j, contact_row(middle, j), phi);
+          const double depth = marcher.depth(lane, j, model_.contact().times(j, middle.data()), phi);
           if (depth > 0) sample.contact += marcher.law().potential(depth, lane);
         }
       }
     }
     double tip_increment = marcher.support(lane, t) - marcher.support(lane, t - h_);
-    for (std::size_t e = 0; e < tip.index.size(); ++e)
-      tip_increment += tip.value[e] * state.increment[static_cast<std::size_t>(tip.index[e])];
+    tip_increment += tip.times(0, state.increment.data());
     state.tip_velocity = tip_increment / h_;
     const bool declares = !marcher.program().plan.energy.empty();
     sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();

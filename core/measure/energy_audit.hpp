@@ -72,7 +72,6 @@ class EnergyAudit final : public StepObserver {
   double scheme_energy(const Marcher& marcher, int lane);
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
                std::vector<double>& out) const;
-  double contact_row(const std::vector<double>& x, int point) const;
   void count_contact(const StageView& view, int lane);
 
   const MarchModel& model_;

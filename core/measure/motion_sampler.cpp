@@ -87,15 +87,6 @@ ContactLog::ContactLog(const Marcher& marcher)
   events_.reserve(64);
 }
 
-double ContactLog::row(const std::vector<double>& x, int point) const {
-  const RowMatrix& rows = model_.contact();
-  double sum = 0;
-  for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
-    sum +=
-        rows.value[static_cast<std::size_t>(e)] * x[static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)])];
-  return sum;
-}
-
 void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
   force_ = 0;
   if (!view.effort) return;
@@ -130,8 +121,8 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
       state_known = true;
     }
     const double stop = side == 0 ? lane.lower[j] : lane.upper[j];
-    const double gap = row(position_, j) + marcher.support(0, t) - stop;
-    const double speed = row(velocity_, j) + marcher.support_rate(0, t);
+    const double gap = model_.contact().times(j, position_.data()) + marcher.support(0, t) - stop;
+    const double speed = model_.contact().times(j, velocity_.data()) + marcher.support_rate(0, t);
     double time = t;
     if (gap * speed < 0) time += std::min(-gap / speed, 2 * h_);
     if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
@@ -149,10 +140,7 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
   impulse_ += h_ * given;
   for (const int side : {0, 1}) {
     if (now[side] && !closed_[side]) {
-      double tip = marcher.support_rate(0, t);
-      const RowMatrix& rows = model_.tip();
-      for (std::size_t e = 0; e < rows.index.size(); ++e)
-        tip += rows.value[e] * velocity_[static_cast<std::size_t>(rows.index[e])];
+      const double tip = marcher.support_rate(0, t) + model_.tip().times(0, velocity_.data());
       events_.push_back({std::clamp(onset[side], t - h_, t + h_), side == 0 ? -1 : 1, true, tip});
     } else if (!now[side] && closed_[side]) {
       events_.push_back({t, side == 0 ? -1 : 1, false, 0});

@@ -28,8 +28,6 @@ class ContactLog final : public StepObserver {
   long long changes() const { return changes_; }
 
  private:
-  double row(const std::vector<double>& x, int point) const;
-
   const MarchModel& model_;
   const SemiDiscrete& problem_;
   int T_;

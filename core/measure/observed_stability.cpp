@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -18,7 +19,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr long long chunk = 5000;
 // Motions that begin with half of their energy elastic and half kinetic reach at most twice their first norm.
 constexpr double growth_since_start = 4, growth_at_end = 1.5;
 // Near the limit of an explicit scheme the common energy swings by 1/(1 − (h/h*)²) around what is conserved: a thousand
@@ -166,10 +166,16 @@ class GainWatch final : public StepObserver {
 
 template <class Watch>
 ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
+  using Clock = std::chrono::steady_clock;
   marcher.start(&watch);
+  // Steps between two questions whether to go on: about a hundredth of a second, where one step takes less.
+  long long stretch = 1;
   while (marcher.step() < horizon.steps && marcher.any_running()) {
     if (horizon.go_on && !horizon.go_on()) break;
-    marcher.march(std::min(chunk, horizon.steps - marcher.step()), &watch);
+    const Clock::time_point before = Clock::now();
+    marcher.march(std::min(stretch, horizon.steps - marcher.step()), &watch);
+    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    stretch = seconds < 0.01 ? 2 * stretch : std::max(stretch / 2, 1LL);
   }
   ObservedCell cell;
   cell.steps = marcher.step();

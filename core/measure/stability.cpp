@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 
 constexpr int most_modal_dofs = 1200, most_closed_dofs = 160, most_single_points = 20;
 
+// Its multiples fill [0, 1) without repeating.
+constexpr double golden = std::numbers::phi - 1;
+
 // Roots of modes come from 2 × 2 or 3 × 3 matrices and are known to round-off; those of dense steps less well.
 constexpr double modal_marginal = 1e-9, dense_marginal = 1e-7;
 
@@ -221,7 +224,6 @@ double StabilityPredictor::last_pulsation() const {
 
 Excitation StabilityPredictor::excite(const Modes& modes, double h) const {
   Excitation out{VectorXd::Zero(problem_->dofs()), VectorXd::Zero(problem_->dofs())};
-  const double golden = 0.5 * (std::sqrt(5.0) - 1);
   for (int i = 0; i < modes.size(); ++i) {
     if (modes.stiffness[i] == 0) continue;
     const double sign = std::fmod(golden * (i + 1), 1.0) < 0.5 ? -1.0 : 1.0;
@@ -232,7 +234,11 @@ Excitation StabilityPredictor::excite(const Modes& modes, double h) const {
   return out;
 }
 Excitation StabilityPredictor::excitation(double h) const {
-  return modes_ ? excite(*modes_, h) : Excitation{};
+  if (modes_) return excite(*modes_, h);
+  Excitation out{VectorXd(problem_->dofs()), VectorXd::Zero(problem_->dofs())};
+  for (Index i = 0; i < out.position.size(); ++i)
+    out.position[i] = std::fmod(golden * static_cast<double>(i + 1), 1.0) - 0.5;
+  return out;
 }
 Excitation StabilityPredictor::excitation(const ClosedSet& set, double h) const {
   const bool moves = modes_ && problem_->dofs() > static_cast<int>(set.points.size());

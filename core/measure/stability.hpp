@@ -56,7 +56,8 @@ using SpectrumOrRefusal = std::variant<StepSpectrum, Refusal>;
 enum class Detail { radius, full };
 
 /// A state in which every mode has the same energy (1 J), half of it elastic and half kinetic, and signs that do not
-/// repeat. Ker M moves by half of its own displacement in a step, Ker K rests. Empty where the modes are not known.
+/// repeat. Ker M moves by half of its own displacement in a step, Ker K rests. Where the modes are not known:
+/// displacements of about 1 m that do not repeat, at rest.
 struct Excitation {
   Eigen::VectorXd position, velocity;
 };

@@ -92,8 +92,12 @@ class ContactPhase {
     const auto basis = mode.fundamental(tau);
     double value = place_[i] * basis.c + rate_[i] * basis.s;
     double rate = rate_[i] * basis.s_rate - mode.square() * place_[i] * basis.s;
-    double push = 0;
-    for (Eigen::Index k = 0; k < exponents_.size(); ++k) {
+    double push = force_(i, 0).real();
+    if (push != 0) {
+      value += push * mode.to_constant(tau, basis);
+      rate += push * basis.s;
+    }
+    for (Eigen::Index k = 1; k < exponents_.size(); ++k) {
       if (force_(i, k) == 0.0) continue;
       const auto unit = mode.response(exponents_[k], tau, at.turned[k], basis);
       value += std::real(force_(i, k) * unit.value);

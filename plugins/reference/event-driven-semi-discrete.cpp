@@ -16,6 +16,7 @@ using namespace ricochet::reference;
 using Eigen::Index;
 
 constexpr Index most_dofs = 60;
+constexpr long long work_limit = 300'000'000;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Thrown inside a solve, a Refusal outside.
@@ -347,6 +348,11 @@ class EventDriven {
 
   // ---- one phase ---------------------------------------------------------------------------------------------------
 
+  void read(double tau, Columns& at) {
+    work_ += 1 + phase_->modes().columns();
+    phase_->read(tau, at);
+  }
+
   /// How fast what matters still changes, and how curved each watched function may be.
   struct Survey {
     double step = 0;
@@ -395,11 +401,11 @@ class EventDriven {
       double next = std::min(tau + now.step, last);
       const bool sampling = sampled_ < grid_.times.size() && grid_.times[sampled_] - phase_->start() <= next;
       if (sampling) next = std::max(tau, grid_.times[sampled_] - phase_->start());
-      if (++steps_ * phase_->modes().columns() > 400'000'000)
+      if (work_ > work_limit)
         throw Stopped{
             "the motion has to be watched too closely for too long: fewer elements, a shorter duration, a "
             "softer stop or some damping"};
-      phase_->read(next, there);
+      read(next, there);
       const auto fall = next > tau ? first_of(tau, here, next, there, now) : std::nullopt;
       if (fall) return Fall{fall->tau, fall->watch, impulse + pushed(tau, fall->tau)};
       impulse += pushed(tau, next);
@@ -424,7 +430,7 @@ class EventDriven {
         return Reading{tau, phase_->watched(k, at), phase_->watched_rate(k, at)};
       };
       const auto read = [&](double tau) {
-        phase_->read(tau, scratch_);
+        this->read(tau, scratch_);
         return reading(tau, scratch_);
       };
       const auto found = first_fall(read, reading(from, here), reading(to, there), 1.5 * now.curve[k], now.noise[k], 4);
@@ -444,7 +450,7 @@ class EventDriven {
                                                              {0.9305681557970262876, 0.1739274225687269287}}};
     double sum = 0;
     for (const auto& [place, weight] : gauss) {
-      phase_->read(from + place * (to - from), scratch_);
+      read(from + place * (to - from), scratch_);
       for (Index k = 0; k < static_cast<Index>(modes.watches.size()); ++k) {
         const Watch& watch = modes.watches[static_cast<std::size_t>(k)];
         if (watch.closed) sum += weight * watch.sign * (rigid() ? 1 : at_.spring) * phase_->watched(k, scratch_);
@@ -495,7 +501,7 @@ class EventDriven {
   Eigen::VectorXd haze_;
   double end_ = 0, impulse_ = 0, travel_ = 0, struck_speed_ = 0;
   std::size_t sampled_ = 0;
-  long long steps_ = 0;
+  long long work_ = 0;  // columns read
   Index stuck_ = 0;
 };
 

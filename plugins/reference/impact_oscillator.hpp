@@ -53,6 +53,11 @@ class Signal {
   Motion response(const LinearMode& mode, double from, double tau, const LinearMode::Fundamental& basis) const {
     Motion sum;
     for (const auto& [exponent, amplitude] : terms_) {
+      if (exponent == 0.0) {
+        sum.value += amplitude.real() * mode.to_constant(tau, basis);
+        sum.rate += amplitude.real() * basis.s;
+        continue;
+      }
       const auto unit = mode.response(exponent, tau, std::exp(exponent * tau), basis);
       const Complex start = amplitude * std::exp(exponent * from);
       sum.value += std::real(start * unit.value);
@@ -141,11 +146,10 @@ class ImpactOscillator {
     if (closed() && rigid()) return {};
     const auto basis = mode_.fundamental(tau);
     Motion forced = spec_.force.response(mode_, start_, tau, basis);
-    const auto rest = mode_.response(0, tau, 1, basis);
     const double pull = spec_.stiffness * base_ / spec_.mass;
     Motion now;
-    now.value = velocity_ * basis.s + forced.value / spec_.mass - pull * rest.value.real();
-    now.rate = velocity_ * basis.s_rate + forced.rate / spec_.mass - pull * rest.rate.real();
+    now.value = velocity_ * basis.s + forced.value / spec_.mass - pull * mode_.to_constant(tau, basis);
+    now.rate = velocity_ * basis.s_rate + forced.rate / spec_.mass - pull * basis.s;
     now.curve =
         spec_.force.at(start_ + tau) / spec_.mass - pull - 2 * mode_.decay() * now.rate - mode_.square() * now.value;
     return now;

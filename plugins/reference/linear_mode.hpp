@@ -70,6 +70,14 @@ class LinearMode {
     return {late + slow_ * sine, sine, early - slow_ * sine};
   }
 
+  /// r at τ for σ = 0; its rate is s.
+  double to_constant(double tau, const Fundamental& at) const {
+    if (pulsation() * tau <= 1) return summed(0, tau).value.real();
+    if (gap_ > 0 || root_ <= 0.05 * fast_) return (1 - at.c) / square_;
+    const auto mean = [tau](double rate) { return rate > 0 ? -std::expm1(-rate * tau) / rate : tau; };
+    return (mean(slow_) - mean(fast_)) / (2 * root_);
+  }
+
   /// r and r' at τ; `phasor` is e^{στ}.
   struct Response {
     Complex value, rate;
@@ -92,14 +100,16 @@ class LinearMode {
  private:
   /// Σ_k a_k τ^{k+2}/(k+2)!, Σ a_k z^k = 1/((1 + 2δz + λz²)(1 − σz)): for |s₁τ|, |s₂τ|, |στ| ≤ 1, to round-off.
   Response summed(Complex exponent, double tau) const {
+    const double reach = std::max(pulsation(), std::abs(exponent)) * tau;
     Complex sum = 0;
-    double before = 0, term = 1, factorial = tau;
+    double before = 0, term = 1, factorial = tau, left = 1;
     Response total{};
-    for (int k = 0; k < 22; ++k) {
+    for (int k = 0; k < 24 && left > 1e-19; ++k) {
       sum = term + exponent * sum;
       total.rate += sum * factorial;
       factorial *= tau / (k + 2);
       total.value += sum * factorial;
+      left *= reach / (k + 1);
       const double next = -2 * decay_ * term - square_ * before;
       before = term;
       term = next;

@@ -91,6 +91,34 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   return prepared;
 }
 
+CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
+  CaseRecord record;
+  record.id = study_case.id;
+  record.axes = study_case.axes;
+  record.notes = prepared.notes;
+  if (prepared.program) {
+    record.operator_name = operator_name(prepared.program->kind);
+    record.left_out = left_out_pairs(*prepared.program);
+  } else {
+    record.status = "refused";
+    record.reason = prepared.refusal;
+  }
+  return record;
+}
+
+void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget) {
+  const LaneStatus& status = marcher.status(0);
+  if (status.running) {
+    record.status = "failed";
+    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
+                                steps, marcher.time());
+    return;
+  }
+  record.status = status.cause.starts_with("the contact law") ? "failed" : "diverged";
+  record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, status.cause);
+  record.steps = status.step;
+}
+
 std::vector<std::pair<std::string, std::string>> left_out_pairs(const Program& program) {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const LeftOut& item : program.left_out) pairs.emplace_back(item.item, item.reason);

@@ -2,10 +2,11 @@
 #include <memory>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
-#include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/marcher.hpp>
 #include <string>
 #include <vector>
 
+#include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -21,6 +22,14 @@ struct Prepared {
 
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).
 Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
+
+/// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out; `refused`, with
+/// the sentence, where there is no program.
+CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared);
+
+/// How a march that stopped before its end is recorded: diverged or failed, with the step, the time and the cause; a
+/// running lane ran out of its budget.
+void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget);
 
 /// The methods of a case, made.
 std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry);

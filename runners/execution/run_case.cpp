@@ -98,19 +98,10 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
 }
 
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
-  CaseRecord record;
-  record.id = study_case.id;
-  record.axes = study_case.axes;
   const double set_up = thread_seconds();
   Prepared prepared = prepare_case(study_case, registry);
-  record.notes = prepared.notes;
-  if (!prepared.program) {
-    record.status = "refused";
-    record.reason = prepared.refusal;
-    return record;
-  }
-  record.operator_name = operator_name(prepared.program->kind);
-  record.left_out = left_out_pairs(*prepared.program);
+  CaseRecord record = begin_record(study_case, prepared);
+  if (!prepared.program) return record;
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   EnergyAudit audit(marcher);
@@ -142,19 +133,10 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.run_seconds = thread_seconds() - run;
   record.steps = marcher.step();
   record.curve = sampler.finish();
-  const LaneStatus& status = marcher.status(0);
-  if (status.running && marcher.step() < prepared.steps) {
-    record.status = "failed";
-    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
-                                prepared.steps, marcher.time());
-  } else if (status.running) {
+  if (marcher.status(0).running && marcher.step() >= prepared.steps)
     record.status = "done";
-  } else {
-    const bool law = status.cause.starts_with("the contact law");
-    record.status = law ? "failed" : "diverged";
-    record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, status.cause);
-    record.steps = status.step;
-  }
+  else
+    record_early_end(record, marcher, prepared.steps, budget);
   fill_measures(record, marcher, audit, *problem);
   if (marcher.delassus_columns() > 0)
     record.notes.push_back(

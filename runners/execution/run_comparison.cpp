@@ -57,19 +57,10 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
 
 CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry, References& references,
                           const std::atomic<bool>& stop) {
-  CaseRecord record;
-  record.id = study_case.id;
-  record.axes = study_case.axes;
   const double set_up = thread_seconds();
   Prepared prepared = prepare_case(study_case, registry);
-  record.notes = prepared.notes;
-  if (!prepared.program) {
-    record.status = "refused";
-    record.reason = prepared.refusal;
-    return record;
-  }
-  record.operator_name = operator_name(prepared.program->kind);
-  record.left_out = left_out_pairs(*prepared.program);
+  CaseRecord record = begin_record(study_case, prepared);
+  if (!prepared.program) return record;
   const bool rigid = !prepared.program->law->reads();
   const SchemeFacts facts = prepared.program->plan.facts;
   const bool point_mass = prepared.problem->space.elements.empty();
@@ -85,16 +76,13 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   say_references(record, set);
 
   const double run = thread_seconds(), budget = budget_of(study_case);
-  bool spent = false;
   MotionSampler sampler(marcher, set.grid);
   sampler.march([&] {
     if (stop) throw Interrupted{};
-    spent = thread_seconds() - run > budget;
-    return !spent;
+    return thread_seconds() - run <= budget;
   });
   record.run_seconds = thread_seconds() - run;
   record.steps = std::min(marcher.step(), prepared.steps);
-  const LaneStatus& status = marcher.status(0);
   const bool whole = sampler.sampled() == set.grid.times.size();
   const auto& events = sampler.contact().events();
   put(record, "horizon", set.horizon);
@@ -114,14 +102,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
     put(record, "energy_end", sampler.motion().energy.back());
     put(record, "microseconds_per_step", 1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
     compare(record, sampler.finish(), set, errors_of(study_case));
-  } else if (spent) {
-    record.status = "failed";
-    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
-                                prepared.steps, marcher.time());
   } else {
-    record.status = status.cause.starts_with("the contact law") ? "failed" : "diverged";
-    record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, status.cause);
-    record.steps = status.step;
+    record_early_end(record, marcher, prepared.steps, budget);
   }
   return record;
 }

@@ -115,7 +115,7 @@ std::vector<MethodChoice> read_references(Json& resolved, const std::string& poi
     if (entry == marched_reference ||
         (entry.is_object() && entry.size() == 1 && entry.value("name", "") == marched_reference)) {
       choices.push_back({marched_reference, {}});
-      complete.push_back({{"name", marched_reference}});
+      complete.push_back(marched_reference);
     } else {
       if (entry.is_string() && !nearest_name(entry.get<std::string>(), {marched_reference}).empty())
         throw InputError(here, "no plugin provides the reference " + quote(entry) + "; did you mean \"" +
@@ -126,7 +126,7 @@ std::vector<MethodChoice> read_references(Json& resolved, const std::string& poi
       complete.push_back(options.resolved.front());
     }
     for (std::size_t j = 0; j < i; ++j)
-      if (complete[j] == complete[i]) throw InputError(here, "repeats the reference " + quote(complete[i]["name"]));
+      if (complete[j] == complete[i]) throw InputError(here, "repeats the reference " + quote(entry));
   }
   resolved = complete;
   return choices;
