@@ -109,7 +109,7 @@ class StabilityPredictor::Collector {
     spectrum.mode = mode;
   }
 
-  // A root that lives on a motion (m, c, k), `others` roots of the same motion on the unit circle before it.
+  // A root that lives on a motion (m, c, k), of which `others` roots with this one are on the unit circle.
   void judge(const Root& root, double m, double c, double k, int others, double tolerance, const std::string& where) {
     const double size = std::abs(root.value);
     if (size < 1 - tolerance || size > 1 + growth_tolerance) return;
@@ -117,7 +117,7 @@ class StabilityPredictor::Collector {
     if (physical >= 1 - 10 * tolerance) {
       // A motion that neither decays nor lacks inertia has two roots on the circle, which meet at +1 as h → 0.
       if (std::abs(root.value - 1.0) < 1e-3) return;
-      if (!root.defective && others + root.multiplicity <= 2) return;
+      if (!root.defective && others <= 2) return;
       name(root, where);
     } else {
       name(root, where + (m > 0 ? ", though the structure is damped" : ""));
@@ -136,8 +136,13 @@ class StabilityPredictor::Collector {
 
   StepSpectrum finish(const std::string& contact) {
     spectrum.contact = contact;
-    for (const Finding& finding : findings_) {
+    for (std::size_t i = 0; i < findings_.size(); ++i) {
+      const Finding& finding = findings_[i];
       if (!spectrum.marginal.empty()) spectrum.marginal += "; ";
+      if (i == most_findings) {
+        spectrum.marginal += fmt::format("and {} more", findings_.size() - i);
+        break;
+      }
       spectrum.marginal += finding.defective ? "double " : "";
       spectrum.marginal += root_text(finding.root) + " on " + finding.where;
       if (finding.count > 1) spectrum.marginal += fmt::format(" ({} times)", finding.count);
@@ -158,6 +163,7 @@ class StabilityPredictor::Collector {
   Damping damping_;
   double h_;
   Detail detail_;
+  static constexpr std::size_t most_findings = 3;
   std::vector<Finding> findings_;
 };
 
@@ -229,7 +235,9 @@ Excitation StabilityPredictor::excite(const Modes& modes, double h) const {
     const double sign = std::fmod(golden * (i + 1), 1.0) < 0.5 ? -1.0 : 1.0;
     const double lift = sign / std::sqrt(modes.stiffness[i]);
     out.position += lift * modes.shapes.col(i);
-    out.velocity += (i < modes.regular ? sign / std::sqrt(modes.mass[i]) : 0.5 * lift / h) * modes.shapes.col(i);
+    // Without mass, viscosity alone says how fast: q' = −q/α; without that, half of itself in a step.
+    const double massless = -lift / std::max(problem_->damping.stiffness, 2 * h);
+    out.velocity += (i < modes.regular ? sign / std::sqrt(modes.mass[i]) : massless) * modes.shapes.col(i);
   }
   return out;
 }
@@ -257,8 +265,8 @@ std::optional<Refusal> StabilityPredictor::add_modes(Collector& found, const Ste
     for (const Root& root : step_roots(in_metres(step, plan, found.h(), 1), found.full())) {
       found.largest(root, modes.pulsation(i), i >= modes.regular, modes.name(i));
       if (!found.full()) break;
-      found.judge(root, m, c, k, others, modal_marginal, modes.name(i));
       if (std::abs(root.value) >= 1 - modal_marginal) others += root.multiplicity;
+      found.judge(root, m, c, k, others, modal_marginal, modes.name(i));
     }
   }
   return std::nullopt;

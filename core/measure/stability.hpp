@@ -56,8 +56,8 @@ using SpectrumOrRefusal = std::variant<StepSpectrum, Refusal>;
 enum class Detail { radius, full };
 
 /// A state in which every mode has the same energy (1 J), half of it elastic and half kinetic, and signs that do not
-/// repeat. Ker M moves by half of its own displacement in a step, Ker K rests. Where the modes are not known:
-/// displacements of about 1 m that do not repeat, at rest.
+/// repeat. Ker M moves as q' = −q/α, or by half of itself in a step where that is slower; Ker K rests. Where the modes
+/// are not known: displacements of about 1 m that do not repeat, at rest.
 struct Excitation {
   Eigen::VectorXd position, velocity;
 };
