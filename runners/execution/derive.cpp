@@ -1,5 +1,7 @@
 #include "runners/execution/derive.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -154,8 +156,10 @@ DerivedTable orders_table(const StudyResults& results) {
         if (refined == "elements")
           for (std::size_t c = 0; c + 8 < table.columns.size(); ++c)
             if (table.columns[c] == "elements") row[c] = nullptr;
+        const std::string gci =
+            fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "";
         row.insert(row.end(), {refined, name, number(fit.order), number(fit.low), number(fit.high),
-                               number(question.declared), verdict_word(fit.verdict), fit.reason});
+                               number(question.declared), verdict_word(fit.verdict), fit.reason + gci});
         table.rows.push_back(std::move(row));
       }
     }
