@@ -17,6 +17,7 @@ struct Columns {
   Eigen::VectorXd value, rate, curve;
   Eigen::VectorXcd phasors;                 ///< e^{σt}
   Eigen::VectorXcd turned, doubled_turned;  ///< e^{στ}; of both sides
+  Eigen::VectorXcd answers;                 ///< of one relaxation to each of them
 };
 
 class ContactPhase {
@@ -49,8 +50,7 @@ class ContactPhase {
     at.phasors = (exponents_ * (start_ + tau)).array().exp();
     if (relaxed_.size() > 0) both_sides(at.turned, at.doubled_turned);
     for (Eigen::Index i = 0; i < place_.size(); ++i) read_oscillator(i, tau, at);
-    Eigen::Index column = place_.size();
-    for (Eigen::Index j = 0; j < relaxed_.size(); ++j) read_relaxation(j, tau, column, at);
+    read_relaxations(tau, place_.size(), at);
   }
 
   State state(double tau) const {
@@ -109,25 +109,34 @@ class ContactPhase {
     at.curve[i] = push - 2 * mode.decay() * rate - mode.square() * value;
   }
 
-  void read_relaxation(Eigen::Index j, double tau, Eigen::Index& column, Columns& at) const {
-    const Complex s = modes_->relaxations[static_cast<std::size_t>(j)];
-    Complex value = relaxed_[j] * std::exp(s * tau), push = 0, change = 0;
-    for (Eigen::Index k = 0; k < doubled_exponents_.size(); ++k) {
-      const Complex force = relaxing_force_(j, k);
-      if (force == 0.0) continue;
-      const Complex turned = at.doubled_turned[k];
-      value += force * first_order_response(s, doubled_exponents_[k], tau, turned);
-      push += force * turned;
-      change += force * doubled_exponents_[k] * turned;
+  /// Massless modes relax alike: what depends on s alone is worked out when it changes.
+  void read_relaxations(double tau, Eigen::Index column, Columns& at) const {
+    Complex before = 0, decay = 1;
+    at.answers.resize(doubled_exponents_.size());
+    for (Eigen::Index j = 0; j < relaxed_.size(); ++j) {
+      const Complex s = modes_->relaxations[static_cast<std::size_t>(j)];
+      if (j == 0 || s != before) {
+        decay = std::exp(s * tau);
+        for (Eigen::Index k = 0; k < doubled_exponents_.size(); ++k)
+          at.answers[k] = first_order_response(s, doubled_exponents_[k], tau, at.doubled_turned[k]);
+        before = s;
+      }
+      Complex value = relaxed_[j] * decay, push = 0, change = 0;
+      for (Eigen::Index k = 0; k < doubled_exponents_.size(); ++k) {
+        const Complex force = relaxing_force_(j, k);
+        value += force * at.answers[k];
+        push += force * at.doubled_turned[k];
+        change += force * doubled_exponents_[k] * at.doubled_turned[k];
+      }
+      const Complex rate = s * value + push, curve = s * rate + change;
+      const auto put = [&](double a, double b, double c) {
+        at.value[column] = a;
+        at.rate[column] = b;
+        at.curve[column++] = c;
+      };
+      put(value.real(), rate.real(), curve.real());
+      if (!modes_->single[static_cast<std::size_t>(j)]) put(value.imag(), rate.imag(), curve.imag());
     }
-    const Complex rate = s * value + push, curve = s * rate + change;
-    const auto put = [&](double a, double b, double c) {
-      at.value[column] = a;
-      at.rate[column] = b;
-      at.curve[column++] = c;
-    };
-    put(value.real(), rate.real(), curve.real());
-    if (!modes_->single[static_cast<std::size_t>(j)]) put(value.imag(), rate.imag(), curve.imag());
   }
 
   const LinearStructure* structure_;

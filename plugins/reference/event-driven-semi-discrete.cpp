@@ -52,7 +52,10 @@ LinearStructure structure_of(const ReferenceProblem& problem) {
   structure.alpha = problem.damping_stiffness;
   structure.eta = problem.damping_mass;
   structure.spring = problem.contact_absent ? 0 : problem.contact_stiffness;
-  structure.contact = problem.contact_absent ? Eigen::MatrixXd(0, n) : discrete.contact;
+  std::vector<Index> stopped;
+  for (Index i = 0; i < (problem.contact_absent ? 0 : discrete.contact.rows()); ++i)
+    if (std::isfinite(discrete.lower[i]) || std::isfinite(discrete.upper[i])) stopped.push_back(i);
+  structure.contact = discrete.contact(stopped, Eigen::all);
   const Index m = structure.points();
 
   const Complex support = std::polar(problem.support_amplitude, problem.support_phase - M_PI / 2);
@@ -80,8 +83,8 @@ LinearStructure structure_of(const ReferenceProblem& problem) {
   const double pulsation = problem.support_pulsation;
   if (moved > 0) structure.force.col(moved) += pulsation * pulsation * support * discrete.support_shape;
   if (m > 0) {
-    structure.lower.col(0) = discrete.lower.cast<Complex>();
-    structure.upper.col(0) = discrete.upper.cast<Complex>();
+    structure.lower.col(0) = discrete.lower(stopped).cast<Complex>();
+    structure.upper.col(0) = discrete.upper(stopped).cast<Complex>();
     for (Signals* bound : {&structure.lower, &structure.upper})
       bound->col(moved).array() -= moved == 0 ? Complex(support.real()) : support;
   }
