@@ -165,8 +165,8 @@ class StabilityRun {
 
   void say_horizon() {
     record_.notes.push_back(
-        fmt::format("open cells are marched {} steps without loads from a state in which every mode has the same "
-                    "energy: a growth of 3.5e-4 per step shows",
+        fmt::format("open cells are marched {} steps without loads from a state that excites every mode: a growth "
+                    "of 3.5e-4 per step shows",
                     free_steps));
     if (!touches_) return;
     const double first = predictor_->first_pulsation();
