@@ -139,6 +139,7 @@ struct ContactModes {
   std::vector<Watch> watches;
   Eigen::MatrixXd watch_place, watch_rate;  ///< value = A q + B q' + Re(c e)
   Signals watch_signal;                     ///< c
+  Eigen::VectorXd watch_steady;             ///< bound of the second derivative of what harmonic forces impose
 
   Eigen::Index columns() const { return shapes.cols(); }
 };
@@ -168,6 +169,30 @@ inline Eigen::MatrixXcd two_sided(const Eigen::MatrixXcd& reader, const Signals&
     result.col(2 * k) = 0.5 * (reader * force.col(k).conjugate());
   }
   return result;
+}
+
+/// Σ|σ|²·(size of the steady response of each watched function), resonant modes left out.
+inline void finish_watches(const LinearStructure& structure, ContactModes& modes) {
+  const Eigen::VectorXcd sigma = structure.sigma();
+  const auto r = static_cast<Eigen::Index>(modes.oscillators.size());
+  modes.watch_steady.setZero(modes.watch_place.rows());
+  for (Eigen::Index k = 1; k < sigma.size(); ++k) {
+    const double rate = std::abs(sigma[k]);
+    Eigen::VectorXd steady = Eigen::VectorXd::Zero(modes.columns());
+    for (Eigen::Index i = 0; i < r; ++i) {
+      const LinearMode& mode = modes.oscillators[static_cast<std::size_t>(i)];
+      if (!mode.resonates(sigma[k])) steady[i] = std::abs(modes.oscillator_force(i, k) / mode.detuning(sigma[k]));
+    }
+    for (Eigen::Index j = 0, column = r; j < modes.relaxation_force.rows(); ++j) {
+      const Complex s = modes.relaxations[static_cast<std::size_t>(j)];
+      const double size = std::abs(modes.relaxation_force(j, 2 * k - 1) / (sigma[k] - s)) +
+                          std::abs(modes.relaxation_force(j, 2 * k) / (std::conj(sigma[k]) - s));
+      for (int c = modes.single[static_cast<std::size_t>(j)] ? 1 : 2; c > 0; --c) steady[column++] = size;
+    }
+    modes.watch_steady += rate * rate *
+                          (modes.watch_signal.col(k).cwiseAbs() + modes.watch_place.cwiseAbs() * steady +
+                           rate * modes.watch_rate.cwiseAbs() * steady);
+  }
 }
 
 class Builder {
@@ -385,8 +410,11 @@ class Builder {
 inline ContactModes contact_modes(const LinearStructure& structure, const ContactSet& set) {
   const bool touched = std::any_of(set.begin(), set.end(), [](signed char sign) { return sign != 0; });
   detail::Builder builder(structure, set);
-  if (structure.spring == 0) return builder.rigid();
-  return touched && structure.alpha > 0 ? builder.damped_springs() : builder.springs();
+  ContactModes modes = structure.spring == 0            ? builder.rigid()
+                       : touched && structure.alpha > 0 ? builder.damped_springs()
+                                                        : builder.springs();
+  detail::finish_watches(structure, modes);
+  return modes;
 }
 
 }  // namespace ricochet::reference

@@ -20,6 +20,12 @@ struct Columns {
   Eigen::VectorXcd answers;                 ///< of one relaxation to each of them
 };
 
+/// One thing that moves in a phase, apart from what forces impose: at most size·e^{−decay·τ} in its column.
+struct Content {
+  Eigen::Index column = 0;
+  LinearMode::Content of;
+};
+
 class ContactPhase {
  public:
   ContactPhase(const LinearStructure& structure, const ContactModes& modes, const State& from)
@@ -36,10 +42,15 @@ class ContactPhase {
     Eigen::VectorXcd doubled;
     both_sides(entered, doubled);
     relaxing_force_ = modes.relaxation_force * doubled.asDiagonal();
+    for (Eigen::Index i = 0; i < place_.size(); ++i) split_oscillator(i);
+    for (Eigen::Index j = 0, column = place_.size(); j < relaxed_.size(); ++j) split_relaxation(j, column);
   }
 
   const ContactModes& modes() const { return *modes_; }
   double start() const { return start_; }
+  /// The free motion of every column that is not in resonance with a force.
+  const std::vector<Content>& contents() const { return contents_; }
+  const std::vector<Eigen::Index>& resonant() const { return resonant_; }
 
   void read(double tau, Columns& at) const {
     const Eigen::Index count = modes_->columns();
@@ -85,6 +96,29 @@ class ContactPhase {
       result[2 * k - 1] = of[k];
       result[2 * k] = std::conj(of[k]);
     }
+  }
+
+  void split_oscillator(Eigen::Index i) {
+    const LinearMode& mode = modes_->oscillators[static_cast<std::size_t>(i)];
+    double place = place_[i], rate = rate_[i];
+    for (Eigen::Index k = 0; k < exponents_.size(); ++k) {
+      if (force_(i, k) == 0.0) continue;
+      if (mode.resonates(exponents_[k])) return resonant_.push_back(i);
+      const Complex steady = force_(i, k) / mode.detuning(exponents_[k]);
+      place -= steady.real();
+      rate -= std::real(exponents_[k] * steady);
+    }
+    for (const auto& one : mode.contents(place, rate))
+      if (one.size > 0) contents_.push_back({i, one});
+  }
+
+  void split_relaxation(Eigen::Index j, Eigen::Index& column) {
+    const Complex s = modes_->relaxations[static_cast<std::size_t>(j)];
+    Complex value = relaxed_[j];
+    for (Eigen::Index k = 0; k < doubled_exponents_.size(); ++k)
+      value -= relaxing_force_(j, k) / (doubled_exponents_[k] - s);
+    const int columns = modes_->single[static_cast<std::size_t>(j)] ? 1 : 2;
+    for (int c = 0; c < columns; ++c) contents_.push_back({column++, {std::abs(s), -s.real(), std::abs(value)}});
   }
 
   void read_oscillator(Eigen::Index i, double tau, Columns& at) const {
@@ -147,6 +181,8 @@ class ContactPhase {
   Signals force_;  // as it is at the start
   Eigen::MatrixXcd relaxing_force_;
   Eigen::VectorXcd exponents_, doubled_exponents_;
+  std::vector<Content> contents_;
+  std::vector<Eigen::Index> resonant_;
 };
 
 }  // namespace ricochet::reference

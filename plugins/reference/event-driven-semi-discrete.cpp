@@ -356,38 +356,44 @@ class EventDriven {
     phase_->read(tau, at);
   }
 
-  /// How fast what matters still changes, and how curved each watched function may be.
+  /// How fast what matters still changes, and how curved each watched function may be until then.
   struct Survey {
     double step = 0;
     Eigen::VectorXd curve, noise;
+    std::vector<double> left;  // of each content
   };
-  void survey(const Columns& at, Survey& now) const {
+  void survey(double tau, const Columns& at, Survey& now) const {
     const ContactModes& modes = phase_->modes();
-    const auto count = static_cast<Index>(modes.watches.size());
-    now.curve.setZero(count);
-    now.noise.setZero(count);
+    const auto& contents = phase_->contents();
+    now.curve = modes.watch_steady;
+    now.noise.resize(now.curve.size());
+    now.left.resize(contents.size());
+    for (std::size_t c = 0; c < contents.size(); ++c)
+      now.left[c] = contents[c].of.size * std::exp(-contents[c].of.decay * tau);
     double fastest = 0;
     for (const Complex& exponent : at_.exponents) fastest = std::max(fastest, std::abs(exponent));
-    for (Index k = 0; k < count; ++k) {
-      double swing = 0, size = (modes.watch_signal.row(k).cwiseAbs()).sum();
-      const auto swing_of = [&](Index i) {
-        const double rate = modes.rates[i];
-        if (rate == 0) return 0.0;
-        return (std::abs(modes.watch_place(k, i)) + rate * std::abs(modes.watch_rate(k, i))) *
-               (std::abs(at.curve[i]) / (rate * rate) + std::abs(at.rate[i]) / rate);
-      };
-      for (Index i = 0; i < modes.columns(); ++i) {
-        const double part = swing_of(i), rate = modes.rates[i];
-        swing += part;
-        now.curve[k] += rate > 0 ? part * rate * rate : std::abs(modes.watch_place(k, i) * at.curve[i]);
-        size += std::abs(modes.watch_place(k, i) * at.value[i]) + std::abs(modes.watch_rate(k, i) * at.rate[i]);
-      }
-      for (Index s = 1; s < modes.watch_signal.cols(); ++s)
-        now.curve[k] += std::norm(at_.exponents[static_cast<std::size_t>(s)]) * std::abs(modes.watch_signal(k, s));
-      now.noise[k] = std::clamp(haze_[k], 64 * epsilon * size, 1e4 * epsilon * size);
-      const double seen = std::max(1e-10 * swing, now.noise[k]);
+    for (const Index i : phase_->resonant()) fastest = std::max(fastest, modes.rates[i]);
+    for (Index k = 0; k < now.curve.size(); ++k) {
+      double swing = 0, size = modes.watch_signal.row(k).cwiseAbs().sum();
       for (Index i = 0; i < modes.columns(); ++i)
-        if (modes.rates[i] > fastest && swing_of(i) > seen) fastest = modes.rates[i];
+        size += std::abs(modes.watch_place(k, i) * at.value[i]) + std::abs(modes.watch_rate(k, i) * at.rate[i]);
+      now.noise[k] = std::clamp(haze_[k], 64 * epsilon * size, 1e4 * epsilon * size);
+      const auto part = [&](std::size_t c) {
+        const auto& [column, of] = contents[c];
+        return (std::abs(modes.watch_place(k, column)) + of.rate * std::abs(modes.watch_rate(k, column))) * now.left[c];
+      };
+      for (std::size_t c = 0; c < contents.size(); ++c) {
+        swing += part(c);
+        now.curve[k] += part(c) * contents[c].of.rate * contents[c].of.rate;
+      }
+      for (const Index i : phase_->resonant())
+        now.curve[k] +=
+            std::abs(modes.watch_place(k, i)) * (std::abs(at.curve[i]) + modes.rates[i] * std::abs(at.rate[i])) +
+            std::abs(modes.watch_rate(k, i)) * modes.rates[i] * modes.rates[i] *
+                (std::abs(at.rate[i]) + modes.rates[i] * std::abs(at.value[i]));
+      const double seen = std::max(1e-10 * swing, now.noise[k]);
+      for (std::size_t c = 0; c < contents.size(); ++c)
+        if (contents[c].of.rate > fastest && part(c) > seen) fastest = contents[c].of.rate;
     }
     now.step = fastest > 0 ? resolution_ / fastest : std::numeric_limits<double>::infinity();
   }
@@ -400,7 +406,7 @@ class EventDriven {
     Survey now;
     phase_->read(0, here);
     while (true) {
-      survey(here, now);
+      survey(tau, here, now);
       double next = std::min(tau + now.step, last);
       const bool sampling = sampled_ < grid_.times.size() && grid_.times[sampled_] - phase_->start() <= next;
       if (sampling) next = std::max(tau, grid_.times[sampled_] - phase_->start());

@@ -55,6 +55,27 @@ class LinearMode {
   /// The largest of |s₁| and |s₂|, rad/s.
   double pulsation() const { return gap_ > 0 ? std::sqrt(square_) : fast_; }
 
+  /// λ + 2δσ + σ²: what divides the steady response to e^{σt}; 0 in resonance.
+  Complex detuning(Complex exponent) const { return square_ + exponent * (2 * decay_ + exponent); }
+  bool resonates(Complex exponent) const {
+    return std::abs(detuning(exponent)) <= 1e-3 * (square_ + std::norm(exponent));
+  }
+
+  /// A bound size·e^{−decay·τ} of what turns or decays with `rate`.
+  struct Content {
+    double rate = 0, decay = 0, size = 0;
+  };
+  /// What the free motion from y and y' consists of: one turning part, or a fast and a slow decaying one.
+  std::array<Content, 2> contents(double place, double speed) const {
+    if (gap_ > 0 && root_ > 0.1 * pulsation())
+      return {{{pulsation(), decay_, std::hypot(place, (speed + decay_ * place) / root_)}, {}}};
+    if (gap_ <= 0 && root_ > 0.1 * fast_)
+      return {{{fast_, fast_, std::abs(slow_ * place + speed) / (2 * root_)},
+               {slow_, slow_, std::abs(fast_ * place + speed) / (2 * root_)}}};
+    const double rate = pulsation();  // about critical: (1 + x)e^{−x} < 2.5 e^{−x/2}
+    return {{{rate, decay_ / 2, rate > 0 ? 2.5 * (std::abs(place) + std::abs(speed) / rate) : 0}, {}}};
+  }
+
   /// c, s and s' at τ; c' = −λ s.
   struct Fundamental {
     double c = 1, s = 0, s_rate = 1;
@@ -85,11 +106,11 @@ class LinearMode {
   Response response(Complex exponent, double tau, Complex phasor, const Fundamental& at) const {
     const double nearby = std::max(pulsation(), std::abs(exponent));
     if (nearby * tau <= 1) return summed(exponent, tau);
-    const Complex detuning = square_ + exponent * (2 * decay_ + exponent);
-    const bool apart = gap_ > 0 ? std::abs(detuning) > 0.05 * (square_ + std::norm(exponent)) : root_ <= 0.05 * fast_;
+    const Complex off = detuning(exponent);
+    const bool apart = gap_ > 0 ? std::abs(off) > 0.05 * (square_ + std::norm(exponent)) : root_ <= 0.05 * fast_;
     if (apart)
-      return {(phasor - at.c - exponent * at.s) / detuning,
-              (exponent * phasor + square_ * at.s - exponent * at.s_rate) / detuning};
+      return {(phasor - at.c - exponent * at.s) / off,
+              (exponent * phasor + square_ * at.s - exponent * at.s_rate) / off};
     const Complex first = gap_ > 0 ? Complex(-decay_, root_) : Complex(-slow_);
     const Complex second = gap_ > 0 ? Complex(-decay_, -root_) : Complex(-fast_);
     const Complex one = first_order_response(first, exponent, tau, phasor);
