@@ -20,6 +20,19 @@ struct DerivedTable {
   std::vector<std::vector<nlohmann::ordered_json>> rows;  ///< each as long as `columns`
 };
 
+/// Many numbers in columns of equal length, as they stand in NAME.csv behind the axes of their case: sections, impacts.
+/// NaN is an absent number (an empty cell).
+struct NumberTable {
+  std::string name;
+  std::vector<std::string> names;            ///< of the columns
+  std::vector<std::vector<double>> columns;  ///< in the order of `names`
+  /// Columns that hold words: column name, and the words; the numbers are indices into them.
+  std::vector<std::pair<std::string, std::vector<std::string>>> words;
+  bool exported = true;  ///< false: for the report and for going on, not written as CSV
+
+  std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+};
+
 /// What one case left behind: a row of cases.csv, and its curve.
 struct CaseRecord {
   std::string id;
@@ -34,6 +47,7 @@ struct CaseRecord {
   std::string operator_name;  ///< what compile chose: diagonal, modal, band, sparse
   Curve curve;
   std::vector<DerivedTable> tables;  ///< rows of its own, without the case's axes (stability.csv)
+  std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
 };
 
 /// Where and with what the figures were made.

@@ -27,7 +27,8 @@ struct StudyCase {
   Json scene_json;  ///< the scene of this case, scalars only
   MethodChoice mass, contact, time;
   int elements = 0;
-  double step = 0;
+  double step = 0;           ///< s; 0 for kinds that choose their steps themselves
+  int steps_per_period = 0;  ///< of kinds that step by the forcing period, else 0
   double duration = 0;
   int samples = 0;
   std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
