@@ -101,7 +101,7 @@ void say_what_is_left_out(Program& program) {
   if (!mass_products) say("products with M", "the scheme's right-hand side has none");
   if (problem.inertia.factored() && program.kind != OperatorKind::modal)
     say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
-  say("tangent columns", "no exponent is asked for");
+  if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
 }  // namespace
@@ -143,7 +143,11 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.plan = std::move(plan);
   program.h = h;
   program.law = std::move(law);
-  program.width = lane_width(static_cast<int>(lanes.size()));
+  program.tangents = options.tangents;
+  if (program.tangents > 0 && program.law->reads_rate())
+    return Refusal{"a law that reads a rate has no tangent here: its exponents are those of twins"};
+  program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
+  program.support = options.moving_support;
   program.lanes = std::move(lanes);
   program.contact = problem->points() > 0 && !program.law->absent();
   for (const LaneSpec& lane : program.lanes) program.support = program.support || lane.amplitude != 0;

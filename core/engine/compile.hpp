@@ -30,6 +30,8 @@ struct CompileOptions {
   OperatorKind kind = OperatorKind::automatic;
   long long expected_steps = 100000;  ///< over which set-up is paid back
   bool eager_delassus = false;        ///< all columns at once (tests)
+  int tangents = 0;                   ///< tangent columns per lane
+  bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
 };
 
 /// What the facts of a scheme need to know about a problem.
@@ -65,7 +67,8 @@ struct Program {
   double h = 0;
   std::unique_ptr<ContactLaw> law;
   std::vector<LaneSpec> lanes;
-  int width = 1;  ///< T
+  int width = 1;     ///< T
+  int tangents = 0;  ///< tangent columns per lane, behind the lanes
   OperatorKind kind = OperatorKind::band;
   std::vector<StageProgram> start, stages;
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/quadratic_form.hpp>
-#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/marcher_state.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -82,83 +81,6 @@ double load_scale(const Program& program, double t) {
 
 }  // namespace
 
-// Columns of W = H S⁻¹ Hᵀ and the responses S⁻¹Hᵀ e_j, kept once computed.
-class Marcher::StageDelassus final : public DelassusColumns {
- public:
-  StageDelassus(StageOperator& op, const RowMatrix& contact, int rows)
-      : op_(op), contact_(contact), rows_(rows), points_(contact.rows()) {
-    const auto points = static_cast<std::size_t>(points_);
-    known_.assign(points, false);
-    columns_ = std::make_unique_for_overwrite<double[]>(points * points);
-    responses_ = std::make_unique_for_overwrite<double[]>(points * static_cast<std::size_t>(rows));
-    rhs_.assign(static_cast<std::size_t>(rows), 0.0);
-  }
-
-  const double* column(int j) override {
-    compute(j);
-    return columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
-  }
-  const double* response(int j) {
-    compute(j);
-    return responses_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(rows_);
-  }
-  int computed() const { return static_cast<int>(std::count(known_.begin(), known_.end(), true)); }
-
- private:
-  void compute(int j) {
-    if (known_[static_cast<std::size_t>(j)]) return;
-    known_[static_cast<std::size_t>(j)] = true;
-    const auto first = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j)]);
-    const auto last = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j) + 1]);
-    std::fill(rhs_.begin(), rhs_.end(), 0.0);
-    for (std::size_t e = first; e < last; ++e) rhs_[static_cast<std::size_t>(contact_.index[e])] = contact_.value[e];
-    double* response = responses_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(rows_);
-    op_.solve_column(rhs_.data(), response);
-    double* out = columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(points_); ++i) {
-      double sum = 0;
-      for (auto e = static_cast<std::size_t>(contact_.start[i]); e < static_cast<std::size_t>(contact_.start[i + 1]);
-           ++e)
-        sum += contact_.value[e] * response[contact_.index[e]];
-      out[i] = sum;
-    }
-  }
-
-  StageOperator& op_;
-  const RowMatrix& contact_;
-  int rows_, points_;
-  std::vector<bool> known_;
-  // Pages that no point ever asks for are never written, hence never paid for.
-  std::unique_ptr<double[]> columns_, responses_;
-  std::vector<double> rhs_;
-};
-
-// What a stage keeps between steps, and the constants of its loop.
-struct Marcher::StageState {
-  std::unique_ptr<StageDelassus> delassus;
-  std::array<Block, 3> effort;  // p, p₋₁, p₋₂
-  std::array<const double*, 3> effort_pointers{};
-  Block free, rate, gap, gate_lower, gate_upper, approach;
-  Block fastest;                    // largest speed seen at a closed point, per lane
-  std::uint32_t contact_lanes = 0;  // lanes with a non-zero effort
-  std::uint32_t closed_lanes = 0;   // lanes with a closed gate
-  std::vector<double> update;       // slots × (slots + 1)
-  std::vector<double> measure_weights, rate_weights, gap_weights, approach_weights;
-  bool shifts_effort = false;
-};
-
-// F at the time levels that the current step needs, each assembled once.
-struct Marcher::LoadWindow {
-  struct Entry {
-    double level = std::numeric_limits<double>::quiet_NaN();
-    long long used = -1;
-    std::vector<double> value;
-  };
-  std::array<Entry, 5> entries;
-  std::vector<double> sum, nodal;
-  long long clock = 0;
-};
-
 Marcher::~Marcher() = default;
 Marcher::Marcher(Marcher&&) noexcept = default;
 
@@ -197,15 +119,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     for (std::size_t j = 0; j < slot_count; ++j)
       for (int i = 0; i < rows; ++i)
         blocks_[j].at(i, lane) = program_.plan.initial[j][0] * q[i] + program_.plan.initial[j][1] * v[i];
-    amplitude_.at(0, lane) = spec.amplitude;
-    cos_phase_.at(0, lane) = std::cos(spec.phase);
-    sin_phase_.at(0, lane) = std::sin(spec.phase);
-    phases_ = phases_ || spec.phase != 0;
-    if (program_.contact)
-      for (int i = 0; i < points; ++i) {
-        lower_.at(i, lane) = spec.lower[i];
-        upper_.at(i, lane) = spec.upper[i];
-      }
+    place_lane(lane);
   }
   energy_bound_ = divergence_factor * std::max(energy_scale(program_), load_scale(program_, 0));
   const bool later = program_.load && !program_.load_constant;
@@ -216,12 +130,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     load_window_->sum.resize(static_cast<std::size_t>(rows));
     load_window_->nodal.resize(static_cast<std::size_t>(rows));
   }
-  if (program_.contact) {
-    std::vector<Parameters> parameters;
-    for (int lane = 0; lane < T; ++lane)
-      parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
-    program_.law->prepare(points, parameters);
-  }
+  prepare_law();
   const auto with_z = [&](Combination c) {
     c.slots.resize(slot_count, 0.0);
     c.slots.push_back(c.z);
@@ -243,6 +152,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     }
     state->free = Block(points, T);
     state->measure_weights = with_z(stage.measure);
+    if (program_.tangents > 0) state->tangents.reserve(points);
     if (stage.compliance && program_.law->reads_rate()) {
       state->rate = Block(points, T);
       state->rate_weights = with_z(stage.compliance->rate);
@@ -386,6 +296,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     }
     input.load = distributed_load(plan.load, time());
     program.op->free_step(input);
+    if (program_.tangents > 0 && input.load) remove_load(program, input.load);
     if (state.delassus) contact(program, state, program.op->unknown());
     z = program.op->unknown();
   } else {
@@ -562,6 +473,7 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     }
     if (active) state.contact_lanes |= 1u << lane;
   }
+  if (program_.tangents > 0) tangent_contact(program, state);
   if (program.effort[0] == 1.0) {
     if (state.contact_lanes != 0) correct(state.effort[0].data());
   } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
@@ -619,11 +531,43 @@ void Marcher::freeze(int lane, const std::string& cause) {
         for (int i = 0; i < effort.rows(); ++i) effort.at(i, lane) = 0;
       state->contact_lanes &= ~(1u << lane);
     }
+  for (int k = 0; k < program_.tangents; ++k) {
+    const int tangent = tangent_lane(lane, k);
+    frozen_now_ |= 1u << tangent;
+    clear_lane(tangent);
+    for (auto* states : {&start_states_, &stage_states_})
+      for (auto& state : *states)
+        for (Block& effort : state->effort)
+          for (int i = 0; i < effort.rows(); ++i) effort.at(i, tangent) = 0;
+  }
   amplitude_.at(0, lane) = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     lower_.at(i, lane) = -infinity;
     upper_.at(i, lane) = infinity;
   }
+}
+
+// What a lane's spec says of its surroundings: clamp and stops.
+void Marcher::place_lane(int lane) {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  amplitude_.at(0, lane) = spec.amplitude;
+  cos_phase_.at(0, lane) = std::cos(spec.phase);
+  sin_phase_.at(0, lane) = std::sin(spec.phase);
+  phases_ = phases_ || spec.phase != 0;
+  if (!program_.contact) return;
+  for (int i = 0; i < lower_.rows(); ++i) {
+    lower_.at(i, lane) = spec.lower[i];
+    upper_.at(i, lane) = spec.upper[i];
+  }
+}
+
+// The law's parameters, one set per lane of the block.
+void Marcher::prepare_law() {
+  if (!program_.contact) return;
+  std::vector<Parameters> parameters;
+  for (int lane = 0; lane < program_.width; ++lane)
+    parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
+  program_.law->prepare(program_.problem->points(), parameters);
 }
 
 void Marcher::clear_lane(int lane) {

@@ -16,6 +16,13 @@ struct LaneStatus {
   std::string cause;
 };
 
+/// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
+struct LaneState {
+  std::vector<double> slots;    ///< slot by slot
+  std::vector<double> efforts;  ///< per stage p, then p₋₁ and p₋₂ where the plan weights them
+  std::vector<double> fastest;  ///< per stage with a gate: the largest speed seen at its stops, m/s
+};
+
 /// What an observer sees while a step is made. Blocks are rows × T or points × T.
 struct StageView {
   int stage = 0;
@@ -51,6 +58,21 @@ class Marcher {
   void start(StepObserver* observer = nullptr);
   /// Makes up to `steps` steps; returns early (with how many it made) only when no lane runs any more.
   long long march(long long steps, StepObserver* observer = nullptr);
+
+  /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
+  /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
+  LaneState lane_state(int lane) const;
+  void set_lane(int lane, const LaneSpec& spec, const LaneState& state);
+  /// Sets the number of steps made, hence the time: a periodic problem may be marched period after period on one clock.
+  void set_clock(long long step);
+
+  /// Tangent columns per lane: X_k' = Df X_k along the lane, with its own contact set and without loads. The derivative
+  /// of the discrete step while the contact set stays; what it lacks at impacts with inertia, impact_jump.hpp adds.
+  int tangents() const { return program_.tangents; }
+  /// Where column k of a lane stands in the block.
+  int tangent_lane(int lane, int k) const { return lanes() * (1 + k) + lane; }
+  LaneState tangent(int lane, int k) const { return state_at(tangent_lane(lane, k)); }
+  void set_tangent(int lane, int k, const LaneState& state) { set_state_at(tangent_lane(lane, k), state); }
 
   long long step() const { return step_; }
   double time() const { return static_cast<double>(step_) * program_.h; }
@@ -95,6 +117,14 @@ class Marcher {
   class StageDelassus;
   struct StageState;
   struct LoadWindow;
+  struct ActiveSystem;
+  void place_lane(int lane);
+  void prepare_law();
+  LaneState state_at(int column) const;
+  void set_state_at(int column, const LaneState& state);
+  void remove_load(StageProgram& program, const double* load);
+  void tangent_contact(StageProgram& program, StageState& state);
+  void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
   void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
   void contact(StageProgram& program, StageState& state, double* z);
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);

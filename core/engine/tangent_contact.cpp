@@ -1,0 +1,92 @@
+#include <cmath>
+#include <ricochet/engine/marcher_state.hpp>
+
+namespace ricochet {
+
+void Marcher::ActiveSystem::factorise() {
+  // A pivot this small against its diagonal belongs to a point that depends on those before it.
+  constexpr double dependent = 1e-13;
+  const std::size_t size = points.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const double diagonal = at(i, i);
+    for (std::size_t j = 0; j < i; ++j) {
+      double sum = at(i, j);
+      for (std::size_t l = 0; l < j; ++l) sum -= at(i, l) * at(j, l) * at(l, l);
+      at(i, j) = at(j, j) != 0 ? sum / at(j, j) : 0.0;
+      at(i, i) -= at(i, j) * at(i, j) * at(j, j);
+    }
+    if (!(at(i, i) > dependent * diagonal)) at(i, i) = 0;
+  }
+}
+
+void Marcher::ActiveSystem::solve() {
+  const std::size_t size = points.size();
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t l = 0; l < i; ++l) right[i] -= at(i, l) * right[l];
+  for (std::size_t i = size; i-- > 0;) {
+    right[i] = at(i, i) != 0 ? right[i] / at(i, i) : 0.0;
+    for (std::size_t l = i + 1; l < size; ++l) right[i] -= at(l, i) * right[l];
+  }
+}
+
+// Loads move an orbit, not its derivative.
+void Marcher::remove_load(StageProgram& program, const double* load) {
+  double* z = program.op->unknown();
+  program.op->solve_column(load, scratch_.data());
+  const auto width = static_cast<std::size_t>(program_.width);
+  for (int i = 0; i < program_.model->rows(); ++i)
+    for (std::size_t column = static_cast<std::size_t>(lanes()); column < width; ++column)
+      z[static_cast<std::size_t>(i) * width + column] -= scratch_[static_cast<std::size_t>(i)];
+}
+
+// What the derivative of each active measure must be: zero where a bound holds, the rebound's share of the approach
+// where a gate does, minus the free measure brought over.
+void Marcher::tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent) {
+  ActiveSystem& system = state.tangents;
+  for (std::size_t a = 0; a < system.points.size(); ++a) {
+    const int i = system.points[a];
+    double target = 0;
+    if (program.gate) {
+      const double speed = state.approach.at(i, lane), still = 1e-10 * state.fastest.at(0, lane);
+      const bool lower = state.effort[0].at(i, lane) > 0;
+      const bool leaves = lower ? speed > still : speed < -still;
+      const bool comes = lower ? speed < 0 : speed > 0;
+      const double slope = leaves ? -1.0 : (comes ? -program.gate->restitution : 0.0);
+      target = slope * state.approach.at(i, tangent);
+    }
+    system.right[a] = target - state.free.at(i, tangent);
+  }
+}
+
+// Derivatives of the efforts of every lane that was looked at: with the active set A of the lane,
+//     rigid:      reach·W_AA δp = target − δy°            compliant:  (reach·W_AA + I/κ) δp = −δg°
+void Marcher::tangent_contact(StageProgram& program, StageState& state) {
+  ActiveSystem& system = state.tangents;
+  const double reach = program.measure_z * program.effort[0];
+  for (const int lane : touched_) {
+    const bool active = (state.contact_lanes >> lane) & 1u;
+    for (int k = 0; k < program_.tangents; ++k)
+      for (int i = 0; i < state.free.rows(); ++i) state.effort[0].at(i, tangent_lane(lane, k)) = 0;
+    if (!active) continue;
+    system.points.clear();
+    for (int i = 0; i < state.free.rows(); ++i)
+      if (state.effort[0].at(i, lane) != 0) system.points.push_back(i);
+    const auto stiffness = program_.law->linearise(lane);
+    const double compliance = stiffness ? 1 / *stiffness : 0.0;
+    for (std::size_t a = 0; a < system.points.size(); ++a) {
+      const double* column = reach != 0 ? state.delassus->column(system.points[a]) : nullptr;
+      for (std::size_t b = 0; b < system.points.size(); ++b)
+        system.at(b, a) = (column ? reach * column[system.points[b]] : 0.0) + (a == b ? compliance : 0.0);
+    }
+    system.factorise();
+    for (int k = 0; k < program_.tangents; ++k) {
+      const int tangent = tangent_lane(lane, k);
+      tangent_targets(program, state, lane, tangent);
+      system.solve();
+      for (std::size_t a = 0; a < system.points.size(); ++a)
+        state.effort[0].at(system.points[a], tangent) = system.right[a];
+    }
+  }
+}
+
+}  // namespace ricochet
