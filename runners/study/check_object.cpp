@@ -101,6 +101,58 @@ Json check_words(const Field& field, const Json& value, const std::string& point
   return result;
 }
 
+Json check_numbers(const Field& field, const Json& value, const std::string& pointer) {
+  Json result = Json::array();
+  const bool list = value.is_array();
+  if (list && value.empty()) throw InputError(pointer, "an empty list; expected at least one number");
+  for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
+    const std::string here = list ? pointer_to(pointer, i) : pointer;
+    result.push_back(check_scalar(field, list ? value[i] : value, here));
+    result.back() = result.back().get<double>();
+  }
+  std::map<double, std::size_t> seen;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (const auto [first, fresh] = seen.emplace(result[i].get<double>(), i); !fresh)
+      throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
+                                                   pointer_to(pointer, first->second) +
+                                                   ": the same point would run twice");
+  return result;
+}
+
+Json check_starts(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  Json result = Json::array();
+  const bool list = value.is_array();
+  if (list && value.empty()) throw InputError(pointer, "an empty list; expected at least one start");
+  bool object = false;
+  for (std::size_t i = 0; i < (list ? value.size() : 1); ++i) {
+    const std::string here = list ? pointer_to(pointer, i) : pointer;
+    const Json& one = list ? value[i] : value;
+    if (one.is_object()) {
+      if (object) throw InputError(here, "a second object of starts; give one, with their number");
+      object = true;
+      result.push_back(check_object(field.nested.front(), one, here, axes));
+      continue;
+    }
+    if (!one.is_string())
+      throw InputError(here, expectation(field) +
+                                 " or an object {\"random\": number of states, \"seed\": number}, found " + quote(one));
+    result.push_back(check_scalar(field, one, here));
+    for (std::size_t j = 0; j < i; ++j)
+      if (result[j] == result[i]) throw InputError(here, "repeats " + quote(result[i]));
+  }
+  return result;
+}
+
+Json check_objects(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
+  const std::string expected = "expected a list of " + std::to_string(field.count) + " objects";
+  if (!value.is_array()) throw InputError(pointer, expected + ", found " + quote(value));
+  if (value.size() != field.count) throw InputError(pointer, expected + ", found " + std::to_string(value.size()));
+  Json result = Json::array();
+  for (std::size_t i = 0; i < value.size(); ++i)
+    result.push_back(check_object(field.nested.front(), value[i], pointer_to(pointer, i), axes));
+  return result;
+}
+
 // A list of positions is one value; a list that holds words or lists is an axis.
 bool is_axis(const Field& field, const Json& value) {
   if (!field.axis || !value.is_array()) return false;
@@ -142,13 +194,53 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       return check_places(value, pointer);
     case Field::Form::object:
       return check_object(field.nested.front(), value, pointer, axes);
+    case Field::Form::objects:
+      return check_objects(field, value, pointer, axes);
+    case Field::Form::numbers:
+      return check_numbers(field, value, pointer);
     case Field::Form::words:
       return check_words(field, value, pointer);
+    case Field::Form::starts:
+      return check_starts(field, value, pointer, axes);
     case Field::Form::methods:
     case Field::Form::excludes:
       break;
   }
   return value;
+}
+
+std::vector<std::string> keys_of(const std::vector<Field>& fields) {
+  std::vector<std::string> keys;
+  for (const Field& field : fields) keys.push_back(field.key());
+  return keys;
+}
+
+// The one of the ways whose keys the object has.
+const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std::string& pointer) {
+  std::string expected;
+  std::vector<std::string> all = keys_of(form.fields);
+  const ObjectForm* found = nullptr;
+  std::string first;
+  for (const ObjectForm& way : form.ways) {
+    const std::vector<std::string> keys = keys_of(way.fields);
+    all.insert(all.end(), keys.begin(), keys.end());
+    expected += (expected.empty() ? "" : ", or ") + quoted_list(keys);
+  }
+  for (const auto& [key, ignored] : object.items())
+    if (std::find(all.begin(), all.end(), key) == all.end())
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"" + did_you_mean(key, all) +
+                                                     " (keys here: " + quoted_list(all) + ")");
+  for (const ObjectForm& way : form.ways)
+    for (const Field& field : way.fields) {
+      if (!object.contains(field.key())) continue;
+      if (found && found != &way)
+        throw InputError(pointer_to(pointer, field.key()),
+                         "does not go together with \"" + first + "\"; expected either " + expected);
+      if (!found) first = field.key();
+      found = &way;
+    }
+  if (!found) throw InputError(pointer, "expected either " + expected);
+  return *found;
 }
 
 // The value at `discriminator`, a path of keys inside `object`; a misspelt key on the way is told as such.
@@ -199,6 +291,8 @@ std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, c
   const ObjectForm* level = &form;
   while (true) {
     for (const Field& field : level->fields) fields.push_back(&field);
+    if (!level->ways.empty())
+      for (const Field& field : find_way(*level, value, pointer).fields) fields.push_back(&field);
     if (level->discriminator.empty()) return fields;
     std::vector<std::string> words;
     for (const Variant& variant : level->variants)

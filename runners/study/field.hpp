@@ -16,11 +16,13 @@ struct Field;
 struct Variant;
 
 /// A closed JSON object: the keys it may have. With a discriminator (a pointer relative to the object, such as
-/// "/type"), further keys depend on the word found there; variants may have a discriminator of their own.
+/// "/type"), further keys depend on the word found there; variants may have a discriminator of their own. With ways,
+/// the object has the keys of exactly one of them, told by the keys that are present.
 struct ObjectForm {
   std::vector<Field> fields;
   std::string discriminator;
   std::vector<Variant> variants;
+  std::vector<ObjectForm> ways = {};
 };
 
 /// One key of an object.
@@ -32,7 +34,10 @@ struct Field {
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
     methods,   ///< methods of `role`: a name, an object, or a list of either
+    objects,   ///< a list of exactly `count` nested objects, one value together
+    numbers,   ///< a number or a list of different numbers in `spec.range`, one value together
     words,     ///< a word or a list of words out of `spec.words`, one value together
+    starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
     excludes,  ///< partial matches with a reason
   };
   Form form = Form::scalar;
@@ -43,7 +48,8 @@ struct Field {
   std::string variables;           ///< for formulas: a subset of "xt"
   Role role = Role::mass;          ///< for methods
   bool marched = false;            ///< for references: marched_reference is one as well
-  std::vector<ObjectForm> nested;  ///< one entry for Form::object
+  std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects and starts
+  std::size_t count = 0;           ///< for Form::objects
 
   const std::string& key() const { return spec.key; }
   bool required() const { return !fallback; }

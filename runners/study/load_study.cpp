@@ -17,6 +17,7 @@
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
+#include "runners/study/sweep.hpp"
 
 namespace ricochet {
 namespace {
@@ -96,6 +97,7 @@ void check_kind(const Json& study) {
 
 // What a kind adds to a case; null where nothing differs from a plain trajectory, whose ids then stay what they were.
 Json kind_settings(const Json& study) {
+  if (is_sweep(study)) return sweep_settings(study);
   Json settings = Json::object();
   for (const char* key : {"reference", "errors", "horizon", "repeats", "steps", "observe", "budget"})
     if (const auto found = study.find(key); found != study.end() && !found->is_null()) settings[key] = *found;
@@ -198,12 +200,17 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   study.question = resolved["question"].get<std::string>();
   study.kind = resolved["kind"].get<std::string>();
   check_name(study.name);
-  // A kind without a step of its own (stability) goes through a range of them within each case.
+  // A kind without a step of its own goes through a range of them within each case (stability), or counts steps per
+  // forcing period.
   const bool stepped = resolved.contains("step");
-  const auto duration = resolved["duration"].is_null() ? 0.0 : resolved["duration"].get<double>();
+  const bool sweep = is_sweep(resolved);
+  const auto given_duration = resolved.find("duration");
+  const auto duration =
+      given_duration == resolved.end() || given_duration->is_null() ? 0.0 : given_duration->get<double>();
   const auto samples = resolved.value("samples", 0);
   if (stepped) check_steps(resolved["step"], duration);
   const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
+  const std::vector<int> per_period = sweep ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
   check_kind(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
@@ -227,23 +234,30 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
       axes.end());
   Product everything;
   for (const Axis& axis : axes) everything.add(axis.values.size());
-  for (const std::size_t size : {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size()})
+  for (const std::size_t size :
+       {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size()})
     everything.add(size);
   everything.refuse_above(largest_study, "");
 
   const int finest = *std::max_element(meshes.begin(), meshes.end());
   const std::vector<SceneOption> scenes = expand_scenes(resolved["scene"], axes, finest);
+  if (sweep) {
+    const int coarsest = *std::min_element(meshes.begin(), meshes.end());
+    check_sweep(resolved, settings, registry, everything.count(),
+                make_space(scenes.front().scene.structure, coarsest).dofs);
+  }
 
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
   add_columns({{"elements", nullptr}}, study.columns);
   if (stepped) add_columns({{"step", nullptr}}, study.columns);
+  if (sweep) add_columns({{"steps_per_period", nullptr}}, study.columns);
   add_columns(scenes.front().axes, study.columns);
 
   CaseIds ids;
   Product product;
   for (const std::size_t size :
-       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size()})
+       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size()})
     product.add(size);
   for (; !product.ended(); product.next()) {
     StudyCase one;
@@ -259,15 +273,19 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.step = steps[product[5]];
     one.axes.emplace_back("elements", one.elements);
     if (stepped) one.axes.emplace_back("step", one.step);
+    one.steps_per_period = per_period[product[6]];
+    if (sweep) one.axes.emplace_back("steps_per_period", one.steps_per_period);
     one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
     one.duration = duration;
     one.samples = samples;
     one.references = references;
     one.settings = settings;
+    if (sweep) mark_sweep(settings, registry, one);
     one.id = ids.next(one, study.kind);
     study.cases.push_back(std::move(one));
   }
   apply_excludes(resolved["exclude"], study);
+  if (sweep) check_values(study);
   return study;
 }
 

@@ -34,6 +34,8 @@ struct StudyCase {
   std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
   Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
   std::optional<std::string> excluded;  ///< the reason given in `exclude`
+  /// Method parameters that the settings go through: JSON pointer, and how the plugin declares it.
+  std::vector<std::pair<std::string, ParameterSpec>> swept;
 };
 
 struct Study {

@@ -235,6 +235,91 @@ std::vector<Field> stability() {
           budget()};
 }
 
+Field steps_per_period() {
+  Field field = integer("steps_per_period", {8, 100000000, false, false}, std::nullopt,
+                        "Steps per forcing period: h = 2π/(ω·steps_per_period).");
+  field.axis = true;
+  return field;
+}
+
+// How long an orbit is marched and what is read of it: shared by diagrams and basins.
+std::vector<Field> orbit() {
+  ObjectForm transient;
+  transient.fields = {
+      integer("periods", {1, 100000000, false, false}, 300, "Forcing periods before the first reading."),
+      integer("at_most", {1, 100000000, false, false}, 2000,
+              "Forcing periods after which an orbit that has not settled is read all the same (and "
+              "said not to have settled).")};
+  return {object("transient", Json::object(), "What is left out until the orbit has settled, in forcing periods.",
+                 transient),
+          integer("keep", {16, 10000000, false, false}, 300, "Forcing periods that are read."),
+          word("section", {"strobe", "impact", "extremum"}, "strobe",
+               "When the state is read: once per forcing period, at each impact, or at each extremum of the tip."),
+          single(real("phase", "rad", any, 0.0, "Phase of the forcing at which the strobe reads."))};
+}
+
+ObjectForm swept_range(const char* what) {
+  ObjectForm keys;
+  keys.fields = {single(real("from", "as the parameter", any, std::nullopt, "First value.")),
+                 single(real("to", "as the parameter", any, std::nullopt, "Last value.")),
+                 integer("count", {2, 1000000, false, false}, std::nullopt, what)};
+  return keys;
+}
+
+Field swept_pointer() {
+  return named(Field::Form::text, "pointer", std::nullopt,
+               "JSON pointer to a number of the scene (\"/scene/support/amplitude\"; a formula in x or t is multiplied "
+               "by the value) or to a real parameter of a method (\"/methods/contact/stiffness\").");
+}
+
+std::vector<Field> bifurcation() {
+  ObjectForm listed;
+  Field values = named(Field::Form::numbers, "values", std::nullopt, "The values, all different.");
+  values.spec = real_parameter("values", "as the parameter", std::nullopt, any, values.spec.text);
+  listed.fields = {std::move(values)};
+  ObjectForm parameter;
+  parameter.fields = {swept_pointer()};
+  parameter.ways = {listed, swept_range("Number of values, evenly spaced.")};
+
+  ObjectForm random;
+  random.fields = {integer("random", {1, 10000, false, false}, std::nullopt, "Number of random initial states."),
+                   integer("seed", {0, 9007199254740992.0, false, false}, 1, "Seed of the random states.")};
+  Field start = named(Field::Form::starts, "start", Json::array({"rest"}),
+                      "Where the orbits of each value begin: at rest in the laboratory frame, in the scene's own "
+                      "initial state, where the next lower (up) or higher (down) value ended, or in random states.");
+  start.spec = word_parameter("start", {"rest", "state", "up", "down"}, std::nullopt, start.spec.text);
+  start.nested.push_back(std::move(random));
+
+  std::vector<Field> fields = {
+      object("parameter", std::nullopt, "What the diagram is drawn against.", std::move(parameter)), steps_per_period(),
+      std::move(start)};
+  for (Field& field : orbit()) fields.push_back(std::move(field));
+  fields.push_back(integer("exponents", {0, 100000, false, false}, 0, "Number of Lyapunov exponents, largest first."));
+  fields.push_back(optional(real("refine", "as the parameter", positive, std::nullopt,
+                                 "Width to which changes of class are located between values; null: not located.")));
+  fields.push_back(budget());
+  return fields;
+}
+
+std::vector<Field> basins() {
+  ObjectForm axis = swept_range("Number of cells, evenly spaced, the ends included.");
+  axis.fields.insert(axis.fields.begin(), swept_pointer());
+  Field axes = named(Field::Form::objects, "axes", std::nullopt, "The two axes of the grid, x and y.");
+  axes.nested.push_back(std::move(axis));
+  axes.count = 2;
+  Field refine;
+  refine.spec.type = ParameterSpec::Type::boolean;
+  refine.spec.key = "refine";
+  refine.spec.text =
+      "Whether a coarse grid is marched first and only cells near a boundary of basins at full resolution.";
+  refine.fallback = false;
+  std::vector<Field> fields = {std::move(axes), steps_per_period()};
+  for (Field& field : orbit()) fields.push_back(std::move(field));
+  fields.push_back(std::move(refine));
+  fields.push_back(budget());
+  return fields;
+}
+
 // A new kind is one more entry here, with the keys that only it has.
 std::vector<Variant> kinds() {
   return {
@@ -242,6 +327,8 @@ std::vector<Variant> kinds() {
       {{"convergence"}, {comparison(), "", {}}},
       {{"work-precision"}, {work_precision(), "", {}}},
       {{"stability"}, {stability(), "", {}}},
+      {{"bifurcation"}, {bifurcation(), "", {}}},
+      {{"basins"}, {basins(), "", {}}},
   };
 }
 

@@ -24,6 +24,8 @@ class SchemaWriter {
  private:
   void collect(const ObjectForm& form, std::vector<const Field*> fields, Json conditions, Json& ways) {
     for (const Field& field : form.fields) fields.push_back(&field);
+    for (const ObjectForm& way : form.ways) collect(way, fields, conditions, ways);
+    if (!form.ways.empty()) return;
     if (form.discriminator.empty()) {
       ways.push_back(closed(fields, conditions));
       return;
@@ -85,16 +87,27 @@ class SchemaWriter {
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
       case Field::Form::object:
         return object(field.nested.front());
-      case Field::Form::words: {
-        const Json one = scalar(field.spec);
-        return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}}})}};
-      }
+      case Field::Form::objects:
+        return {{"type", "array"},
+                {"items", object(field.nested.front())},
+                {"minItems", field.count},
+                {"maxItems", field.count}};
+      case Field::Form::numbers:
+        return one_or_list(scalar(field.spec));
+      case Field::Form::words:
+        return one_or_list(scalar(field.spec));
+      case Field::Form::starts:
+        return one_or_list({{"anyOf", Json::array({scalar(field.spec), object(field.nested.front())})}});
       case Field::Form::methods:
         return methods(field.role, field.marched);
       case Field::Form::excludes:
         break;
     }
     return excludes();
+  }
+
+  static Json one_or_list(const Json& one) {
+    return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}, {"uniqueItems", true}}})}};
   }
 
   static Json scalar(const ParameterSpec& spec) {
@@ -136,7 +149,8 @@ class SchemaWriter {
 
   Json excludes() {
     const Json text = {{"type", "string"}, {"minLength", 1}, {"description", "The reason; the report shows it."}};
-    Json properties = {{"why", text}, {"elements", Json::object()}, {"step", Json::object()}};
+    Json properties = {
+        {"why", text}, {"elements", Json::object()}, {"step", Json::object()}, {"steps_per_period", Json::object()}};
     for (const Role role : {Role::mass, Role::contact, Role::time}) {
       properties[role_name(role)] = {{"description", "Name of a method, or a list of names."}};
       for (const std::string& name : registry_.names(role))

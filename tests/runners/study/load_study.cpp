@@ -1,4 +1,3 @@
-#include "runners/study/field.hpp"
 #include "runners/study/load_study.hpp"
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "runners/study/field.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
@@ -190,7 +190,7 @@ TEST_CASE("Wrong values are refused with their place, what was expected and the 
        {"\"circle\"", "did you mean \"tube\""}},
       {with("/scene/structure/section/type", 3), "/scene/structure/section/type: expected one of", {"found 3"}},
       {with("/scene/structure/section", 3), "/scene/structure/section: expected an object", {"found 3"}},
-      {with("/kind", "bifurcation"), "/kind: unknown kind \"bifurcation\"", {"there is: \"trajectory\""}},
+      {with("/kind", "resonance"), "/kind: unknown kind \"resonance\"", {"there is: \"trajectory\""}},
       {with("/kind", "trajectroy"), "/kind: unknown kind", {"did you mean \"trajectory\""}},
       {with("/name", "a/b"), "/name: expected a name", {"a/b"}},
       {with("/name", ".."), "/name: expected a name", {}},

@@ -62,6 +62,44 @@ inline Json small_study() {
   })");
 }
 
+/// A small valid study of kind `bifurcation`: a shaken beam, its amplitude the parameter.
+inline Json small_sweep() {
+  return Json::parse(R"({
+    "name": "sweep",
+    "kind": "bifurcation",
+    "scene": {
+      "structure": {"type": "beam", "length": 1.5, "young": 2e11, "density": 8000,
+                    "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}},
+      "stops": {"lower": -0.1, "upper": "0.1 + 0.1*x", "at": "tip"},
+      "support": {
+  "amplitude" : 0.08, "pulsation" : 10
+}
+}
+, "mesh" : {"elements" : [ 10, 20 ]},
+           "methods" : {"mass" : [ "full", "poor" ], "contact" : "rigid", "time" : "three-level"},
+                       "parameter" : {"pointer" : "/scene/support/amplitude", "from" : 0.07, "to" : 0.09, "count" : 3},
+                                     "steps_per_period" : [ 2000, 8000 ],
+                                                          "start" : [ "rest", "up", "down", {"random" : 3, "seed" : 7} ]
+})");
+}
+
+/// A small valid study of kind `basins`: a driven oscillator over its initial states.
+inline Json small_basins() {
+  return Json::parse(R"({
+    "name": "grid",
+    "kind": "basins",
+    "scene": {
+      "structure": {"type": "oscillator", "mass": 1, "stiffness": 1,
+                    "force": {"amplitude": 1, "pulsation": 2.2}},
+      "stops": {"upper": 1.5, "at": "tip"}
+    },
+    "methods": {"mass": "full", "contact": "rigid", "time": "three-level"},
+    "axes": [{"pointer": "/scene/initial/displacement", "from": -1, "to": 1, "count": 5},
+             {"pointer": "/scene/initial/velocity", "from": -2, "to": 2, "count": 4}],
+    "steps_per_period": 1000
+  })");
+}
+
 inline Study parse(const std::string& text) {
   Registry registry = stand_ins();
   Catalogue catalogue("/nonexistent", {}, {});

@@ -105,6 +105,78 @@ TEST_CASE("The schema and the reader agree on what is a study") {
   }
 }
 
+TEST_CASE("The schema and the reader agree on what is a sweep") {
+  const Registry registry = stand_ins();
+  Validator validator(registry);
+  const auto changed = [](Json study, const std::string& pointer, const Json& value) {
+    study[Json::json_pointer(pointer)] = value;
+    return study;
+  };
+  const auto sweep = [&](const std::string& pointer, const Json& value) {
+    return changed(small_sweep(), pointer, value);
+  };
+  const auto basins = [&](const std::string& pointer, const Json& value) {
+    return changed(small_basins(), pointer, value);
+  };
+  const std::string amplitude = "/scene/support/amplitude";
+  const std::vector<Json> good = {
+      small_sweep(),
+      small_basins(),
+      parse(small_sweep()).resolved,
+      parse(small_basins()).resolved,
+      sweep("/parameter", {{"pointer", amplitude}, {"values", 0.07}}),
+      sweep("/parameter", {{"pointer", amplitude}, {"values", {0.07, 0.08}}}),
+      sweep("/start", "up"),
+      sweep("/start", {{"random", 8}}),
+      sweep("/start", {"state", "down"}),
+      sweep("/transient", {{"periods", 10}}),
+      sweep("/section", "extremum"),
+      sweep("/refine", 1e-5),
+      sweep("/exponents", 3),
+      sweep("/steps_per_period", 100),
+      sweep("/exclude", Json::array({{{"steps_per_period", 2000}, {"why", "coarse"}}})),
+      basins("/refine", true),
+      basins("/section", "impact"),
+  };
+  const std::vector<Json> bad = {
+      sweep("/parameter", {{"pointer", amplitude}}),
+      sweep("/parameter", {{"values", {0.07}}}),
+      sweep("/parameter", {{"pointer", amplitude}, {"values", {0.07}}, {"from", 0}, {"to", 1}, {"count", 2}}),
+      sweep("/parameter", {{"pointer", amplitude}, {"from", 0}, {"to", 1}}),
+      sweep("/parameter", {{"pointer", amplitude}, {"values", Json::array()}}),
+      sweep("/parameter", {{"pointer", amplitude}, {"values", {0.07, 0.07}}}),
+      sweep("/parameter/count", 1),
+      sweep("/start", "sideways"),
+      sweep("/start", Json::array()),
+      sweep("/start", Json::array({"up", "up"})),
+      sweep("/start", Json::array({{{"random", 2}, {"sed", 1}}})),
+      sweep("/start", Json::array({{{"seed", 2}}})),
+      sweep("/transient/periodes", 10),
+      sweep("/keep", 8),
+      sweep("/section", "poincare"),
+      sweep("/refine", true),
+      sweep("/exponents", 0.5),
+      sweep("/steps_per_period", 7),
+      sweep("/step", 1e-4),
+      sweep("/duration", 1),
+      basins("/refine", 1e-3),
+      basins("/axes/0/count", 1),
+      basins("/axes/0/values", {0.1}),
+      basins("/axes/2", {{"pointer", amplitude}, {"from", 0}, {"to", 1}, {"count", 2}}),
+      basins("/start", "rest"),
+  };
+  for (const Json& study : good) {
+    INFO(study.dump(1));
+    CHECK(refusal(study).empty());
+    CHECK(validator.accepts(study));
+  }
+  for (const Json& study : bad) {
+    INFO(study.dump(1));
+    CHECK_FALSE(refusal(study).empty());
+    CHECK_FALSE(validator.accepts(study));
+  }
+}
+
 TEST_CASE("Every object of the schema is closed and every key is described") {
   const std::function<void(const Json&, const std::string&)> visit = [&](const Json& schema, const std::string& path) {
     if (schema.is_object()) {

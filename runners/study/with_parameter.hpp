@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/study/study.hpp"
+
+/// \file
+/// Cases of the kinds that go through a parameter (bifurcation, basins): the case at one value, and what its settings
+/// say.
+namespace ricochet {
+
+/// The case with one of its scalars changed: scene, scene_json, method parameters and axes follow. `pointer` names
+///   · a number of the scene, "/scene/support/amplitude": set to `value`; so is a formula without variables ("-0.1"),
+///   · a formula of the scene in x or t, "/scene/load": multiplied by `value`,
+///   · a position of a list of stops, "/scene/stops/at/0",
+///   · a real parameter of the case's own method, "/methods/contact/stiffness".
+/// Throws InputError (with pointer) for a pointer that names none of these in this case, a value out of range, a scene
+/// that check_scene() refuses at this value, and, for cases that step by the forcing period, what check_forcing()
+/// refuses.
+StudyCase with_parameter(const StudyCase& study_case, const std::string& pointer, double value);
+
+/// The same for several scalars at once; the scene is checked when all are changed.
+StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pair<std::string, double>>& values);
+
+/// The case at rest in the laboratory frame, u = u_t = 0, whatever its scene's initial state.
+StudyCase at_rest(const StudyCase& study_case);
+
+/// ω of the forcing (rad/s): of the support where it moves, else of the oscillator's force where there is one; where
+/// neither has an amplitude, the first pulsation that is given (it still sets the period); 0: no period at all.
+double forcing_pulsation(const SceneSpec& scene);
+
+/// Whether anything changes with time: the support, the oscillator's force or the load.
+bool is_forced(const SceneSpec& scene);
+
+/// Throws InputError unless the scene has a forcing period T = 2π/ω and everything that changes with time repeats with
+/// it: an oscillator's force whose pulsation is no multiple of ω, a load with f(x, t + kT) ≠ f(x, t) beyond 1e-9 of its
+/// largest value (looked at in 9 places, 64 phases, k = 1, 2, 7, 50, 300, 2000).
+void check_forcing(const SceneSpec& scene);
+
+/// The values of the parameter, ascending.
+std::vector<double> parameter_values(const Json& settings);
+
+/// How an orbit begins.
+struct StartSpec {
+  enum Kind { rest, state, up, down, random };
+  Kind kind = rest;
+  int index = 0;           ///< of a random state, from 1; else 0
+  std::uint64_t seed = 0;  ///< of the random states; else 0
+  std::string name;        ///< as in the tables: "rest", "state", "up", "down", "random-1", …
+};
+/// The starts in the order of the study, random ones one by one.
+std::vector<StartSpec> starts_of(const Json& settings);
+
+/// One axis of a grid of basins.
+struct GridAxis {
+  std::string pointer;
+  std::vector<double> values;
+};
+/// The two axes of kind `basins`, x then y.
+std::vector<GridAxis> grid_axes(const Json& settings);
+
+/// Every scalar of a scene (with its values, lists included) that may be a parameter, as JSON pointers.
+std::vector<std::string> scene_scalars(const Json& scene);
+
+}  // namespace ricochet
