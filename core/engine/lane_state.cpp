@@ -49,6 +49,9 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   place_lane(lane);
   if (!same_law) prepare_law();
   status_[static_cast<std::size_t>(lane)] = LaneStatus{};
+  // What the lane left behind when it stopped is gone.
+  frozen_now_ &= ~(1u << lane);
+  for (int k = 0; k < program_.tangents; ++k) frozen_now_ &= ~(1u << tangent_lane(lane, k));
   set_state_at(lane, state);
 }
 

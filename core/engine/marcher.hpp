@@ -74,6 +74,10 @@ class Marcher {
   LaneState tangent(int lane, int k) const { return state_at(tangent_lane(lane, k)); }
   void set_tangent(int lane, int k, const LaneState& state) { set_state_at(tangent_lane(lane, k), state); }
 
+  /// Lets tangent columns fly free through the first `steps` steps of contact at these points: an impact with inertia
+  /// is over by then, and its jump is put on by whoever asked.
+  void hold_tangents(const std::vector<bool>& points, int steps);
+
   long long step() const { return step_; }
   double time() const { return static_cast<double>(step_) * program_.h; }
   int lanes() const { return static_cast<int>(program_.lanes.size()); }
@@ -152,6 +156,8 @@ class Marcher {
   std::unique_ptr<LoadWindow> load_window_;
   std::vector<double> scratch_;
   Block elastic_;
+  std::vector<bool> held_points_;  // whose tangents wait
+  int held_steps_ = 0;
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
   long long step_ = 0;

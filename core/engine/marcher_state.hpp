@@ -90,7 +90,8 @@ struct Marcher::StageState {
   std::vector<double> update;       // slots × (slots + 1)
   std::vector<double> measure_weights, rate_weights, gap_weights, approach_weights;
   bool shifts_effort = false;
-  ActiveSystem tangents;  // of the lane whose tangents are being corrected
+  std::vector<int> contact_age;  // steps of contact so far, points × T; only where tangents wait
+  ActiveSystem tangents;         // of the lane whose tangents are being corrected
 };
 
 // F at the time levels that the current step needs, each assembled once.

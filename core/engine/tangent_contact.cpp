@@ -29,6 +29,13 @@ void Marcher::ActiveSystem::solve() {
   }
 }
 
+void Marcher::hold_tangents(const std::vector<bool>& points, int steps) {
+  held_points_ = points;
+  held_steps_ = steps;
+  for (auto& state : stage_states_)
+    if (state->delassus) state->contact_age.assign(points.size() * static_cast<std::size_t>(program_.width), 0);
+}
+
 // Loads move an orbit, not its derivative.
 void Marcher::remove_load(StageProgram& program, const double* load) {
   double* z = program.op->unknown();
@@ -67,10 +74,18 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     const bool active = (state.contact_lanes >> lane) & 1u;
     for (int k = 0; k < program_.tangents; ++k)
       for (int i = 0; i < state.free.rows(); ++i) state.effort[0].at(i, tangent_lane(lane, k)) = 0;
-    if (!active) continue;
+    const auto width = static_cast<std::size_t>(program_.width);
+    const auto age = [&](int i) -> int& {
+      return state.contact_age[static_cast<std::size_t>(i) * width + static_cast<std::size_t>(lane)];
+    };
     system.points.clear();
-    for (int i = 0; i < state.free.rows(); ++i)
-      if (state.effort[0].at(i, lane) != 0) system.points.push_back(i);
+    for (int i = 0; i < state.free.rows(); ++i) {
+      const bool closed = active && state.effort[0].at(i, lane) != 0;
+      if (held_steps_ > 0) age(i) = closed ? age(i) + 1 : 0;
+      const bool waits = held_steps_ > 0 && held_points_[static_cast<std::size_t>(i)] && age(i) <= held_steps_;
+      if (closed && !waits) system.points.push_back(i);
+    }
+    if (system.points.empty()) continue;
     const auto stiffness = program_.law->linearise(lane);
     const double compliance = stiffness ? 1 / *stiffness : 0.0;
     for (std::size_t a = 0; a < system.points.size(); ++a) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ricochet/measure/motion_sampler.hpp>
+#include <ricochet/measure/velocity_offset.hpp>
 #include <ricochet/scene/assembly.hpp>
 
 namespace ricochet {
@@ -30,38 +31,6 @@ Cubic cubic(double s) {
   return {{-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6},
           {-(c * d + b * d + b * c) / 6, (c * d + a * d + a * c) / 2, -(b * d + a * d + a * b) / 2,
            (b * c + a * c + a * b) / 6}};
-}
-
-// Where in time a scheme's velocity stands at the end of a step, in steps: 0, or −½ where it is a mean over the step. A
-// unit mass under a unit force, from rest.
-double velocity_offset(const StepPlan& plan) {
-  const std::size_t slots = plan.slots.size();
-  std::vector<double> x(slots, 0.0), next(slots);
-  const auto apply = [&](const std::vector<Stage>& stages) {
-    for (const Stage& stage : stages) {
-      double b = 0, z = 0;
-      for (std::size_t j = 0; j < stage.history.size(); ++j) b += stage.history[j].M * x[j];
-      for (const Level& level : stage.load) b += level.weight;
-      if (stage.matrix.M != 0) z = b / stage.matrix.M;
-      for (std::size_t j = 0; j < slots; ++j) {
-        const Combination& update = stage.update[j];
-        next[j] = update.z * z;
-        for (std::size_t i = 0; i < update.slots.size(); ++i) next[j] += update.slots[i] * x[i];
-      }
-      x = next;
-    }
-  };
-  apply(plan.start);
-  constexpr int few = 4;
-  for (int n = 0; n < few; ++n) apply(plan.stages);
-  double twice = 0, once = 0;
-  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) once += plan.velocity.slots[j] * x[j];
-  apply(plan.stages);
-  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) twice += plan.velocity.slots[j] * x[j];
-  // One step more adds h: that is the scale.
-  const double h = twice - once, steps = few + (plan.start_advances ? 1 : 0);
-  const double offset = h > 0 ? once / h - steps : 0;
-  return std::abs(offset + 0.5) < 0.25 ? -0.5 : 0.0;
 }
 
 constexpr int block = 8;

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <ricochet/engine/marcher.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// How exponents are measured.
+struct LyapunovPlan {
+  int steps_per_period = 0;
+  int strobe = 0;        ///< the lanes begin one step after this step of the period
+  int periods = 300;     ///< measured
+  int discard = 10;      ///< before them, while the columns find their directions
+  double pulsation = 0;  ///< ω of the forcing, rad/s
+  /// Takes the root −1 out of the columns once per period, X ← (X_n + X_{n−1})/2: for schemes whose stability analysis
+  /// finds that root on the kernel of the mass, where it would hide what is physical.
+  bool without_sawtooth = false;
+  std::uint64_t seed = 1;
+};
+
+/// Growth of the tangent columns of one lane.
+struct LyapunovRates {
+  std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
+  std::string cause;                       ///< of a lane that stopped; "" otherwise
+  int jumps = 0;                           ///< impacts with inertia whose jump was applied
+};
+
+/// Lyapunov exponents along the lanes of a program that has tangent columns: from `states` (one step after a strobe)
+/// the block marches period after period; at each strobe the columns are orthonormalised, X = Q R, in metres
+/// (velocities over ω, accelerations over ω²), and ln R_kk/T is recorded. The k-th exponent is the mean over periods.
+/// Source: Benettin, Galgani, Giorgilli and Strelcyn (1980), Meccanica 15, 9–30; QR after Geist, Parlitz and Lauterborn
+/// (1990).
+std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<LaneState>& states,
+                                          const LyapunovPlan& plan);
+
+/// The same growth measured with a twin: a second trajectory `offset` metres away (in the norm above), brought back to
+/// that distance once per period. Lanes 2i and 2i+1 of the program are an orbit and its twin; `states` are those of the
+/// orbits.
+std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states, const LyapunovPlan& plan,
+                                      double offset);
+
+}  // namespace ricochet
