@@ -12,6 +12,7 @@ constexpr double round_off = 1e-13;                    // of relative distances
 constexpr double farthest = 1e9;                       // what does not repeat at all
 constexpr double significant = 3;                      // standard errors
 constexpr double largest_scatter = 0.1;                // relative, around L + A ρ^k
+constexpr double stays = 0.9;                          // of a distance at the end of the window: it does not fall
 constexpr int fewest_fitted = 8;                       // distances
 constexpr double least_decay = 0.05, most_decay = 60;  // −ln ρ times the length of the window
 
@@ -92,11 +93,24 @@ Decay decay_at(std::span<const double> d, double rate) {
   return out;
 }
 
-// |L| plus twice its standard error, where the model fits.
-std::optional<double> limit_bound(std::span<const double> window) {
-  const std::span<const double> d = above_round_off(window);
-  if (d.size() < 2 * fewest_fitted) return std::nullopt;
-  const double length = static_cast<double>(d.size());
+/// L with its uncertainty (three standard errors).
+struct Limit {
+  double value = 0, error = 0;
+};
+
+// Of the largest distances of each p periods: the p points of an orbit have amplitudes of their own. Nothing where the
+// model does not fit.
+std::optional<Limit> limit_of(std::span<const double> window, int p) {
+  const std::span<const double> above = above_round_off(window);
+  const std::size_t block = static_cast<std::size_t>(p), count = above.size() / block;
+  if (count < fewest_fitted) return std::nullopt;
+  std::vector<double> d(count);
+  const std::span<const double> whole = above.last(count * block);
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto part = whole.subspan(j * block, block);
+    d[j] = *std::max_element(part.begin(), part.end());
+  }
+  const double length = static_cast<double>(count);
   constexpr int candidates = 48;
   const double ratio = std::pow(most_decay / least_decay, 1.0 / candidates);
   int best = 0;
@@ -128,8 +142,32 @@ std::optional<double> limit_bound(std::span<const double> window) {
   const double determinant = n[0][0] * minor - n[0][1] * (n[0][1] * n[2][2] - n[1][2] * n[0][2]) +
                              n[0][2] * (n[0][1] * n[1][2] - n[1][1] * n[0][2]);
   if (!(determinant > 0) || !(minor > 0)) return std::nullopt;
-  return std::abs(found.limit) + 2 * scatter * std::sqrt(minor / determinant);
+  return Limit{found.limit, significant * scatter * std::sqrt(minor / determinant)};
 }
+
+/// The distances of one lag over one window.
+struct Lag {
+  std::span<const double> d;
+  double largest = 0;
+  Trend trend;
+  std::optional<Limit> limit;  // of what falls
+
+  Lag(std::span<const double> distances, int p) : d(distances), trend(trend_of(distances)) {
+    largest = *std::max_element(d.begin(), d.end());
+    if (trend.falls) limit = limit_of(d, p);
+  }
+  double contraction() const { return trend.rises || trend.falls ? std::exp(trend.slope) : 1.0; }
+  bool repeats(double tolerance, int window) const {
+    if (largest <= tolerance) return !trend.rises || trend.end * std::exp(trend.slope * window) <= tolerance;
+    return limit && std::abs(limit->value) + limit->error <= tolerance;
+  }
+  // Whether it may repeat one day: falling, and not about to stop. Short of that, an exponential through an algebraic
+  // decay has a limit as well.
+  bool may_repeat() const {
+    if (!trend.falls || std::exp(trend.slope * static_cast<double>(d.size())) > stays) return false;
+    return !limit || limit->value - limit->error < stays * d.back();
+  }
+};
 
 bool near(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& scale,
           double tolerance) {
@@ -160,25 +198,24 @@ Recurrence find_recurrence(const SectionSeries& series, const std::vector<double
   check(scale, series.width);
   const int rows = series.periods();
   Recurrence closest;
-  std::vector<double> distances;
+  std::vector<std::vector<double>> distances(1);  // per lag
+  const auto lag = [&](int p, int window) {
+    return Lag(
+        std::span<const double>(distances[static_cast<std::size_t>(p)]).last(static_cast<std::size_t>(window - p)), p);
+  };
   for (int p = 1; p <= longest && rows >= 2 * p + 8; ++p) {
-    distances.clear();
-    for (int k = p; k < rows; ++k) distances.push_back(distance(series.row(k), series.row(k - p), scale));
+    std::vector<double>& d = distances.emplace_back();
+    for (int k = p; k < rows; ++k) d.push_back(distance(series.row(k), series.row(k - p), scale));
     for (const int window : {rows, (rows + 1) / 2}) {
       if (window < 2 * p + 8) continue;
-      const auto d = std::span<const double>(distances).last(static_cast<std::size_t>(window - p));
-      const double largest = *std::max_element(d.begin(), d.end());
-      const Trend trend = trend_of(d);
-      const double contraction = trend.rises || trend.falls ? std::exp(trend.slope) : 1.0;
-      const bool leaving = trend.rises && trend.end * std::exp(trend.slope * window) > tolerance;
-      bool repeats = largest <= tolerance && !leaving;
-      if (!repeats && trend.falls) {
-        const auto bound = limit_bound(d);
-        repeats = bound && *bound <= tolerance;
+      const Lag here = lag(p, window);
+      if (here.repeats(tolerance, window)) {
+        bool shorter = false;
+        for (int q = 1; q < p && !shorter; ++q) shorter = p % q == 0 && lag(q, window).may_repeat();
+        if (!shorter) return {p, here.largest, here.contraction(), window};
       }
-      if (repeats) return {p, largest, contraction, window};
-      if (window == rows && (closest.window == 0 || largest < closest.distance))
-        closest = {0, largest, contraction, window};
+      if (window == rows && (closest.window == 0 || here.largest < closest.distance))
+        closest = {0, here.largest, here.contraction(), window};
     }
   }
   return closest;

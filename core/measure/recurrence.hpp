@@ -25,11 +25,13 @@ struct Recurrence {
 /// half; at least 2p + 8 rows):
 ///   - max d_k(p) ≤ tolerance, and the distances do not grow so that they would leave it within another such window
 ///     (an unstable orbit that is being left), or
-///   - the distances follow L + A ρ^k with ρ < 1, A > 0, scatter below a tenth, and L plus twice its standard error
-///     is at most the tolerance: an orbit that has not quite arrived.
+///   - the largest d_k(p) of each p periods follow L + A ρ^k with ρ < 1, A > 0, scatter below a tenth, and |L| plus
+///     three standard errors is at most the tolerance: an orbit that has not quite arrived;
+/// and no divisor q of p has distances d_k(q) that fall by a tenth or more over the window without having come within a
+/// tenth of their limit: near a period doubling d_k(2p) is small long before d_k(p) is, and the orbit may be either.
 /// `contraction` is e^slope of ln d_k over k, where the slope is three standard errors from 0; distances below 1e-13
-/// are round-off and end the fit. Rows that are not finite repeat nothing. Throws std::invalid_argument when `scale`
-/// does not give one finite number ≥ 0 per column.
+/// are round-off and end the fit. Rows that are not finite repeat nothing; no distance is told as larger than 1e9.
+/// Throws std::invalid_argument when `scale` does not give one finite number ≥ 0 per column.
 Recurrence find_recurrence(const SectionSeries& series, const std::vector<double>& scale, double tolerance,
                            int longest = longest_period);
 
