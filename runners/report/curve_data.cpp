@@ -10,19 +10,23 @@
 namespace ricochet::report {
 
 std::string base64_doubles(std::span<const double> values) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<unsigned char> bytes;
-  bytes.reserve(values.size() * 8 + 2);
+  bytes.reserve(values.size() * 8);
   for (const double value : values) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     for (int k = 0; k < 8; ++k) bytes.push_back(static_cast<unsigned char>(bits >> (8 * k)));
   }
+  return base64_bytes(bytes);
+}
+
+std::string base64_bytes(std::span<const unsigned char> bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const size_t length = bytes.size();
-  bytes.resize(length + 2, 0);
+  const auto at = [&](size_t i) { return i < length ? unsigned{bytes[i]} : 0u; };
   std::string out;
   out.reserve((length + 2) / 3 * 4);
   for (size_t i = 0; i < length; i += 3) {
-    const unsigned triple = (unsigned{bytes[i]} << 16) | (unsigned{bytes[i + 1]} << 8) | bytes[i + 2];
+    const unsigned triple = (at(i) << 16) | (at(i + 1) << 8) | at(i + 2);
     out += digits[triple >> 18];
     out += digits[(triple >> 12) & 63];
     out += i + 1 < length ? digits[(triple >> 6) & 63] : '=';
@@ -84,6 +88,20 @@ std::optional<nlohmann::ordered_json> CurveData::series(const CaseRecord& record
     }
   }
   return nlohmann::ordered_json{{"x", x_key}, {"y", y_key}};
+}
+
+void CurveData::put(const std::string& key, const std::string& type, std::span<const unsigned char> bytes) {
+  blocks_[key + ":" + type] = base64_bytes(bytes);
+}
+
+void CurveData::put_floats(const std::string& key, std::span<const double> values) {
+  std::vector<unsigned char> bytes;
+  bytes.reserve(values.size() * 4);
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    for (int k = 0; k < 4; ++k) bytes.push_back(static_cast<unsigned char>(bits >> (8 * k)));
+  }
+  put(key, "f32", bytes);
 }
 
 std::string CurveData::thinning() const {

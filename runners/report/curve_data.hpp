@@ -13,6 +13,8 @@ namespace ricochet::report {
 
 /// Little-endian doubles as base64 (RFC 4648): exact, and shorter than decimal text.
 std::string base64_doubles(std::span<const double> values);
+/// Bytes as base64.
+std::string base64_bytes(std::span<const unsigned char> bytes);
 
 /// At most `limit` of n samples, chosen so that no peak is lost: the interval is cut into limit/2 equal counts of
 /// samples, and of each the smallest and the largest are kept, in their order. First and last sample are kept. Returns
@@ -31,6 +33,10 @@ class CurveData {
   /// A reference {"x": key, "y": key} that the page's script replaces by points; nothing when the record has no such
   /// column.
   std::optional<nlohmann::ordered_json> series(const CaseRecord& record, const std::string& x, const std::string& y);
+  /// Adds a block of little-endian numbers of `type` (f32, u8, u16, u32); the page's script finds it as "key:type".
+  void put(const std::string& key, const std::string& type, std::span<const unsigned char> bytes);
+  /// Numbers in single precision.
+  void put_floats(const std::string& key, std::span<const double> values);
   /// Key → base64.
   const nlohmann::ordered_json& blocks() const { return blocks_; }
   /// Sentence on what was thinned out for display, "" when nothing was.

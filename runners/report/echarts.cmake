@@ -6,7 +6,7 @@ set(RICOCHET_REPORT_DIR ${CMAKE_CURRENT_LIST_DIR})
 set(RICOCHET_ECHARTS ${RICOCHET_REPORT_DIR}/node_modules/echarts/dist/echarts.min.js)
 set(RICOCHET_WITH_ECHARTS 0)
 set(RICOCHET_ECHARTS_VERSION "")
-set(embedded ${RICOCHET_REPORT_DIR}/page.css ${RICOCHET_REPORT_DIR}/page.js)
+set(embedded ${RICOCHET_REPORT_DIR}/page.css ${RICOCHET_REPORT_DIR}/page.js ${RICOCHET_REPORT_DIR}/dynamics.js)
 
 # A glob, so that a build notices when the library comes or goes.
 file(GLOB found CONFIGURE_DEPENDS ${RICOCHET_ECHARTS})

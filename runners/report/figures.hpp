@@ -21,11 +21,14 @@ struct Chart {
   std::string title;
   std::vector<ChartView> views;    ///< as many as the figure has names for; empty: nothing to draw, only notes
   std::vector<std::string> notes;  ///< said below whatever the view: refused, diverged and failed cases
+  int height = 0;                  ///< pixels; 0: as the page's style says
+  int only_view = -1;              ///< the one view of the figure that shows this chart, which then has one view itself
 };
 
 /// An entry of a figure's legend; `dash` in the SVG sense, `symbol` an ECharts symbol or "".
 struct LegendEntry {
   std::string name, colour, dash, symbol;
+  std::string heading = {};  ///< entries of one heading stand in one line
 };
 
 /// Small multiples that share one legend, one set of views, and (over time) one zoom.
@@ -35,6 +38,7 @@ struct Figure {
   std::vector<Chart> charts;
   std::vector<LegendEntry> legend;
   bool over_time = false;  ///< linked zoom along x
+  bool linked = false;     ///< the same where nothing is left out of the data, so that areas keep their edges
 };
 
 /// The figures of a study, by its kind; a kind without figures of its own has none.

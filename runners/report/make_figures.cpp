@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "runners/report/dynamics_report.hpp"
 #include "runners/report/evidence.hpp"
 #include "runners/report/figures.hpp"
 #include "runners/report/stability_report.hpp"
@@ -27,6 +28,7 @@ std::vector<Figure> make_figures(const CaseView& view, CurveData& curves) {
   const std::string& kind = view.results().kind;
   std::vector<Figure> out;
   if (kind == "trajectory") append(out, trajectory_figures(view, curves));
+  append(out, diagram_figures(view, curves));
   append(out, stability_figures(view));
   append(out, work_precision_figures(view));
   append(out, error_figures(view));

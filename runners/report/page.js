@@ -27,6 +27,18 @@
   // ---- data ---------------------------------------------------------------------------------------------------------
   const decoded = new Map();
   let blocks = null;
+  const types = { f32: Float32Array, u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
+  // Numbers of a named type; null where the page has no such block. The bytes are little-endian, as every browser's machine is.
+  function block(name) {
+    if (!decoded.has(name)) {
+      const type = Object.keys(types).find((t) => blocks[name + ":" + t] !== undefined);
+      if (!type) return null;
+      const binary = atob(blocks[name + ":" + type]), bytes = new Uint8Array(binary.length);
+      for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+      decoded.set(name, new types[type](bytes.buffer));
+    }
+    return decoded.get(name);
+  }
   function column(key) {
     if (!decoded.has(key)) {
       const binary = atob(blocks[key]), bytes = new Uint8Array(binary.length);
@@ -67,9 +79,12 @@
     if (value === "@number") return (v) => number(v);
     if (value === "@power") return power;
     if (value === "@tooltip") return tooltip(view);
+    if (value === "@orbit-tooltip") return ricochetDynamics.tooltip(view);
+    if (value === "@cell") return ricochetDynamics.drawCell;
     if (Array.isArray(value)) return value.map((v) => revive(view, v));
     if (value && typeof value === "object") {
       if (typeof value.x === "string" && typeof value.y === "string") return points(value);
+      if (typeof value.sweep === "string") return value;
       return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, revive(view, v)]));
     }
     return value;
@@ -87,33 +102,59 @@
       all("[data-export]", section).forEach((b) => b.addEventListener("click", () => this.save(b)));
       all("[data-facets]", section).forEach((b) => b.addEventListener("input", () => this.filter(b.value)));
     }
+    viewOf(slot) {
+      const views = this.description.charts[slot.index].views;
+      return views[Math.min(this.view, views.length - 1)];
+    }
+    visible(slot) {
+      const only = this.description.charts[slot.index].only;
+      return only === undefined || only === this.view;
+    }
+    selected(series) {
+      const names = {};
+      for (const one of series) {
+        const off = this.hidden.has(one.name) || (one.tags || []).some((tag) => this.hidden.has(tag));
+        names[one.name] = !off && names[one.name] !== false;
+      }
+      return names;
+    }
     option(slot) {
-      const view = this.description.charts[slot.index].views[this.view];
+      const view = this.viewOf(slot);
       const option = revive(view, view.option);
       if (!option.series) return null;
+      ricochetDynamics.dress(view, option);
       if (this.own) for (const axis of [].concat(option.yAxis).slice(0, 1)) { delete axis.min; delete axis.max; }
-      option.legend.selected = Object.fromEntries(Array.from(this.hidden, (name) => [name, false]));
+      option.legend.selected = this.selected(option.series);
       // The brush that a drag starts belongs to the toolbox; its icons stay out of sight.
       option.toolbox = { itemSize: 0, showTitle: false, feature: { dataZoom: { yAxisIndex: false, filterMode: this.description.overTime ? "filter" : "none", icon: { zoom: "path://", back: "path://" } } } };
       return option;
     }
     draw(slot) {
+      if (!this.visible(slot)) return;
       const option = this.option(slot);
       if (!option) { if (slot.chart) slot.chart.clear(); return; }
       if (!slot.chart) {
         slot.chart = echarts.init(slot.element, null, { renderer: "canvas" });
         slot.chart.on("datazoom", (event) => this.follow(slot, event));
         slot.chart.getZr().on("dblclick", () => this.reset());
+        slot.chart.getZr().on("click", (event) => this.pick(slot, [event.offsetX, event.offsetY]));
       }
+      slot.drawn = option;
       slot.chart.setOption(option, true);
       slot.chart.dispatchAction({ type: "takeGlobalCursor", key: "dataZoomSelect", dataZoomSelectActive: true });
       if (this.zoom) this.applying(() => slot.chart.dispatchAction(this.zoom));
     }
-    redraw() { this.slots.forEach((slot) => slot.chart && this.draw(slot)); }
+    redraw() { this.slots.forEach((slot) => { if (slot.chart && this.visible(slot)) { slot.chart.resize(); this.draw(slot); } }); }
     drawAll() { this.slots.forEach((slot) => slot.chart || this.draw(slot)); }
+    pick(slot, at) {
+      const view = this.viewOf(slot);
+      if (!view.sources || !view.sources.some(Boolean)) return;
+      const found = ricochetDynamics.pick(slot.chart, view, slot.drawn, this.hidden, at);
+      if (found) ricochetDynamics.open(found.id, found.orbit);
+    }
     applying(action) { this.busy = true; try { action(); } finally { this.busy = false; } }
     follow(from, event) {
-      if (this.busy || !this.description.overTime) return;
+      if (this.busy || !this.description.linked) return;
       const window = from.chart.getOption().dataZoom[0];
       const batch = event.batch ? event.batch[0] : event;
       const start = batch.startValue === undefined ? window.startValue : batch.startValue;
@@ -130,21 +171,28 @@
       this.zoom = null;
       this.applying(() => this.slots.forEach((slot) => {
         if (!slot.chart) return;
-        const batch = slot.chart.getOption().dataZoom.map((zoom) => ({ dataZoomId: zoom.id, start: 0, end: 100 }));
+        const batch = (slot.chart.getOption().dataZoom || []).map((zoom) => ({ dataZoomId: zoom.id, start: 0, end: 100 }));
         slot.chart.dispatchAction({ type: "dataZoom", batch });
       }));
     }
     show(view) {
       this.view = view;
       all("[data-view]", this.section).forEach((b) => b.setAttribute("aria-pressed", String(Number(b.dataset.view) === view)));
-      all("[data-notes]", this.section).forEach((n) => { n.hidden = Number(n.dataset.notes) !== view; });
+      all("[data-notes]", this.section).forEach((n) => { n.hidden = n.dataset.notes !== "" && Number(n.dataset.notes) !== view; });
+      all("[data-only]", this.section).forEach((f) => { f.hidden = Number(f.dataset.only) !== view; });
       this.redraw();
     }
     toggle(button) {
       const name = button.dataset.name, shown = this.hidden.has(name);
       shown ? this.hidden.delete(name) : this.hidden.add(name);
       button.setAttribute("aria-pressed", String(shown));
-      this.slots.forEach((slot) => slot.chart && slot.chart.dispatchAction({ type: shown ? "legendSelect" : "legendUnSelect", name }));
+      this.slots.forEach((slot) => {
+        if (!slot.chart || !slot.drawn) return;
+        const before = slot.drawn.legend.selected, now = this.selected(slot.drawn.series);
+        for (const one of Object.keys(now))
+          if (now[one] !== before[one]) slot.chart.dispatchAction({ type: now[one] ? "legendSelect" : "legendUnSelect", name: one });
+        slot.drawn.legend.selected = now;
+      });
     }
     filter(text) {
       const words = text.toLowerCase().split(/\s+/).filter(Boolean);
@@ -158,12 +206,23 @@
       option.title = { text: heading, left: 12, top: 8, textStyle: { fontSize: 14, fontWeight: "normal", color: "#222" } };
       Object.assign(option.legend, { show: true, type: "plain", left: 12, top: 32, itemWidth: 34, textStyle: { fontSize: 11 } });
       option.series.forEach((s) => { if (s.showSymbol === false) s.symbol = "none"; });   // the legend shows symbols even where the curve has none
-      const names = Array.from(new Set(option.series.map((s) => s.name))).filter((name) => name !== "stops");
+      let names = Array.from(new Set(option.series.map((s) => s.name))).filter((name) => name !== "stops");
+      const tagged = new Set(option.series.flatMap((s) => s.tags || []));
+      if (tagged.size) {   // one entry per meaning instead of one per series
+        const entries = this.entries().filter((entry) => tagged.has(entry.name) && !this.hidden.has(entry.name));
+        names = entries.map((entry) => entry.name);
+        for (const entry of entries) option.series.push({ type: "scatter", name: entry.name, symbol: entry.symbol, symbolRotate: entry.rotate, color: entry.colour, itemStyle: { color: entry.colour }, data: [] });
+        option.legend.itemWidth = 12;
+      }
       option.legend.data = names;
-      option.grid.top = 58 + 20 * Math.ceil(names.reduce((sum, name) => sum + 60 + 6.2 * name.length, 0) / 860);
+      const legend = 58 + 20 * Math.ceil(names.reduce((sum, name) => sum + 60 + 6.2 * name.length, 0) / 860);
+      const size = { width: 900, height: 480 };
+      if (Array.isArray(option.grid)) {
+        size.height = Math.max(...option.grid.map((g) => g.top + g.height)) + legend + 48;
+        option.grid.forEach((g) => { g.top += legend; });
+      } else option.grid.top = legend;
       delete option.toolbox;
       if (this.zoom) Object.assign(option.dataZoom[0], { startValue: this.zoom.startValue, endValue: this.zoom.endValue });
-      const size = { width: 900, height: 480 };
       if (format === "svg") {
         const chart = echarts.init(null, null, Object.assign({ renderer: "svg", ssr: true }, size));
         chart.setOption(option);
@@ -178,6 +237,9 @@
       chart.dispose();
       const binary = atob(url.slice(url.indexOf(",") + 1));
       return new Blob([Uint8Array.from(binary, (c) => c.charCodeAt(0))], { type: "image/png" });
+    }
+    entries() {
+      return all(".legend button", this.section).map((b) => ({ name: b.dataset.name, colour: b.dataset.colour, rotate: b.dataset.symbol === "triangle-down" ? 180 : 0, symbol: { "triangle-down": "triangle", cross: "path://M0,0L10,10M10,0L0,10", "": "rect" }[b.dataset.symbol] || b.dataset.symbol }));
     }
     save(button) {
       const element = button.closest("figure").querySelector(".chart"), slot = this.slots.find((s) => s.element === element);
@@ -196,6 +258,7 @@
     const described = read("figure-data");
     if (!described) return;
     blocks = read("curve-data");
+    ricochetDynamics.start({ read, block, number, escapeText });
     const later = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         if (!entry.isIntersecting) continue;
@@ -270,29 +333,44 @@
       if (data[i + 3] > 0 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count;
     return count;
   }
+  // A click on a drawn point opens that very orbit.
+  function checkPanel(figure, slot, view, index) {
+    const source = view.sources[index], middle = source.orbits.length >> 1;
+    const at = slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [source.values[2 * middle], source.values[2 * middle + 1]]);
+    figure.pick(slot, at);
+    const panel = ricochetDynamics.panel(), shown = ricochetDynamics.shown();
+    const out = { opened: Boolean(panel), orbit: shown && shown.id === source.reference.case && ricochetDynamics.cases()[shown.id].columns.parameter[shown.orbit] === source.values[2 * middle],
+      canvases: panel ? all("canvas", panel).length : 0, command: panel ? panel.querySelector("pre").textContent : "", facts: panel ? all("dt", panel).length : 0 };
+    if (location.hash !== "#selfcheck-panel") ricochetDynamics.close();
+    out.closed = !ricochetDynamics.panel();
+    return out;
+  }
   function selfcheck() {
     const result = { figures: [], table: null, errors };
     for (const figure of figures) {
       figure.drawAll();
       const views = Math.max(1, all("[data-view]", figure.section).length), drawn = [];
       for (let view = 0; view < views; ++view) {
-        if (view > 0) figure.show(view);
-        drawn.push(figure.slots.map((slot) => { if (slot.chart) slot.chart.getZr().flush(); return coloured(slot); }));
+        if (view > 0) { figure.show(view); figure.drawAll(); }
+        drawn.push(figure.slots.filter((slot) => figure.visible(slot)).map((slot) => { if (slot.chart) slot.chart.getZr().flush(); return coloured(slot); }));
       }
       if (views > 1) figure.show(0);
-      const report = { id: figure.description.id, drawn };
-      const first = figure.slots[0], last = figure.slots[figure.slots.length - 1];
+      const report = { id: figure.description.id, charts: figure.slots.length, drawn };
+      const seen = figure.slots.filter((slot) => figure.visible(slot)), first = seen[0], last = seen[seen.length - 1];
       const legend = figure.section.querySelector(".legend button");
       if (legend) {
         legend.click();
-        report.hidden = figure.slots.every((s) => !s.chart || s.chart.getOption().legend[0].selected[legend.dataset.name] === false);
+        const name = legend.dataset.name, named = (one) => one.name === name || (one.tags || []).includes(name);
+        report.hidden = figure.slots.every((s) => !s.chart || s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
         legend.click();
       }
-      if (figure.description.overTime && first && last) {
-        const range = first.chart.getOption().xAxis[0], high = range.max;
-        first.chart.dispatchAction({ type: "dataZoom", dataZoomId: "along-x", startValue: 0.25 * high, endValue: 0.5 * high });
-        const zoom = last.chart.getOption().dataZoom[0];
-        report.linked = Math.abs(zoom.startValue - 0.25 * high) < 1e-6 * high && Math.abs(zoom.endValue - 0.5 * high) < 1e-6 * high;
+      if (figure.description.linked && first && last) {
+        const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low;
+        const from = low + 0.25 * wide, to = low + 0.5 * wide;
+        first.chart.dispatchAction({ type: "dataZoom", dataZoomId: "along-x", startValue: from, endValue: to });
+        const zoom = last.chart.getOption().dataZoom[0], axes = last.chart.getOption().xAxis;
+        report.linked = Math.abs(zoom.startValue - from) < 1e-6 * wide && Math.abs(zoom.endValue - to) < 1e-6 * wide;
+        report.aligned = axes.every((axis, k) => Math.abs(last.chart.convertToPixel({ xAxisIndex: k }, from) - last.chart.convertToPixel({ xAxisIndex: 0 }, from)) < 0.5);
         figure.reset();
         report.reset = last.chart.getOption().dataZoom[0].start === 0 && last.chart.getOption().dataZoom[0].end === 100;
       }
@@ -301,9 +379,11 @@
         report.png = figure.picture(first, "png").size;
         const option = figure.option(first);
         const sample = option.series.find((s) => s.data.length);
-        const value = sample && (Array.isArray(sample.data[0]) ? sample.data[0] : sample.data[0].value);
+        const value = sample && (Array.isArray(sample.data[0]) ? sample.data[0] : sample.data[0].value || [sample.data[0], sample.data[1]]);
         report.tooltip = sample ? option.tooltip.formatter([{ value, seriesName: sample.name, marker: "", data: {} }]) : "";
       }
+      const view = first && figure.viewOf(first), points = view && view.sources && view.sources.findIndex((s) => s && s.values && s.reference.sweep === "points" && s.values.length);
+      if (points !== undefined && points !== null && points >= 0) report.panel = checkPanel(figure, first, view, points);
       result.figures.push(report);
     }
     const table = document.getElementById("cases");
@@ -330,7 +410,7 @@
   document.addEventListener("DOMContentLoaded", () => {
     startTable();
     startFigures();
-    if (location.hash === "#selfcheck") {
+    if (location.hash.startsWith("#selfcheck")) {
       try { selfcheck(); } catch (e) { errors.push(String(e && e.stack || e)); document.documentElement.setAttribute("data-selfcheck", JSON.stringify({ errors })); }
     }
   });

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runners/report/answer.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
@@ -9,6 +11,7 @@
 #include "runners/report/evidence.hpp"
 #include "runners/report/figures.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/orbit_data.hpp"
 #include "runners/report/page.hpp"
 #include "runners/report/tables.hpp"
 
@@ -47,8 +50,13 @@ std::string list_html(const char* classes, const std::vector<std::string>& items
 
 std::string legend_html(const Figure& figure) {
   if (figure.legend.size() < 2) return "";
-  std::string out = "<div class=\"legend\" role=\"group\" aria-label=\"Show or hide curves\">";
+  std::string out = "<div class=\"legend\" role=\"group\" aria-label=\"Show or hide curves\">", heading;
   for (const LegendEntry& entry : figure.legend) {
+    if (entry.heading != heading) {
+      out += fmt::format("{}<span class=\"heading\">{}</span>", heading.empty() ? "" : "<span class=\"line\"></span>",
+                         escape(entry.heading));
+      heading = entry.heading;
+    }
     const std::string line =
         fmt::format("<line x1=\"0\" y1=\"6\" x2=\"30\" y2=\"6\" stroke=\"{}\" stroke-width=\"2.2\"{}/>", entry.colour,
                     entry.dash.empty() ? "" : " stroke-dasharray=\"" + entry.dash + "\"");
@@ -56,17 +64,21 @@ std::string legend_html(const Figure& figure) {
     if (entry.symbol == "circle") mark = "<circle cx=\"15\" cy=\"6\" r=\"4\"";
     if (entry.symbol == "rect" || entry.symbol == "roundRect") mark = "<rect x=\"11\" y=\"2\" width=\"8\" height=\"8\"";
     if (entry.symbol == "triangle" || entry.symbol == "arrow") mark = "<path d=\"M15 1 L20 10 L10 10 Z\"";
+    if (entry.symbol == "triangle-down") mark = "<path d=\"M10 2 L20 2 L15 11 Z\"";
+    if (entry.symbol == "cross") mark = "<path stroke=\"#222\" d=\"M11 2 L19 10 M19 2 L11 10\"";
     if (entry.symbol == "diamond") mark = "<path d=\"M15 1 L20 6 L15 11 L10 6 Z\"";
     if (!mark.empty()) mark += fmt::format(" fill=\"{}\"/>", entry.colour);
     out += fmt::format(
-        "<button type=\"button\" aria-pressed=\"true\" data-name=\"{0}\"><svg width=\"30\" height=\"12\" "
+        "<button type=\"button\" aria-pressed=\"true\" data-name=\"{0}\" data-colour=\"{3}\" data-symbol=\"{4}\"><svg "
+        "width=\"30\" height=\"12\" "
         "aria-hidden=\"true\">{1}{2}</svg>{0}</button>",
-        escape(entry.name), line, mark);
+        escape(entry.name), line, mark, entry.colour, entry.symbol);
   }
   return out + "</div>\n";
 }
 
 std::string grid_classes(const Figure& figure) {
+  if (figure.linked) return figure.charts.size() == 1 ? "grid single" : "grid stacked";
   if (figure.charts.size() == 1) return "grid single";
   std::string out = figure.charts.size() > 12 ? "grid many" : figure.charts.size() == 2 ? "grid pair" : "grid";
   for (const Chart& chart : figure.charts)
@@ -95,7 +107,12 @@ std::string figure_html(const Figure& figure) {
   out += "</div>\n" + legend_html(figure) + fmt::format("<div class=\"{}\">\n", grid_classes(figure));
   for (size_t c = 0; c < figure.charts.size(); ++c) {
     const Chart& chart = figure.charts[c];
-    out += fmt::format("<figure data-title=\"{0}\"><figcaption><span>{0}</span>", escape(chart.title));
+    const auto alone = [&](const Chart& other) { return &other == &chart || other.only_view != chart.only_view; };
+    const bool wide = chart.only_view >= 0 && std::all_of(figure.charts.begin(), figure.charts.end(), alone);
+    std::string shown = chart.only_view >= 0 ? fmt::format(" data-only=\"{}\"", chart.only_view) : "";
+    if (chart.only_view > 0) shown += " hidden";
+    if (wide) shown += " class=\"wide\"";
+    out += fmt::format("<figure data-title=\"{0}\"{1}><figcaption><span>{0}</span>", escape(chart.title), shown);
     if (!chart.views.empty())
       out +=
           "<span class=\"export\"><button type=\"button\" data-export=\"svg\">SVG</button><button type=\"button\" "
@@ -104,12 +121,13 @@ std::string figure_html(const Figure& figure) {
     if (chart.views.empty())
       out += "<p class=\"nothing\">No curve: no case of this chart has one.</p>";
     else
-      out += fmt::format("<div class=\"chart\" data-chart=\"{}\" role=\"img\" aria-label=\"{}: {}\"></div>", c,
+      out += fmt::format("<div class=\"chart\" data-chart=\"{}\"{} role=\"img\" aria-label=\"{}: {}\"></div>", c,
+                         chart.height > 0 ? fmt::format(" style=\"height:{}px\"", chart.height) : "",
                          escape(figure.title), escape(chart.title));
     for (size_t v = 0; v < chart.views.size(); ++v)
       if (!chart.views[v].notes.empty())
-        out += fmt::format("<div data-notes=\"{}\"{}>{}</div>", v, v == 0 ? "" : " hidden",
-                           list_html("notes", chart.views[v].notes));
+        out += fmt::format("<div data-notes=\"{}\"{}>{}</div>", chart.only_view >= 0 ? "" : std::to_string(v),
+                           v == 0 ? "" : " hidden", list_html("notes", chart.views[v].notes));
     out += list_html("notes", chart.notes) + "</figure>\n";
   }
   return out + "</div>\n</section>\n";
@@ -121,9 +139,15 @@ Json figure_json(const Figure& figure) {
     Json views = Json::array();
     for (const ChartView& view : chart.views)
       views.push_back({{"option", view.option}, {"x", {view.x.name, view.x.unit}}, {"y", {view.y.name, view.y.unit}}});
-    charts.push_back({{"title", chart.title}, {"views", std::move(views)}});
+    Json one = {{"title", chart.title}, {"views", std::move(views)}};
+    if (chart.only_view >= 0) one["only"] = chart.only_view;
+    charts.push_back(std::move(one));
   }
-  return {{"id", figure.id}, {"title", figure.title}, {"overTime", figure.over_time}, {"charts", std::move(charts)}};
+  return {{"id", figure.id},
+          {"title", figure.title},
+          {"overTime", figure.over_time},
+          {"linked", figure.over_time || figure.linked},
+          {"charts", std::move(charts)}};
 }
 
 std::string script(const std::string& attributes, const std::string& content) {
@@ -169,7 +193,8 @@ std::string render_page(const StudyResults& results, std::string_view library, s
         "zoom out; charts over time "
         "zoom together. Shift + wheel zooms along the horizontal axis, Alt + wheel along the vertical one. A legend "
         "entry hides or shows its "
-        "curve in every chart of the figure. Colour: mass matrix, the same everywhere, where the study has several.</p>\n";
+        "curve in every chart of the figure. Colour: mass matrix, the same everywhere, where the study has "
+        "several.</p>\n";
     if (const std::string thinning = curves.thinning(); !thinning.empty())
       out += "<p class=\"fine\">" + escape(thinning) + "</p>\n";
     out += "<noscript><p class=\"banner\">Charts need JavaScript; the tables do not.</p></noscript>\n</section>\n";
@@ -188,12 +213,14 @@ std::string render_page(const StudyResults& results, std::string_view library, s
   out += "</p></footer>\n";
 
   // The page's own script first: it listens for errors of everything that follows.
-  out += script("", script_text(page_script()));
+  out += script("", script_text(dynamics_script()) + script_text(page_script()));
   if (!figures.empty()) {
     Json described = Json::array();
     for (const Figure& figure : figures) described.push_back(figure_json(figure));
     out += script(" type=\"application/json\" id=\"figure-data\"", script_json(described));
     out += script(" type=\"application/json\" id=\"curve-data\"", script_json(curves.blocks()));
+    if (results.kind == "bifurcation")
+      out += script(" type=\"application/json\" id=\"dynamics-data\"", script_json(orbit_data(view)));
     out += script("", script_text(library));
   }
   return out + "</body>\n</html>\n";

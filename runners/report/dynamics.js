@@ -1,0 +1,273 @@
+// Diagrams of many orbits: builds their series out of the page's blocks, finds the orbit under a click, and shows it beside the page.
+const ricochetDynamics = (function () {
+  "use strict";
+  let page = null, data = null;
+  const made = new Map();
+
+  function start(tools) { page = tools; data = tools.read("dynamics-data"); }
+  const orbitsOf = (id) => data.cases[id];
+  const cell = (one, name, o) => { const column = one.columns[name]; return column ? column[o] : null; };
+  const unitText = (quantity) => (quantity[1] === "" || quantity[1] === "1" ? "" : " " + quantity[1]);
+  const block = (id, name) => page.block(id + "/" + name);
+
+  // ---- series -------------------------------------------------------------------------------------------------------
+  function chosen(reference, one) {
+    const list = [];
+    for (let o = 0; o < one.group.length; ++o)
+      if ((reference.group === undefined || one.group[o] === reference.group) && (reference.kind === undefined || one.kind[o] === reference.kind)) list.push(o);
+    return list;
+  }
+  const finite = (value) => typeof value === "number" && Number.isFinite(value);
+  const makers = {
+    points(reference, one) {
+      const wanted = new Uint8Array(one.group.length), parameter = one.columns.parameter;
+      chosen(reference, one).forEach((o) => { wanted[o] = 1; });
+      const orbit = block(reference.case, "points/orbit"), u = block(reference.case, "points/u");
+      if (!orbit) return { values: new Float64Array(0), orbits: [] };
+      let n = 0;
+      for (let i = 0; i < orbit.length; ++i) n += wanted[orbit[i]];
+      const values = new Float64Array(2 * n), orbits = new Uint32Array(n);
+      for (let i = 0, k = 0; i < orbit.length; ++i) {
+        if (!wanted[orbit[i]]) continue;
+        values[2 * k] = parameter[orbit[i]];
+        values[2 * k + 1] = u[i];
+        orbits[k++] = orbit[i];
+      }
+      return { values, orbits };
+    },
+    column(reference, one, name) {
+      const list = chosen(reference, one).filter((o) => finite(cell(one, name, o)));
+      const values = new Float64Array(2 * list.length);
+      list.forEach((o, k) => { values[2 * k] = one.columns.parameter[o]; values[2 * k + 1] = one.columns[name][o]; });
+      return { values, orbits: list };
+    },
+    exponents(reference, one) { return makers.column(reference, one, "exponent_" + reference.index); },
+    twins(reference, one) { return makers.column(reference, one, "exponent_twin"); },
+    whiskers(reference, one) {
+      const name = "exponent_" + reference.index, rows = [];
+      for (const o of chosen(reference, one)) {
+        const low = cell(one, name + "_low", o), high = cell(one, name + "_high", o), x = one.columns.parameter[o];
+        if (finite(low) && finite(high)) rows.push([x, low], [x, high], [x, "-"]);
+      }
+      return { rows };
+    },
+    marks(reference, one) {
+      const rows = [], orbits = [];
+      for (const o of chosen(reference, one)) {
+        const status = cell(one, "status", o);
+        if (!status || status === "done") continue;
+        const mark = { refused: "⊘", diverged: "✕", failed: "!" }[status] || "?";
+        rows.push({ value: [one.columns.parameter[o], 0.03], mark, label: { formatter: mark }, text: status + ": " + (cell(one, "reason", o) || "no reason given") });
+        orbits.push(o);
+      }
+      return { rows, orbits };
+    },
+  };
+  function cells(reference) {
+    const rows = [], orbits = [], ids = [];
+    reference.lanes.forEach(([id, name], lane) => {
+      const one = orbitsOf(id), starts = one.columns.start;
+      for (let o = 0; o < starts.length; ++o)
+        if (starts[o] === name && one.group[o] === reference.group) { rows.push([one.from[o], one.to[o], lane]); orbits.push(o); ids.push(id); }
+    });
+    return { rows, orbits, ids };
+  }
+  function make(reference, option) {
+    if (reference.sweep === "cells") return cells(reference);
+    if (reference.sweep === "zero") return { rows: [[option.xAxis[0].min, 0], [option.xAxis[0].max, 0]] };
+    return makers[reference.sweep](reference, orbitsOf(reference.case));
+  }
+  function pairs(values) {
+    const rows = new Array(values.length / 2);
+    for (let i = 0; i < rows.length; ++i) rows[i] = [values[2 * i], values[2 * i + 1]];
+    return rows;
+  }
+  // Completes the series that refer to orbits; `view.sources` then says which orbit each item is.
+  function dress(view, option) {
+    view.sources = option.series.map((series) => {
+      if (series.symbol === "triangle-down") Object.assign(series, { symbol: "triangle", symbolRotate: 180 });
+      const reference = series.data;
+      if (!reference || typeof reference.sweep !== "string") return null;
+      const key = JSON.stringify(reference);
+      if (!made.has(key)) made.set(key, make(reference, option));
+      const built = made.get(key), source = { reference, orbits: built.orbits || null, ids: built.ids || null, values: built.values || null, rows: built.rows || null };
+      if (!built.values) { series.data = built.rows; return source; }
+      const count = built.values.length / 2;
+      if (reference.sweep === "points" && count > 2500) {
+        // Squares of less than four pixels are drawn without a path each: 2·10⁵ of them take a few hundredths of a second.
+        Object.assign(series, { large: true, largeThreshold: 1, symbol: "rect", symbolSize: count > 40000 ? 1.5 : 2.2, dimensions: ["x", "y"], data: built.values });
+        delete series.symbolRotate;
+      } else {
+        if (reference.sweep === "points") series.symbolSize = count < 400 ? 6 : 4.5;
+        series.data = pairs(built.values);
+      }
+      return source;
+    });
+  }
+  function drawCell(params, api) {
+    const low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(2)]);
+    const tall = api.size([0, 1])[1], frame = params.coordSys;
+    const left = Math.max(low[0], frame.x), right = Math.min(high[0], frame.x + frame.width);
+    if (right <= left) return null;
+    // A hair of overlap, so that neighbours of one colour leave no seam.
+    return { type: "rect", shape: { x: left, y: low[1] - tall / 2 + 0.5, width: right - left + 0.4, height: Math.max(tall - 1, 1) }, style: { fill: api.visual("color") } };
+  }
+
+  // ---- words --------------------------------------------------------------------------------------------------------
+  function regime(one, o) {
+    const status = cell(one, "status", o);
+    if (status && status !== "done") return status;
+    const name = cell(one, "class", o) || "undecided", period = cell(one, "period", o);
+    return name === "periodic" && period ? "period " + period : name;
+  }
+  function interval(one, name, o) {
+    const value = cell(one, name, o), low = cell(one, name + "_low", o), high = cell(one, name + "_high", o);
+    if (!finite(value)) return "";
+    return page.number(value, 4) + (finite(low) && finite(high) ? " (" + page.number(low, 4) + " to " + page.number(high, 4) + ")" : "") + " 1/s";
+  }
+  function tooltip(view) {
+    const line = (name, value) => '<div class="tip-row">' + page.escapeText(name) + "<b>" + page.escapeText(value) + "</b></div>";
+    return (given) => {
+      const p = Array.isArray(given) ? given[0] : given;
+      if (!p || p.value === undefined || p.value === null) return "";
+      if (p.data && p.data.text) return "<div>" + page.escapeText(view.x[0]) + " = " + page.number(p.value[0], 8) + '</div><div class="tip-row">' + page.escapeText(p.seriesName) + '</div><div class="tip-text">' + page.escapeText(p.data.text) + "</div>";
+      const source = view.sources && view.sources[p.seriesIndex], o = source && source.orbits ? source.orbits[p.dataIndex] : undefined;
+      const head = (x) => "<div>" + page.escapeText(view.x[0]) + " = " + page.number(x, 9) + page.escapeText(unitText(view.x)) + "</div>";
+      if (o === undefined) return head(p.value[0]) + line(p.seriesName, page.number(p.value[1], 8));
+      const id = source.ids ? source.ids[p.dataIndex] : source.reference.case, one = orbitsOf(id);
+      let out = head(one.columns.parameter[o]);
+      if (one.label) out += '<div class="fine">' + page.escapeText(one.label) + "</div>";
+      out += line(regime(one, o), "start " + cell(one, "start", o));
+      if (source.reference.sweep === "points") out += line(view.y[0], page.number(p.value[1], 8) + unitText(view.y));
+      if (interval(one, "exponent_1", o)) out += line("exponent", interval(one, "exponent_1", o));
+      return out;
+    };
+  }
+
+  // ---- the orbit under a click --------------------------------------------------------------------------------------
+  function pick(chart, view, option, hidden, at) {
+    const grids = [].concat(option.grid), grid = grids.findIndex((g, k) => chart.containPixel({ gridIndex: k }, at));
+    if (grid < 0) return null;
+    let best = null, nearest = 14;
+    option.series.forEach((series, s) => {
+      const source = view.sources[s];
+      if (!source || !source.orbits || (series.xAxisIndex || 0) !== grid || (series.tags || []).some((tag) => hidden.has(tag))) return;
+      const axes = { xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 };
+      if (source.reference.sweep === "cells") {
+        const value = chart.convertFromPixel(axes, at), k = source.rows.findIndex((r) => r[0] <= value[0] && value[0] <= r[1] && r[2] === Math.round(value[1]));
+        if (k >= 0) best = { id: source.ids[k], orbit: source.orbits[k] };
+        return;
+      }
+      const count = source.orbits.length, x = (i) => (source.values ? source.values[2 * i] : source.rows[i].value[0]), y = (i) => (source.values ? source.values[2 * i + 1] : source.rows[i].value[1]);
+      if (!count) return;
+      // Both scales are straight in what they show: two points give them.
+      const bend = option.xAxis[grid].type === "log" ? Math.log : (v) => v, ends = [option.xAxis[grid].min, option.xAxis[grid].max];
+      const left = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, ends[0]), right = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, ends[1]);
+      const zero = chart.convertToPixel({ yAxisIndex: axes.yAxisIndex }, 0), unit = chart.convertToPixel({ yAxisIndex: axes.yAxisIndex }, 1) - zero;
+      const scale = (right - left) / (bend(ends[1]) - bend(ends[0])), base = bend(ends[0]);
+      for (let i = 0; i < count; ++i) {
+        const dx = left + (bend(x(i)) - base) * scale - at[0];
+        if (dx > nearest || dx < -nearest) continue;
+        const away = Math.hypot(dx, zero + y(i) * unit - at[1]);
+        if (away < nearest) { nearest = away; best = { id: source.reference.case, orbit: source.orbits[i] }; }
+      }
+    });
+    return best;
+  }
+
+  // ---- the side panel -----------------------------------------------------------------------------------------------
+  let panel = null, charts = [], shown = null;
+  function folder() {
+    if (location.protocol !== "file:") return "results/" + data.study;
+    return decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/";
+  }
+  const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
+  function command(id, o) {
+    const one = orbitsOf(id);
+    return "ricochet point " + quoted(folder()) + " " + quoted(id) + " --parameter " + one.columns.parameter[o] + " --start " + quoted(String(cell(one, "start", o)));
+  }
+  function slice(id, table, names, o) {
+    const orbit = block(id, table + "/orbit"), out = [];
+    if (!orbit) return out;
+    const columns = names.map((name) => block(id, table + "/" + name));
+    for (let i = 0; i < orbit.length; ++i) if (orbit[i] === o) out.push(columns.map((c) => c[i]));
+    return out;
+  }
+  function neighbour(id, o, step) {
+    const one = orbitsOf(id), start = cell(one, "start", o);
+    const list = one.group.map((g, k) => k).filter((k) => one.columns.start[k] === start).sort((a, b) => one.columns.parameter[a] - one.columns.parameter[b]);
+    return list[list.indexOf(o) + step];
+  }
+  const words = {
+    class: "class", period: "period", symmetric: "symmetric under x → −x, t → t + T/2", impacts_per_period: "impacts per period", exponent_method: "exponents by", exponent_twin: "exponent by twin trajectories (1/s)",
+    marginal: "set apart", attractor: "attractor", alpha_equivalent: "equivalent viscosity (s)", recurrence: "recurrence distance", contraction: "contraction per period", zero_one: "0–1 test", transient_periods: "periods before the section",
+    settled: "settled", chatter: "chatter", sticking: "share of time in contact", evidence: "evidence", status: "status", reason: "reason",
+  };
+  function facts(one, o) {
+    const out = [];
+    for (const name of Object.keys(one.columns)) {
+      const value = one.columns[name][o];
+      if (value === null || value === "" || name === "parameter" || name === "start" || /_(low|high)$/.test(name)) continue;
+      const exponent = /^exponent_(\d+)$/.exec(name);
+      if (exponent) out.push(["exponent " + exponent[1], interval(one, name, o)]);
+      else out.push([words[name] || name.replace(/_/g, " "), typeof value === "number" ? page.number(value, 8) : value === true ? "yes" : value === false ? "no" : String(value)]);
+    }
+    return out;
+  }
+  const element = (name, classes, text) => { const e = document.createElement(name); if (classes) e.className = classes; if (text !== undefined) e.textContent = text; return e; };
+  function button(text, label, action) { const b = element("button", "", text); b.type = "button"; b.setAttribute("aria-label", label); b.addEventListener("click", action); return b; }
+  function plot(x, y, series, equal) {
+    const axis = (quantity, vertical) => ({ type: "value", scale: true, name: quantity, nameLocation: "middle", nameGap: vertical ? 48 : 24, splitNumber: 4, axisLine: { show: true, onZero: false, lineStyle: { color: "#9a9a9a" } },
+      axisLabel: { fontSize: 10, color: "#333", hideOverlap: true, formatter: (v) => page.number(v) }, nameTextStyle: { fontSize: 11, color: "#333" }, splitLine: { lineStyle: { color: "#ececec" } } });
+    const box = element("div", equal ? "portrait" : "in-time");
+    panel.appendChild(box);
+    const chart = echarts.init(box, null, { renderer: "canvas" });
+    chart.setOption({ animation: false, backgroundColor: "#fff", grid: { left: 62, right: 14, top: 10, bottom: 38 }, tooltip: { trigger: "item", confine: true, formatter: (p) => page.escapeText(x) + " = " + page.number(p.value[0], 7) + "<br>" + page.escapeText(y) + " = " + page.number(p.value[1], 7) },
+      dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true), series });
+    charts.push(chart);
+  }
+  function open(id, o) {
+    close();
+    const one = orbitsOf(id), colour = data.groups[one.group[o]][1];
+    shown = { id, orbit: o };
+    panel = element("aside", "orbit");
+    panel.setAttribute("aria-label", "The chosen orbit");
+    panel.tabIndex = -1;
+    const head = element("div", "orbit-head"), title = element("h3", "", data.parameter[0] + " = " + one.columns.parameter[o] + unitText(data.parameter));
+    const swatch = element("span", "swatch");
+    swatch.style.background = colour;
+    title.prepend(swatch);
+    head.appendChild(title);
+    const keys = element("span", "orbit-keys");
+    for (const [text, label, step] of [["‹", "previous value", -1], ["›", "next value", 1]]) {
+      const next = neighbour(id, o, step), b = button(text, label, () => { open(id, next); panel.focus(); });
+      b.disabled = next === undefined;
+      keys.appendChild(b);
+    }
+    keys.appendChild(button("×", "close", close));
+    head.appendChild(keys);
+    panel.appendChild(head);
+    panel.appendChild(element("p", "fine", (one.label ? one.label + " · " : "") + "start " + cell(one, "start", o) + " · " + regime(one, o) + (one.partial ? " · partial: this case is still being worked on" : "")));
+    document.body.appendChild(panel);
+    const motion = slice(id, "portrait", ["u", "v", "t"], o), section = slice(id, "points", ["u", "v"], o);
+    const line = { type: "line", symbol: "none", color: colour, lineStyle: { color: colour, width: 1.3 } }, dots = { type: "scatter", symbolSize: 5, z: 3, color: "#111", itemStyle: { color: "#111" }, data: section };
+    if (motion.length || section.length) plot("tip displacement (m)", "tip velocity (m/s)", (motion.length ? [Object.assign({ data: motion.map((r) => [r[0], r[1]]) }, line)] : []).concat(section.length ? [dots] : []), true);
+    if (motion.length) plot("time from the strobe (s)", "tip displacement (m)", [Object.assign({ data: motion.map((r) => [r[2], r[0]]) }, line)], false);
+    else panel.appendChild(element("p", "fine", (section.length ? "Dots: the section. " : "") + "No portrait is stored for this value and start; the command below marches it again."));
+    if (motion.length && section.length) panel.appendChild(element("p", "fine", "Dots: the section."));
+    const list = element("dl", "glossary");
+    for (const [name, value] of facts(one, o)) { list.appendChild(element("dt", "", name)); list.appendChild(element("dd", "", value)); }
+    panel.appendChild(list);
+    panel.appendChild(element("p", "fine", "The same point again:"));
+    panel.appendChild(element("pre", "", command(id, o)));
+  }
+  function close() {
+    charts.forEach((chart) => chart.dispose());
+    charts = [];
+    if (panel) panel.remove();
+    panel = shown = null;
+  }
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
+
+  return { start, dress, tooltip, drawCell, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
+})();

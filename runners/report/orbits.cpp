@@ -1,0 +1,158 @@
+#include "runners/report/orbits.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ricochet::report {
+namespace {
+
+using Cell = nlohmann::ordered_json;
+
+/// Cells of a row by column name.
+class Cells {
+ public:
+  Cells(const DerivedTable& table, const std::vector<Cell>& row) : table_(table), row_(row) {}
+
+  const Cell* at(std::string_view column) const {
+    for (size_t c = 0; c < table_.columns.size() && c < row_.size(); ++c)
+      if (table_.columns[c] == column) return &row_[c];
+    return nullptr;
+  }
+  std::string text(std::string_view column) const {
+    const Cell* cell = at(column);
+    return cell && cell->is_string() ? cell->get<std::string>() : "";
+  }
+  std::optional<double> number(std::string_view column) const {
+    const Cell* cell = at(column);
+    if (!cell || !cell->is_number()) return std::nullopt;
+    const double value = cell->get<double>();
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+ private:
+  const DerivedTable& table_;
+  const std::vector<Cell>& row_;
+};
+
+int random_number(std::string_view start) {
+  int number = 0;
+  const size_t dash = start.find('-');
+  if (dash != std::string_view::npos) std::from_chars(start.data() + dash + 1, start.data() + start.size(), number);
+  return number;
+}
+
+}  // namespace
+
+const DerivedTable* case_table(const CaseRecord& record, std::string_view name) {
+  for (const DerivedTable& table : record.tables)
+    if (table.name == name) return &table;
+  return nullptr;
+}
+
+const NumberTable* number_table(const CaseRecord& record, std::string_view name) {
+  for (const NumberTable& table : record.numbers)
+    if (table.name == name) return &table;
+  return nullptr;
+}
+
+const std::vector<double>* number_column(const NumberTable& table, std::string_view name) {
+  for (size_t c = 0; c < table.names.size() && c < table.columns.size(); ++c)
+    if (table.names[c] == name) return &table.columns[c];
+  return nullptr;
+}
+
+const std::vector<std::string>* column_words(const NumberTable& table, std::string_view name) {
+  for (const auto& [column, words] : table.words)
+    if (column == name) return &words;
+  return nullptr;
+}
+
+std::vector<Orbit> orbits_of(const CaseRecord& record) {
+  std::vector<Orbit> out;
+  const DerivedTable* table = case_table(record, "values");
+  if (!table) return out;
+  out.reserve(table->rows.size());
+  for (const auto& row : table->rows) {
+    const Cells cells(*table, row);
+    Orbit orbit;
+    orbit.parameter = cells.number("parameter").value_or(0);
+    orbit.start = cells.text("start");
+    orbit.regime = cells.text("class");
+    orbit.status = cells.text("status");
+    orbit.reason = cells.text("reason");
+    orbit.exponent_method = cells.text("exponent_method");
+    orbit.marginal = cells.text("marginal");
+    if (const auto period = cells.number("period")) orbit.period = static_cast<int>(*period);
+    orbit.alpha_equivalent = cells.number("alpha_equivalent");
+    orbit.twin = cells.number("exponent_twin");
+    for (int k = 1;; ++k) {
+      const std::string name = "exponent_" + std::to_string(k);
+      const auto value = cells.number(name);
+      if (!value) break;
+      orbit.exponents.push_back({*value, cells.number(name + "_low"), cells.number(name + "_high")});
+    }
+    out.push_back(std::move(orbit));
+  }
+  return out;
+}
+
+std::string regime_text(const Orbit& orbit) {
+  if (!orbit.done()) return orbit.status;
+  return orbit.regime == "periodic" && orbit.period ? "periodic " + std::to_string(*orbit.period) : orbit.regime;
+}
+
+size_t regime_group(std::string_view regime, std::optional<int> period) {
+  if (regime == "no contact") return 0;
+  if (regime.starts_with("periodic")) {
+    if (!period && regime.size() > 9) {
+      int said = 0;
+      std::from_chars(regime.data() + 9, regime.data() + regime.size(), said);
+      if (said > 0) period = said;
+    }
+    if (!period || *period < 1) return undecided_group;
+    return *period <= 4 ? static_cast<size_t>(*period) : *period <= 8 ? 5 : 6;
+  }
+  if (regime == "quasi-periodic") return 7;
+  if (regime == "chaotic") return 8;
+  return regime == "failed" || regime == "refused" || regime == "diverged" ? failed_group : undecided_group;
+}
+
+size_t regime_group(const Orbit& orbit) {
+  return orbit.done() ? regime_group(orbit.regime, orbit.period) : failed_group;
+}
+
+size_t start_kind(std::string_view start) {
+  if (start == "rest") return 0;
+  if (start == "state") return 1;
+  if (start == "up") return 2;
+  if (start == "down") return 3;
+  return 4;
+}
+
+std::vector<std::string> starts_in(const Cases& cases) {
+  std::vector<std::string> out;
+  for (const CaseRecord* record : cases)
+    for (const Orbit& orbit : orbits_of(*record))
+      if (std::find(out.begin(), out.end(), orbit.start) == out.end()) out.push_back(orbit.start);
+  std::stable_sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
+    return std::pair(start_kind(a), random_number(a)) < std::pair(start_kind(b), random_number(b));
+  });
+  return out;
+}
+
+Quantity pointer_quantity(std::string_view pointer) {
+  for (const std::string_view prefix : {"/scene/", "/methods/"})
+    if (pointer.starts_with(prefix)) pointer.remove_prefix(prefix.size());
+  std::string name(pointer);
+  std::replace(name.begin(), name.end(), '/', '.');
+  return {name, axis_unit(name)};
+}
+
+Quantity swept_parameter(const StudyResults& results) {
+  const auto found = results.study.find("parameter");
+  if (found == results.study.end() || !found->is_object()) return {"parameter", ""};
+  return pointer_quantity(found->value("pointer", "parameter"));
+}
+
+}  // namespace ricochet::report

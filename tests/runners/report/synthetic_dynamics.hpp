@@ -1,0 +1,193 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+/// \file
+/// A study of kind `bifurcation` made from formulas: the cubic map x → a x − x³, which is odd as the shaken beam is,
+/// stands for the structure, and the names of the methods for themselves.
+namespace ricochet::synthetic {
+
+struct DynamicsShape {
+  int values = 120, kept = 200;
+  std::vector<std::string> starts = {"rest", "up", "down"};
+  std::vector<std::pair<std::string, double>> methods = {{"three-level", 0.5}, {"three-level", 0.25}};
+  bool exponents = true, portraits = true, refused = true;
+};
+
+using Cell = nlohmann::ordered_json;
+
+/// One orbit of the map at a ∈ [0, 3], with its exponent.
+struct MapOrbit {
+  std::vector<double> x;
+  double exponent = 0;
+  int period = 0;  ///< 0: none found
+};
+
+inline MapOrbit map_orbit(double a, double x0, int kept) {
+  MapOrbit out;
+  double x = x0, sum = 0;
+  for (int k = 0; k < 2000; ++k) x = a * x - x * x * x;
+  for (int k = 0; k < kept; ++k) {
+    x = a * x - x * x * x;
+    sum += std::log(std::max(std::abs(a - 3 * x * x), 1e-12));
+    out.x.push_back(x);
+  }
+  out.exponent = sum / kept;
+  for (int p = 1; p <= 64 && out.period == 0; ++p) {
+    double worst = 0;
+    for (size_t k = static_cast<size_t>(p); k < out.x.size(); ++k)
+      worst = std::max(worst, std::abs(out.x[k] - out.x[k - static_cast<size_t>(p)]));
+    if (worst < 1e-6) out.period = p;
+  }
+  return out;
+}
+
+inline CaseRecord dynamics_case(const std::string& time, double beta, const DynamicsShape& shape) {
+  CaseRecord record;
+  record.id = time.substr(0, 3) + std::to_string(static_cast<int>(100 * beta));
+  record.axes = {{"mass", "full"},    {"contact", "rigid"}, {"time", time},
+                 {"time.beta", beta}, {"elements", 20},     {"steps_per_period", 2000}};
+  record.status = "done";
+  record.steps = 1200000;
+  DerivedTable values{"values",
+                      {"parameter",
+                       "start",
+                       "class",
+                       "period",
+                       "impacts_per_period",
+                       "symmetric",
+                       "exponent_1",
+                       "exponent_1_low",
+                       "exponent_1_high",
+                       "exponent_method",
+                       "exponent_twin",
+                       "marginal",
+                       "attractor",
+                       "alpha_equivalent",
+                       "recurrence",
+                       "contraction",
+                       "zero_one",
+                       "transient_periods",
+                       "settled",
+                       "chatter",
+                       "sticking",
+                       "evidence",
+                       "status",
+                       "reason"},
+                      {}};
+  DerivedTable changes{"bifurcations", {"start", "from", "to", "kind", "value", "low", "high", "steps"}, {}};
+  NumberTable points{
+      "points",
+      {"parameter", "start", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"},
+      std::vector<std::vector<double>>(7),
+      {{"start", shape.starts}}};
+  NumberTable portraits{"portraits",
+                        {"parameter", "start", "time", "tip_displacement", "tip_velocity"},
+                        std::vector<std::vector<double>>(5),
+                        {{"start", shape.starts}},
+                        false};
+  const auto push = [](NumberTable& table, std::initializer_list<double> row) {
+    size_t c = 0;
+    for (const double value : row) table.columns[c++].push_back(value);
+  };
+  for (size_t s = 0; s < shape.starts.size(); ++s) {
+    std::string previous;
+    double previous_value = 0;
+    for (int i = 0; i < shape.values; ++i) {
+      const double amplitude = 0.07 + 0.03 * i / std::max(shape.values - 1, 1);
+      const double a = 1.2 + 1.75 * (amplitude - 0.07) / 0.03 + (beta < 0.3 ? 0.06 : 0);
+      const bool refused = shape.refused && amplitude > 0.0995;
+      if (refused) {
+        values.rows.push_back(
+            {amplitude, shape.starts[s], "failed", nullptr, nullptr,   nullptr,
+             nullptr,   nullptr,         nullptr,  "",      nullptr,   "",
+             nullptr,   nullptr,         nullptr,  nullptr, nullptr,   nullptr,
+             nullptr,   nullptr,         nullptr,  "",      "refused", "the support passes the <stop> at 0.0995 m"});
+        continue;
+      }
+      const bool still = shape.starts[s] == "rest" && amplitude < 0.0791792;
+      const double start = still ? 0 : shape.starts[s] == "down" ? -0.3 : 0.3;
+      const MapOrbit orbit = map_orbit(a, start, shape.kept);
+      const std::string kind = still                   ? "no contact"
+                               : orbit.period > 0      ? "periodic"
+                               : orbit.exponent > 0.01 ? "chaotic"
+                                                       : "undecided";
+      const std::string text = kind == "periodic" ? "periodic " + std::to_string(orbit.period) : kind;
+      if (!previous.empty() && previous != text)
+        changes.rows.push_back({shape.starts[s], previous, text, previous == "no contact" ? "grazing" : "change",
+                                0.5 * (previous_value + amplitude), previous_value, amplitude, 12});
+      previous = text;
+      previous_value = amplitude;
+      const Cell exponent = shape.exponents ? Cell(orbit.exponent) : Cell(nullptr);
+      const Cell low = shape.exponents ? Cell(orbit.exponent - 0.05) : Cell(nullptr),
+                 high = shape.exponents ? Cell(orbit.exponent + 0.05) : Cell(nullptr);
+      values.rows.push_back({amplitude,
+                             shape.starts[s],
+                             kind,
+                             orbit.period > 0 ? Cell(orbit.period) : Cell(nullptr),
+                             still ? 0.0 : 2.0,
+                             kind == "periodic" ? Cell(orbit.period % 2 == 0) : Cell(nullptr),
+                             exponent,
+                             low,
+                             high,
+                             shape.exponents ? "tangent+jump" : "",
+                             shape.exponents ? Cell(orbit.exponent + 0.01) : Cell(nullptr),
+                             beta < 0.3 ? "root −1 on the kernel, of the scheme" : "",
+                             nullptr,
+                             beta < 0.3 ? 5e-5 : 2e-9,
+                             1e-9,
+                             0.8,
+                             0.1,
+                             300,
+                             true,
+                             false,
+                             0.1,
+                             "recurs with period " + std::to_string(orbit.period) + " to 1e-9 of the scale",
+                             "done",
+                             ""});
+      for (int k = 0; k < shape.kept; ++k) {
+        const double x = 0.05 * orbit.x[static_cast<size_t>(k)], v = 0.7 * std::sin(40 * x);
+        push(points, {amplitude, double(s), double(k), x, v, -x, -v});
+      }
+      if (shape.portraits && i % 2 == 0)
+        for (int k = 0; k <= 200; ++k) {
+          const double t = 0.628 * 2 * k / 200;
+          push(portraits, {amplitude, double(s), t, 0.05 * orbit.x.back() * std::cos(10 * t),
+                           -0.5 * orbit.x.back() * std::sin(10 * t)});
+        }
+    }
+  }
+  record.tables = {std::move(values), std::move(changes)};
+  record.numbers = {std::move(points), std::move(portraits)};
+  return record;
+}
+
+/// The study with the tables that are derived of all cases.
+inline StudyResults dynamics(const DynamicsShape& shape = {}) {
+  StudyResults out;
+  out.name = "bifurcation-beta";
+  out.question = "Does the scheme's parameter change the bifurcation diagram?";
+  out.kind = "bifurcation";
+  out.study = {{"name", out.name},
+               {"parameter", {{"pointer", "/scene/support/amplitude"}, {"values", {0.07, 0.1}}}},
+               {"scene", {{"structure", {{"damping", {{"stiffness", 1e-4}, {"mass", 0}}}}}}},
+               {"section", "strobe"},
+               {"phase", 0.0}};
+  out.columns = {"mass", "contact", "time", "time.beta", "elements", "steps_per_period"};
+  for (const auto& [time, beta] : shape.methods) out.cases.push_back(dynamics_case(time, beta, shape));
+  out.expected_cases = static_cast<int>(out.cases.size());
+  out.derived.push_back(
+      {"verdicts",
+       {"from", "to", "verdict", "choice", "sentence"},
+       {{0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
+        {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
+        {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}}});
+  return out;
+}
+
+}  // namespace ricochet::synthetic
