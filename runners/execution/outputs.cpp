@@ -46,6 +46,14 @@ void write_derived(const std::filesystem::path& folder, const StudyResults& resu
   for (const DerivedTable& table : results.derived) write_file(folder / (table.name + ".csv"), derived_csv(table));
 }
 
+void write_numbers(const std::filesystem::path& folder, const StudyResults& results) {
+  for (const std::string& name : exported_tables(results)) {
+    FileWriter file(folder / (name + ".csv"));
+    write_numbers_csv(results, name, [&](std::string_view piece) { file.write(piece); });
+    file.commit();
+  }
+}
+
 /// failures/ID.json, one study per case that went wrong; files of cases that do no longer are removed.
 void write_failures(const std::filesystem::path& folder, const StudyResults& results) {
   constexpr int indent = 2;
@@ -80,6 +88,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   remove_stale_curves(folder / "curves", results);
   write_file(folder / "cases.csv", cases_csv(results));
   write_derived(folder, results);
+  write_numbers(folder, results);
   write_failures(folder / "failures", results);
   write_file(folder / "report.html", render(results));
 }
@@ -89,6 +98,7 @@ void write_tables(const std::filesystem::path& folder, const StudyResults& resul
   write_curves(folder / "curves", results, nullptr);
   write_file(folder / "cases.csv", cases_csv(results));
   write_derived(folder, results);
+  write_numbers(folder, results);
   write_file(folder / "measures.csv", measures_csv());
   write_file(folder / "left_out.csv", left_out_csv(results));
   write_file(folder / "notes.csv", notes_csv(results));

@@ -39,17 +39,41 @@ int write_all(int descriptor, std::string_view content) {
 
 }  // namespace
 
-void write_file(const std::filesystem::path& file, std::string_view content) {
-  const std::string temporary = file.string() + kMark + std::to_string(::getpid());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail(file, errno);
-  int error = write_all(descriptor, content);
+FileWriter::FileWriter(std::filesystem::path file)
+    : file_(std::move(file)), temporary_(file_.string() + kMark + std::to_string(::getpid())) {
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(file_, errno);
+}
+
+FileWriter::~FileWriter() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void FileWriter::close_and_fail(int error) {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
+  ::unlink(temporary_.c_str());
+  fail(file_, error);
+}
+
+void FileWriter::write(std::string_view content) {
+  if (const int error = write_all(descriptor_, content); error != 0) close_and_fail(error);
+}
+
+void FileWriter::commit() {
   // No fsync: these files are derived from the store and rebuilt from it.
-  if (::close(descriptor) != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  ::unlink(temporary.c_str());
-  fail(file, error);
+  const int closed = ::close(descriptor_) == 0 ? 0 : errno;
+  descriptor_ = -1;
+  if (closed != 0) close_and_fail(closed);
+  if (std::rename(temporary_.c_str(), file_.c_str()) != 0) close_and_fail(errno);
+}
+
+void write_file(const std::filesystem::path& file, std::string_view content) {
+  FileWriter writer(file);
+  writer.write(content);
+  writer.commit();
 }
 
 void remove_leftovers(const std::filesystem::path& folder) {

@@ -1,8 +1,28 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace ricochet {
+
+/// A file written in pieces, to a temporary file of the same folder: nothing is seen of it before commit(), which
+/// renames it to `file`. Destroyed without commit(), it leaves an older `file` as it was. Throws StoreError (path and
+/// cause).
+class FileWriter {
+ public:
+  explicit FileWriter(std::filesystem::path file);
+  ~FileWriter();
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+  void write(std::string_view content);
+  void commit();
+
+ private:
+  [[noreturn]] void close_and_fail(int error);
+  std::filesystem::path file_;
+  std::string temporary_;
+  int descriptor_ = -1;
+};
 
 /// Writes `content` to a temporary file of the same folder, then renames it to `file`: readers see the old file or the
 /// new one, never a part. Throws StoreError (path and cause) when the folder does not exist, is not writable or the

@@ -24,13 +24,72 @@ auto find_key(const Pairs& pairs, const std::string& key) {
   return std::find_if(pairs.begin(), pairs.end(), [&](const auto& pair) { return pair.first == key; });
 }
 
+void append_number(double value, std::string& text) {
+  if (!std::isfinite(value)) return;
+  std::array<char, 32> digits{};
+  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+/// The case and its axes, as every line of its tables begins.
+std::string place_of(const CaseRecord& record, const std::vector<std::string>& columns) {
+  std::string place = csv_field(record.id);
+  for (const std::string& column : columns) {
+    const auto axis = find_key(record.axes, column);
+    place += ',';
+    if (axis != record.axes.end()) place += csv_value(axis->second);
+  }
+  return place;
+}
+
+/// A column of a table as it is written: none (the table has no such column), numbers, or words.
+struct Source {
+  const std::vector<double>* values = nullptr;
+  bool worded = false;
+  std::vector<std::string> words;  // quoted
+};
+
+std::vector<Source> sources_of(const NumberTable& table, const std::vector<std::string>& columns) {
+  std::vector<Source> sources;
+  for (const std::string& column : columns) {
+    Source& source = sources.emplace_back();
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      if (table.names.at(c) == column) source.values = &table.columns[c];
+    const auto words = find_key(table.words, column);
+    if (words == table.words.end()) continue;
+    source.worded = true;
+    for (const std::string& word : words->second) source.words.push_back(csv_field(word));
+  }
+  return sources;
+}
+
+void write_rows(const NumberTable& table, const std::vector<std::string>& columns, const std::string& place,
+                std::string& text, const std::function<void(std::string_view)>& write) {
+  constexpr std::size_t piece = std::size_t{1} << 20U;
+  const std::vector<Source> sources = sources_of(table, columns);
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    text += place;
+    for (const Source& source : sources) {
+      text += ',';
+      if (!source.values || i >= source.values->size()) continue;
+      const double value = (*source.values)[i];
+      if (!source.worded)
+        append_number(value, text);
+      else if (value >= 0 && value < static_cast<double>(source.words.size()))
+        text += source.words[static_cast<std::size_t>(value)];
+    }
+    text += '\n';
+    if (text.size() < piece) continue;
+    write(text);
+    text.clear();
+  }
+}
+
 }  // namespace
 
 std::string csv_number(double value) {
-  if (!std::isfinite(value)) return "";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  std::string text;
+  append_number(value, text);
+  return text;
 }
 
 std::string csv_field(std::string_view text) {
@@ -72,7 +131,7 @@ std::string cases_csv(const StudyResults& results) {
       const auto axis = find_key(record.axes, column);
       fields.push_back(axis == record.axes.end() ? "" : csv_value(axis->second));
     }
-    fields.push_back(record.status);
+    fields.emplace_back(record.partial ? "partial" : record.status);
     fields.push_back(csv_field(record.reason));
     fields.push_back(std::to_string(record.steps));
     fields.push_back(csv_number(record.setup_seconds));
@@ -110,6 +169,35 @@ std::string derived_csv(const DerivedTable& table) {
     text += csv_line(fields);
   }
   return text;
+}
+
+std::vector<std::string> exported_tables(const StudyResults& results) {
+  std::vector<std::string> names;
+  for (const CaseRecord& record : results.cases)
+    for (const NumberTable& table : record.numbers)
+      if (table.exported && std::find(names.begin(), names.end(), table.name) == names.end())
+        names.push_back(table.name);
+  return names;
+}
+
+void write_numbers_csv(const StudyResults& results, const std::string& name,
+                       const std::function<void(std::string_view)>& write) {
+  std::vector<std::string> columns;
+  for (const CaseRecord& record : results.cases)
+    for (const NumberTable& table : record.numbers)
+      if (table.exported && table.name == name)
+        for (const std::string& column : table.names)
+          if (std::find(columns.begin(), columns.end(), column) == columns.end()) columns.push_back(column);
+  std::vector<std::string> fields = {"case"};
+  for (const std::string& column : results.columns) fields.push_back(csv_field(column));
+  for (const std::string& column : columns) fields.push_back(csv_field(column));
+  std::string text = csv_line(fields);
+  for (const CaseRecord& record : results.cases) {
+    const std::string place = place_of(record, results.columns);
+    for (const NumberTable& table : record.numbers)
+      if (table.exported && table.name == name) write_rows(table, columns, place, text, write);
+  }
+  write(text);
 }
 
 std::string measures_csv() {

@@ -48,9 +48,10 @@ void read_study(SQLite::Database& database, StudyResults& results) {
 }
 
 void read_cases(SQLite::Database& database, StudyResults& results) {
-  SQLite::Statement statement(database,
-                              "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator FROM cases "
-                              "ORDER BY position");
+  SQLite::Statement statement(
+      database,
+      "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint FROM cases "
+      "ORDER BY position");
   while (statement.executeStep()) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = statement.getColumn(0).getString();
@@ -60,6 +61,7 @@ void read_cases(SQLite::Database& database, StudyResults& results) {
     record.setup_seconds = statement.getColumn(4).getDouble();
     record.run_seconds = statement.getColumn(5).getDouble();
     record.operator_name = statement.getColumn(6).getString();
+    record.partial = statement.getColumn(7).getString().empty();
   }
 }
 
@@ -100,6 +102,23 @@ StudyResults read_tables(SQLite::Database& database) {
         record.tables.push_back({row.getColumn(1).getString(), content.at("columns").get<std::vector<std::string>>(),
                                  content.at("rows").get<std::vector<std::vector<Json>>>()});
       });
+
+  per_case(database, cases,
+           "SELECT case_id, part, name, exported, column_name, words, series FROM case_numbers "
+           "ORDER BY case_id, position, part",
+           [](CaseRecord& record, Statement& row) {
+             if (row.getColumn(1).getInt() == 0) {
+               NumberTable& table = record.numbers.emplace_back();
+               table.name = row.getColumn(2).getString();
+               table.exported = row.getColumn(3).getInt() != 0;
+             }
+             NumberTable& table = record.numbers.back();
+             table.names.push_back(row.getColumn(4).getString());
+             if (!row.getColumn(5).isNull())
+               table.words.emplace_back(table.names.back(),
+                                        Json::parse(row.getColumn(5).getString()).get<std::vector<std::string>>());
+             table.columns.push_back(series(row.getColumn(6)));
+           });
 
   SQLite::Statement environment(database, "SELECT name, value FROM environment ORDER BY position");
   while (environment.executeStep())

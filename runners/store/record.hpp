@@ -48,6 +48,7 @@ struct CaseRecord {
   Curve curve;
   std::vector<DerivedTable> tables;  ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
+  bool partial = false;              ///< saved while the case was running: what it had by then
 };
 
 /// Where and with what the figures were made.

@@ -51,6 +51,15 @@ CREATE TABLE case_tables(
 CREATE TABLE motions(key TEXT PRIMARY KEY, content BLOB NOT NULL);
 )sql";
 
+// What version 3 adds: one row per column of a table of numbers. words: JSON list where the numbers are indices into
+// one.
+constexpr const char* kNumberTables = R"sql(
+CREATE TABLE case_numbers(
+  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL, part INTEGER NOT NULL,
+  name TEXT NOT NULL, exported INTEGER NOT NULL, column_name TEXT NOT NULL, words TEXT, series BLOB NOT NULL,
+  PRIMARY KEY(case_id, position, part));
+)sql";
+
 [[noreturn]] void not_ours(const std::filesystem::path& file) {
   throw StoreError(fmt::format(
       "{}: this file is not a Ricochet store; move it away or choose another folder with --out", file.string()));
@@ -113,12 +122,14 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};", kStoreApplication, kStoreVersion));
       database.exec(kTables);
       database.exec(kLaterTables);
+      database.exec(kNumberTables);
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
-    } else if (version == 1) {
+    } else if (version == 1 || version == 2) {
       SQLite::Transaction transaction(database);
-      database.exec(kLaterTables);
+      if (version == 1) database.exec(kLaterTables);
+      database.exec(kNumberTables);
       database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
       transaction.commit();
     } else if (version != kStoreVersion) {

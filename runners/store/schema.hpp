@@ -8,11 +8,11 @@ namespace ricochet {
 
 /// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
 constexpr int kStoreApplication = 0x5249434F;  // "RICO"
-constexpr int kStoreVersion = 2;
+constexpr int kStoreVersion = 3;
 
 /// Creates the tables in an empty database, in one transaction; checks the identity of one that is not empty. A store
-/// of version 1 gets the tables that came later. Throws StoreError for a file of another application or another version
-/// (found, expected, what to do).
+/// of an earlier version gets the tables that came later. Throws StoreError for a file of another application or
+/// another version (found, expected, what to do).
 void prepare_schema(SQLite::Database& database, const std::filesystem::path& file, bool create);
 
 /// Looks at the file's header, without SQLite (which takes a short file for an empty database, and overwrites it).

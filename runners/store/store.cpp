@@ -37,6 +37,12 @@ void insert(SQLite::Statement& statement, const Values&... values) {
   statement.exec();
 }
 
+void bind_series(SQLite::Statement& statement, int index, const std::vector<double>& series) {
+  // An empty vector may have no address, and SQLite would store NULL.
+  statement.bindNoCopy(index, series.empty() ? static_cast<const void*>("") : series.data(),
+                       static_cast<int>(series.size() * sizeof(double)));
+}
+
 }  // namespace
 
 Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "results.sqlite"), lock_(made(folder)) {
@@ -120,12 +126,21 @@ void Store::save(std::span<const CaseRecord> records) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
     SQLite::Transaction transaction(*database_);
-    for (const CaseRecord& record : records) save_one(record);
+    for (const CaseRecord& record : records) save_one(record, false);
     transaction.commit();
   });
 }
 
-void Store::save_one(const CaseRecord& record) {
+void Store::save_partial(const CaseRecord& record) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    save_one(record, true);
+    transaction.commit();
+  });
+}
+
+void Store::save_one(const CaseRecord& record, bool partial) {
   const auto expected = expected_.find(record.id);
   if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
   SQLite::Database& database = *database_;
@@ -135,7 +150,8 @@ void Store::save_one(const CaseRecord& record) {
   insert(remove, record.id);
   SQLite::Statement add(database, "INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
-  insert(add, record.id, case_position, fingerprint, record.status, record.reason,
+  // No case has the fingerprint "": what is partial is never taken for finished.
+  insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason,
          static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name);
 
   int position = 0;
@@ -168,15 +184,35 @@ void Store::save_one(const CaseRecord& record) {
 
   SQLite::Statement curve(database, "INSERT INTO curves VALUES(?, ?, ?, ?)");
   for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
-    const std::vector<double>& column = record.curve.columns[i];
     curve.reset();
     curve.bind(1, record.id);
     curve.bind(2, static_cast<int>(i));
     curve.bind(3, record.curve.names.at(i));
-    // An empty vector may have no address, and SQLite would store NULL.
-    curve.bind(4, column.empty() ? static_cast<const void*>("") : column.data(),
-               static_cast<int>(column.size() * sizeof(double)));
+    bind_series(curve, 4, record.curve.columns[i]);
     curve.exec();
+  }
+  save_numbers(record);
+}
+
+void Store::save_numbers(const CaseRecord& record) {
+  SQLite::Statement add(*database_, "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  for (std::size_t t = 0; t < record.numbers.size(); ++t) {
+    const NumberTable& table = record.numbers[t];
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      const std::string& column = table.names.at(c);
+      add.reset();
+      add.bind(1, record.id);
+      add.bind(2, static_cast<int>(t));
+      add.bind(3, static_cast<int>(c));
+      add.bind(4, table.name);
+      add.bind(5, table.exported ? 1 : 0);
+      add.bind(6, column);
+      add.bind(7);
+      for (const auto& [name, words] : table.words)
+        if (name == column) add.bind(7, text_of(words));
+      bind_series(add, 8, table.columns[c]);
+      add.exec();
+    }
   }
 }
 
@@ -196,10 +232,11 @@ std::string Store::motion(const std::string& key) const {
 void Store::save_motion(const std::string& key, const std::string& content) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
-    SQLite::Statement add(*database_, "INSERT OR REPLACE INTO motions(key, content) VALUES(?, ?)");
-    add.bind(1, key);
-    add.bind(2, content.data(), static_cast<int>(content.size()));
-    add.exec();
+    SQLite::Statement change(*database_, content.empty() ? "DELETE FROM motions WHERE key = ?"
+                                                         : "INSERT OR REPLACE INTO motions(key, content) VALUES(?, ?)");
+    change.bind(1, key);
+    if (!content.empty()) change.bindNoCopy(2, content.data(), static_cast<int>(content.size()));
+    change.exec();
   });
 }
 

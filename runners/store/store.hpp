@@ -44,7 +44,12 @@ class Store {
   /// Adds finished cases. Measures that are not finite are left out, with a note. May be called from several threads.
   void save(std::span<const CaseRecord> records);
 
-  /// What was computed once and serves several cases (a reference), by what determines it; "" when there is none.
+  /// Adds what a running case has so far, to be shown and to be replaced by save(): begin() does not keep it, load()
+  /// marks it as partial. May be called from several threads.
+  void save_partial(const CaseRecord& record);
+
+  /// What was computed once and serves several cases (a reference), or lets a case go on (a checkpoint), by what
+  /// determines it; "" when there is none. Saving "" removes it.
   std::string motion(const std::string& key) const;
   void save_motion(const std::string& key, const std::string& content);
 
@@ -52,7 +57,8 @@ class Store {
   StudyResults load() const;
 
  private:
-  void save_one(const CaseRecord& record);
+  void save_one(const CaseRecord& record, bool partial);
+  void save_numbers(const CaseRecord& record);
 
   std::filesystem::path file_;
   FolderLock lock_;

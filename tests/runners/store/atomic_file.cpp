@@ -37,6 +37,25 @@ TEST_CASE("atomic file: a file is replaced whole") {
   CHECK(files_in(folder.path()) == 1);
 }
 
+TEST_CASE("atomic file: pieces are seen together, or not at all") {
+  const ScratchFolder folder;
+  write_file(folder / "a.csv", "old");
+  {
+    FileWriter writer(folder / "a.csv");
+    writer.write("half");
+    CHECK(read_text(folder / "a.csv") == "old");
+  }
+  CHECK(read_text(folder / "a.csv") == "old");
+  CHECK(files_in(folder.path()) == 1);
+  FileWriter writer(folder / "a.csv");
+  writer.write("one, ");
+  writer.write("");
+  writer.write("two");
+  writer.commit();
+  CHECK(read_text(folder / "a.csv") == "one, two");
+  CHECK(files_in(folder.path()) == 1);
+}
+
 TEST_CASE("atomic file: a folder that is not there is named") {
   const ScratchFolder folder;
   CHECK_THAT(message_of(folder / "absent/a.csv", "x"),

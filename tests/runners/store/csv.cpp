@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -96,6 +97,65 @@ TEST_CASE("csv: a measure that the list does not know gets a column too") {
   CHECK(lines[0].back() == "error_tip");
   CHECK(lines[1].back() == "");
   CHECK(lines[2].back() == "2");
+}
+
+TEST_CASE("csv: a case that is still running is not called done") {
+  StudyResults results = sample_results();
+  results.cases[0].partial = true;
+  const auto lines = parse_csv(cases_csv(results));
+  CHECK(lines[0][4] == "status");
+  CHECK(lines[1][4] == "partial");
+}
+
+TEST_CASE("csv: the numbers of all cases stand behind case and axes, in columns by name") {
+  StudyResults results = sample_results();
+  // A case with other columns, and a second one of the same.
+  CaseRecord other;
+  other.id = "00000000ff";
+  other.axes = {{"mass", "lumped"}, {"step", 0.5}};
+  other.numbers = {{"points", {"index", "parameter"}, {{3, 4}, {0.25, -0.0}}, {}}};
+  results.cases.push_back(other);
+  CHECK(exported_tables(results) == std::vector<std::string>{"points", "impacts"});
+  std::string text;
+  write_numbers_csv(results, "points", [&](std::string_view piece) { text += piece; });
+  CHECK(text ==
+        "case,mass,mass.velocity,step,parameter,start,tip_displacement,index\n"
+        "0123456789,singular,P1,1e-05,0.07,\"a, b\",1e-300,\n"
+        "0123456789,singular,P1,1e-05,0.08,rest,,\n"
+        "0123456789,singular,P1,1e-05,0.08,,0.1,\n"  // no word of that number
+        "00000000ff,lumped,,0.5,0.25,,,3\n"
+        "00000000ff,lumped,,0.5,-0,,,4\n");
+  text.clear();
+  write_numbers_csv(results, "impacts", [&](std::string_view piece) { text += piece; });
+  CHECK(text == "case,mass,mass.velocity,step,parameter,speed\n");
+}
+
+TEST_CASE("csv: a large table goes out in pieces, whole lines each, nothing lost") {
+  StudyResults results = sample_results();
+  constexpr int rows = 100000;
+  std::vector<double> index(rows), value(rows);
+  for (int i = 0; i < rows; ++i) {
+    index[static_cast<std::size_t>(i)] = i;
+    value[static_cast<std::size_t>(i)] = std::sin(i);
+  }
+  results.cases[0].numbers = {{"points", {"index", "tip_displacement"}, {index, value}, {}}};
+  std::size_t largest = 0, pieces = 0;
+  std::string text;
+  write_numbers_csv(results, "points", [&](std::string_view piece) {
+    largest = std::max(largest, piece.size());
+    ++pieces;
+    CHECK(piece.back() == '\n');
+    text += piece;
+  });
+  CHECK(pieces > 3);
+  CHECK(largest < 2 * (std::size_t{1} << 20U));
+  const auto lines = parse_csv(text);
+  REQUIRE(lines.size() == rows + 1);
+  for (const int i : {0, 1, 77777, rows - 1}) {
+    const auto& line = lines[static_cast<std::size_t>(i) + 1];
+    CHECK(line[4] == std::to_string(i));
+    CHECK(std::strtod(line[5].c_str(), nullptr) == std::sin(i));
+  }
 }
 
 TEST_CASE("csv: a curve is its columns, and a value that is not finite is empty") {

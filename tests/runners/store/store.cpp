@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <limits>
 
 #include "runners/store/csv.hpp"
@@ -49,6 +50,28 @@ void check_equal(const CaseRecord& a, const CaseRecord& b) {
   CHECK(a.operator_name == b.operator_name);
   CHECK(a.curve.names == b.curve.names);
   CHECK(a.curve.columns == b.curve.columns);
+  CHECK(a.partial == b.partial);
+  REQUIRE(a.numbers.size() == b.numbers.size());
+  for (std::size_t t = 0; t < a.numbers.size(); ++t) {
+    const NumberTable &x = a.numbers[t], &y = b.numbers[t];
+    CHECK(x.name == y.name);
+    CHECK(x.names == y.names);
+    CHECK(x.words == y.words);
+    CHECK(x.exported == y.exported);
+    REQUIRE(x.columns.size() == y.columns.size());
+    // NaN is a value here: bits, not equality.
+    for (std::size_t c = 0; c < x.columns.size(); ++c) {
+      REQUIRE(x.columns[c].size() == y.columns[c].size());
+      CHECK(std::memcmp(x.columns[c].data(), y.columns[c].data(), x.columns[c].size() * sizeof(double)) == 0);
+    }
+  }
+}
+
+int count(const std::filesystem::path& folder, const std::string& what) {
+  const SQLite::Database database(folder / "results.sqlite");
+  SQLite::Statement rows(database, "SELECT count(*) FROM " + what);
+  rows.executeStep();
+  return rows.getColumn(0).getInt();
 }
 
 }  // namespace
@@ -112,12 +135,9 @@ TEST_CASE("store: kept are the cases whose fingerprint is the same; others and s
   }
   SECTION("a dropped case leaves nothing in any table") {
     store.begin(sample_results(), {});
-    const SQLite::Database database(folder / "results.sqlite");
-    for (const char* table : {"cases", "axes", "measures", "left_out", "notes", "curves"}) {
-      SQLite::Statement rows(database, std::string("SELECT count(*) FROM ") + table);
-      REQUIRE(rows.executeStep());
-      CHECK(rows.getColumn(0).getInt() == 0);
-    }
+    for (const char* table :
+         {"cases", "axes", "measures", "left_out", "notes", "curves", "case_tables", "case_numbers"})
+      CHECK(count(folder.path(), table) == 0);
   }
 }
 
@@ -146,9 +166,85 @@ TEST_CASE("store: another version is refused with what was found, expected and t
   SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
   using Catch::Contains;
   CHECK_THAT(open_error(folder.path()),
-             Contains("results.sqlite") && Contains("version 99") && Contains("version 2") && Contains("--fresh"));
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 3") && Contains("--fresh"));
   CHECK_THROWS_AS(read_store(folder.path()), StoreError);
   CHECK(open_error(folder.path(), true).empty());
+}
+
+TEST_CASE("store: what earlier versions wrote is read, and gets the tables that came later") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  {
+    SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
+    database.exec("DROP TABLE case_numbers; PRAGMA user_version=2");
+    SECTION("version 2") {}
+    SECTION("version 1") {
+      database.exec("DROP TABLE case_tables; DROP TABLE motions; PRAGMA user_version=1");
+    }
+  }
+  const StudyResults before = read_store(folder.path());
+  REQUIRE(before.cases.size() == 2);
+  CHECK(before.cases[0].numbers.empty());
+  CHECK_FALSE(before.cases[0].partial);
+  {
+    Store store(folder.path(), false);
+    CHECK(store.begin(sample_results(), kExpected).size() == 2);
+    store.save(sample_results().cases);
+    store.save_motion("key", "content");
+  }
+  check_equal(read_store(folder.path()).cases[0], sample_results().cases[0]);
+}
+
+TEST_CASE("store: what a running case has so far is shown, marked, replaced, and never taken for finished") {
+  const ScratchFolder folder;
+  StudyResults results = sample_results();
+  CaseRecord early = results.cases[0];
+  early.steps = 10;
+  early.numbers[0].columns = {{0.07}, {1}, {0.5}};
+  {
+    Store store(folder.path(), false);
+    store.begin(results, kExpected);
+    store.save_partial(early);
+    const StudyResults seen = read_store(folder.path());
+    REQUIRE(seen.cases.size() == 1);
+    CHECK(seen.cases[0].partial);
+    CHECK(seen.cases[0].steps == 10);
+    CHECK(seen.cases[0].numbers[0].rows() == 1);
+    early.steps = 20;
+    store.save_partial(early);
+    CHECK(store.load().cases[0].steps == 20);
+    CHECK(store.load().cases.size() == 1);
+  }
+  SECTION("finished") {
+    Store store(folder.path(), false);
+    store.begin(results, kExpected);
+    store.save_partial(early);
+    store.save({results.cases.data(), 1});
+    check_equal(store.load().cases[0], results.cases[0]);
+    CHECK(count(folder.path(), "case_numbers") == 6);  // columns of three tables
+  }
+  SECTION("interrupted: it runs again") {
+    Store store(folder.path(), false);
+    CHECK(store.begin(results, kExpected).empty());
+    CHECK(store.load().cases.empty());
+    CHECK(count(folder.path(), "case_numbers") == 0);
+  }
+}
+
+TEST_CASE("store: a motion is kept under its key until it is emptied") {
+  const ScratchFolder folder;
+  Store store(folder.path(), false);
+  std::string bytes(1000, '\0');
+  bytes += "end";
+  CHECK(store.motion("a").empty());
+  store.save_motion("a", bytes);
+  store.save_motion("b", "other");
+  CHECK((store.motion("a") == bytes));
+  store.save_motion("a", "");
+  store.save_motion("never there", "");
+  CHECK(store.motion("a").empty());
+  CHECK(store.motion("b") == "other");
+  CHECK(count(folder.path(), "motions") == 1);
 }
 
 TEST_CASE("store: a file that is not ours is refused and never removed") {
