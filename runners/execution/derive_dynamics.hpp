@@ -10,8 +10,9 @@
 /// null), core/measure/attractors.hpp (what counts as one attractor at one value) and core/measure/branches.hpp (along
 /// the parameter).
 ///
-/// *Reference case*: of the cases with a rigid contact (no `contact.stiffness`; else the largest stiffness) the one with
-/// the most steps per period, then the most elements, then the first of the study that has anything to compare with.
+/// *Reference case*: of the cases with a rigid contact (no `contact.stiffness`; else the largest stiffness) the one
+/// with the most steps per period, then the most elements, then the first of the study that has anything to compare
+/// with.
 ///
 /// Tables, each after `case` (the id) and the axes where it speaks of one case:
 ///
@@ -23,7 +24,7 @@
 ///               label: "common to all" | "depends on AXIS" | "vanishes under refinement" | "not compared"
 /// distances     reference_case, parameter, start, wasserstein, hausdorff, null_wasserstein, null_hausdorff, ratio
 ///               (wasserstein / null_wasserstein), same_class, formula ("exact" | "sliced")
-/// shifts        reference_case, start, from_class, to_class, kind, reference_value, value, shift, low, high, found
+/// shifts        reference_case, start, from, to (classes), kind, reference_value, value, shift, low, high, found
 /// agreement     case, other_case, compared (values × starts), same_class, share (same_class / compared),
 ///               same_attractor, share_attractor: one row per ordered pair, also of a case with itself
 /// verdicts      from, to, verdict ("robust" | "depends" | "undecided"), choice (an axis, or ""), sentence. Intervals
