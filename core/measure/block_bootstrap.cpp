@@ -28,9 +28,13 @@ double quantile(const std::vector<double>& sorted, double at) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-}  // namespace
+/// What the correlogram says of a series.
+struct Dependence {
+  double block = 1;     // b
+  double variance = 0;  // N times that of the mean: Σ λ R
+};
 
-double bootstrap_block_length(std::span<const double> series) {
+Dependence dependence_of(std::span<const double> series) {
   const auto count = static_cast<int>(series.size());
   const double n = count, mean = mean_of(series);
   const double quiet = std::sqrt(std::log10(n) / n) * 2;
@@ -44,7 +48,7 @@ double bootstrap_block_length(std::span<const double> series) {
   };
   std::vector<double> R;
   for (int lag = 0; lag <= furthest; ++lag) R.push_back(covariance(lag));
-  if (!(R[0] > 0)) return 1;
+  if (!(R[0] > 0)) return {};
   // The lag after which `run` autocorrelations in a row are no more than chance; none: the last that is more.
   int last = 0, calm = 0, cut = -1;
   for (int lag = 1; lag <= furthest && cut < 0; ++lag) {
@@ -63,8 +67,14 @@ double bootstrap_block_length(std::span<const double> series) {
     g += term;
   }
   const double longest = std::max(1.0, std::min(3 * std::sqrt(n), n / 3));
-  if (g == 0) return longest;
-  return std::clamp(std::cbrt(G * G / (g * g) * n), 1.0, longest);
+  if (g == 0) return {longest, 0};
+  return {std::clamp(std::cbrt(G * G / (g * g) * n), 1.0, longest), g};
+}
+
+}  // namespace
+
+double bootstrap_block_length(std::span<const double> series) {
+  return dependence_of(series).block;
 }
 
 Interval block_bootstrap_mean(std::span<const double> series, double confidence, int resamples, std::uint64_t seed) {
@@ -73,7 +83,8 @@ Interval block_bootstrap_mean(std::span<const double> series, double confidence,
   for (const double x : series)
     if (!std::isfinite(x)) throw std::invalid_argument("a bootstrap needs finite readings");
   const std::size_t count = series.size();
-  const double n = static_cast<double>(count), mean = mean_of(series), block = bootstrap_block_length(series);
+  const double n = static_cast<double>(count), mean = mean_of(series);
+  const auto [block, variance] = dependence_of(series);
   // Sums from the start, over two rounds of the circle.
   std::vector<double> sums(2 * count + 1);
   for (std::size_t i = 0; i < 2 * count; ++i) sums[i + 1] = sums[i] + (series[i % count] - mean);
@@ -87,6 +98,7 @@ Interval block_bootstrap_mean(std::span<const double> series, double confidence,
     return drawn < static_cast<double>(left) ? static_cast<std::size_t>(drawn) : left;
   };
   std::vector<double> means(static_cast<std::size_t>(std::max(resamples, 2)));
+  double resampled = 0;
   for (double& one : means) {
     double sum = 0;
     for (std::size_t left = count; left > 0;) {
@@ -95,11 +107,13 @@ Interval block_bootstrap_mean(std::span<const double> series, double confidence,
       left -= taken;
     }
     one = sum / n;
+    resampled += one * one / static_cast<double>(means.size());
   }
   std::sort(means.begin(), means.end());
   const double tail = 0.5 * (1 - confidence);
-  const double open = boost::math::quantile(boost::math::students_t(std::max(1.0, n / block - 1)), 1 - tail) /
-                      boost::math::quantile(boost::math::normal(), 1 - tail);
+  double open = boost::math::quantile(boost::math::students_t(std::max(1.0, n / block - 1)), 1 - tail) /
+                boost::math::quantile(boost::math::normal(), 1 - tail);
+  if (resampled > 0 && variance > n * resampled) open *= std::sqrt(variance / (n * resampled));
   return {mean, mean + open * std::min(0.0, quantile(means, tail)),
           mean + open * std::max(0.0, quantile(means, 1 - tail))};
 }

@@ -23,9 +23,10 @@ double bootstrap_block_length(std::span<const double> series);
 
 /// The mean of a stationary, dependent series with its interval at `confidence`: the stationary bootstrap (Politis and
 /// Romano 1994, J. Amer. Statist. Assoc. 89, 1303–1313: circular blocks of geometric length), percentiles of the
-/// resampled means, opened about the mean by t_{N/b−1}/z because the N/b blocks are few. Depends on the seed and on
-/// nothing else. Throws std::invalid_argument below 8 readings, on readings that are not finite, and on a confidence
-/// outside (0, 1).
+/// resampled means. They are opened about the mean by t_{N/b−1}/z, because the N/b blocks are few, and by the square
+/// root of what the resampled variance falls short of Σ λ R/N, because blocks cut dependence off. Depends on the seed
+/// and on nothing else. Throws std::invalid_argument below 8 readings, on readings that are not finite, and on a
+/// confidence outside (0, 1).
 Interval block_bootstrap_mean(std::span<const double> series, double confidence = 0.95, int resamples = 1000,
                               std::uint64_t seed = 1);
 
