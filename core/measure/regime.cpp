@@ -8,7 +8,7 @@ namespace {
 
 constexpr double regular_below = 0.2, chaotic_above = 0.8;
 constexpr double seen_growth = 2;   // of a deviation over the window, to contradict what repeats
-constexpr double approached = 0.1;  // of the first distance at the end of the window
+constexpr double approached = 0.5;  // of the first distance at the end of the window
 constexpr const char* names[] = {"no contact", "periodic", "quasi-periodic", "chaotic", "undecided", "failed"};
 
 std::string count_text(int n, const char* what) {

@@ -34,7 +34,7 @@ struct RegimeVerdict {
 ///    the growth it means over the window, e^{low T window}, is less than 2: undecided.
 /// 3. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
 /// 4. Quasi-periodic: the exponent's interval holds zero and K < 0.2; without an exponent, K < 0.2 and the section does
-///    not approach an orbit (distances that shrank tenfold over the window do).
+///    not approach an orbit (distances that halved over the window do).
 /// 5. Undecided otherwise; the sentence says what is missing or what contradicts.
 /// `failed` is for those who march: nothing is classified as failed here.
 RegimeVerdict classify(const RegimeInput& input);
