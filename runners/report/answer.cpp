@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "runners/report/dynamics_report.hpp"
 #include "runners/report/evidence.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/stability_report.hpp"
@@ -365,6 +366,7 @@ bool conservative(const CaseView& view) {
 std::string answer_html(const CaseView& view) {
   const Cases done = view.with_status("done");
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
+  if (const std::string dynamics = dynamics_answer_html(view); !dynamics.empty()) return dynamics;
   if (done.empty()) return "<p>No case has finished with a result; the table below says why.</p>\n";
   const StudyResults& results = view.results();
   if (results.kind != "trajectory") return stability_html(view) + work_precision_html(view) + orders_html(view);

@@ -133,8 +133,8 @@ class Diagram {
               (methods_.size() > 1 ? fmt::format(" ({} of {})", count, all) : "");
       out += ", by " + by;
       if (marginal_ > 0)
-        out += fmt::format("; {} of a marginal root that is the scheme's own set apart",
-                           count_text(marginal_, "exponent", "exponents"));
+        out += fmt::format("; at {} an exponent of a marginal root, the scheme's own, is set apart",
+                           count_text(marginal_, "value and start", "values and starts"));
       out += "; then the regime of each start.";
     } else {
       out += " Under it: the regime of each start.";
@@ -431,8 +431,8 @@ class Diagram {
       one["type"] = "scatter";
       one["symbol"] = "path://M0,0L10,10M10,0L0,10";
       one["symbolSize"] = 5;
-      one["z"] = 4;
-      one["itemStyle"] = {{"color", "none"}, {"borderColor", ink}, {"borderWidth", 1}};
+      one["z"] = 2;
+      one["itemStyle"] = {{"color", "none"}, {"borderColor", "#8a8a8a"}, {"borderWidth", 1}};
       one["data"]["sweep"] = "twins";
       return true;
     });
@@ -523,24 +523,14 @@ class Diagram {
   };
   static std::vector<Change> changes(const DerivedTable& table) {
     std::vector<Change> out;
-    const auto at = [&](const std::vector<Json>& row, const char* name) -> const Json* {
-      for (size_t c = 0; c < table.columns.size() && c < row.size(); ++c)
-        if (table.columns[c] == name) return &row[c];
-      return nullptr;
-    };
-    const auto text = [&](const std::vector<Json>& row, const char* name) {
-      const Json* cell = at(row, name);
-      return cell && cell->is_string() ? cell->get<std::string>() : std::string();
-    };
-    for (const auto& row : table.rows) {
-      const Json* value = at(row, "value");
-      if (!value || !value->is_number()) continue;
-      const Json *low = at(row, "low"), *high = at(row, "high");
-      std::string said = fmt::format("{}: {} → {}, start {}", text(row, "kind"), text(row, "from"), text(row, "to"),
-                                     text(row, "start"));
-      if (low && high && low->is_number() && high->is_number())
-        said += fmt::format(", between {} and {}", exact_text(low->get<double>()), exact_text(high->get<double>()));
-      out.push_back({value->get<double>(), text(row, "start"), said});
+    const TableRows rows(table);
+    for (size_t row = 0; row < rows.size(); ++row) {
+      const auto value = rows.number(row, "value"), low = rows.number(row, "low"), high = rows.number(row, "high");
+      if (!value) continue;
+      std::string said = fmt::format("{}: {} → {}, start {}", rows.text(row, "kind"), rows.text(row, "from"),
+                                     rows.text(row, "to"), rows.text(row, "start"));
+      if (low && high) said += fmt::format(", between {} and {}", exact_text(*low), exact_text(*high));
+      out.push_back({*value, rows.text(row, "start"), said});
     }
     return out;
   }

@@ -109,8 +109,9 @@ const ricochetDynamics = (function () {
     const tall = api.size([0, 1])[1], frame = params.coordSys;
     const left = Math.max(low[0], frame.x), right = Math.min(high[0], frame.x + frame.width);
     if (right <= left) return null;
-    // A hair of overlap, so that neighbours of one colour leave no seam.
-    return { type: "rect", shape: { x: left, y: low[1] - tall / 2 + 0.5, width: right - left + 0.4, height: Math.max(tall - 1, 1) }, style: { fill: api.visual("color") } };
+    // Whole pixels, so that neighbours of one colour leave no seam and the narrowest cell is seen.
+    const from = Math.floor(left), to = Math.max(Math.floor(right), from + 1);
+    return { type: "rect", shape: { x: from, y: low[1] - tall / 2 + 0.5, width: to - from, height: Math.max(tall - 1, 1) }, style: { fill: api.visual("color") } };
   }
 
   // ---- words --------------------------------------------------------------------------------------------------------

@@ -14,4 +14,16 @@ namespace ricochet::report {
 /// case, all cases in one chart (coloured by case), a chart per case and kind of start.
 std::vector<Figure> diagram_figures(const CaseView& view, CurveData& curves);
 
+/// Distances of the sections to those of the reference case, as views of one figure each: along the parameter, and
+/// against every numeric axis of at least three values (the median over parameter and starts, with what the middle 80 %
+/// of them reach). The null level, of two halves of one run, is a band behind both.
+std::vector<Figure> distance_figures(const CaseView& view);
+
+/// What the study answers: verdicts, how often each regime occurs by method beside its numerical viscosity, where
+/// regimes change.
+std::string dynamics_answer_html(const CaseView& view);
+
+/// Attractors, shifts of located changes, agreement of regimes between methods as a heat map, all located changes.
+std::string dynamics_tables_html(const CaseView& view);
+
 }  // namespace ricochet::report

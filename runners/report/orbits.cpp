@@ -7,34 +7,6 @@
 namespace ricochet::report {
 namespace {
 
-using Cell = nlohmann::ordered_json;
-
-/// Cells of a row by column name.
-class Cells {
- public:
-  Cells(const DerivedTable& table, const std::vector<Cell>& row) : table_(table), row_(row) {}
-
-  const Cell* at(std::string_view column) const {
-    for (size_t c = 0; c < table_.columns.size() && c < row_.size(); ++c)
-      if (table_.columns[c] == column) return &row_[c];
-    return nullptr;
-  }
-  std::string text(std::string_view column) const {
-    const Cell* cell = at(column);
-    return cell && cell->is_string() ? cell->get<std::string>() : "";
-  }
-  std::optional<double> number(std::string_view column) const {
-    const Cell* cell = at(column);
-    if (!cell || !cell->is_number()) return std::nullopt;
-    const double value = cell->get<double>();
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
-  }
-
- private:
-  const DerivedTable& table_;
-  const std::vector<Cell>& row_;
-};
-
 int random_number(std::string_view start) {
   int number = 0;
   const size_t dash = start.find('-');
@@ -43,6 +15,24 @@ int random_number(std::string_view start) {
 }
 
 }  // namespace
+
+const nlohmann::ordered_json* TableRows::at(size_t row, std::string_view column) const {
+  for (size_t c = 0; c < table_.columns.size() && c < table_.rows[row].size(); ++c)
+    if (table_.columns[c] == column) return &table_.rows[row][c];
+  return nullptr;
+}
+
+std::string TableRows::text(size_t row, std::string_view column) const {
+  const auto* cell = at(row, column);
+  return cell && cell->is_string() ? cell->get<std::string>() : "";
+}
+
+std::optional<double> TableRows::number(size_t row, std::string_view column) const {
+  const auto* cell = at(row, column);
+  if (!cell || !cell->is_number()) return std::nullopt;
+  const double value = cell->get<double>();
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 const DerivedTable* case_table(const CaseRecord& record, std::string_view name) {
   for (const DerivedTable& table : record.tables)
@@ -72,25 +62,25 @@ std::vector<Orbit> orbits_of(const CaseRecord& record) {
   std::vector<Orbit> out;
   const DerivedTable* table = case_table(record, "values");
   if (!table) return out;
-  out.reserve(table->rows.size());
-  for (const auto& row : table->rows) {
-    const Cells cells(*table, row);
+  const TableRows rows(*table);
+  out.reserve(rows.size());
+  for (size_t row = 0; row < rows.size(); ++row) {
     Orbit orbit;
-    orbit.parameter = cells.number("parameter").value_or(0);
-    orbit.start = cells.text("start");
-    orbit.regime = cells.text("class");
-    orbit.status = cells.text("status");
-    orbit.reason = cells.text("reason");
-    orbit.exponent_method = cells.text("exponent_method");
-    orbit.marginal = cells.text("marginal");
-    if (const auto period = cells.number("period")) orbit.period = static_cast<int>(*period);
-    orbit.alpha_equivalent = cells.number("alpha_equivalent");
-    orbit.twin = cells.number("exponent_twin");
+    orbit.parameter = rows.number(row, "parameter").value_or(0);
+    orbit.start = rows.text(row, "start");
+    orbit.regime = rows.text(row, "class");
+    orbit.status = rows.text(row, "status");
+    orbit.reason = rows.text(row, "reason");
+    orbit.exponent_method = rows.text(row, "exponent_method");
+    orbit.marginal = rows.text(row, "marginal");
+    if (const auto period = rows.number(row, "period")) orbit.period = static_cast<int>(*period);
+    orbit.alpha_equivalent = rows.number(row, "alpha_equivalent");
+    orbit.twin = rows.number(row, "exponent_twin");
     for (int k = 1;; ++k) {
       const std::string name = "exponent_" + std::to_string(k);
-      const auto value = cells.number(name);
+      const auto value = rows.number(row, name);
       if (!value) break;
-      orbit.exponents.push_back({*value, cells.number(name + "_low"), cells.number(name + "_high")});
+      orbit.exponents.push_back({*value, rows.number(row, name + "_low"), rows.number(row, name + "_high")});
     }
     out.push_back(std::move(orbit));
   }

@@ -8,10 +8,12 @@
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/curve_data.hpp"
+#include "runners/report/dynamics_report.hpp"
 #include "runners/report/evidence.hpp"
 #include "runners/report/figures.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/orbit_data.hpp"
+#include "runners/report/orbits.hpp"
 #include "runners/report/page.hpp"
 #include "runners/report/tables.hpp"
 
@@ -23,6 +25,10 @@ constexpr const char* policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'";
 
+bool sweeps(const StudyResults& results) {
+  return results.kind == "bifurcation" || results.kind == "basins";
+}
+
 std::string status_line(const CaseView& view) {
   const StudyResults& results = view.results();
   std::string counts;
@@ -32,6 +38,14 @@ std::string status_line(const CaseView& view) {
   const size_t have = results.cases.size(), expected = static_cast<size_t>(std::max(results.expected_cases, 0));
   std::string out = fmt::format("<p class=\"status-line\">{}{}.</p>\n", count_text(have, "case", "cases"),
                                 counts.empty() ? "" : ": " + counts);
+  if (const auto partial = std::count_if(results.cases.begin(), results.cases.end(),
+                                         [](const CaseRecord& record) { return is_partial(record); });
+      partial > 0)
+    out += fmt::format(
+        "<p class=\"banner\" role=\"status\"><strong>{} still being worked on.</strong> What they have so far is "
+        "shown; "
+        "running the study again goes on from there.</p>\n",
+        partial == 1 ? "One case is" : fmt::format("{} cases are", partial));
   if (have < expected)
     out += fmt::format(
         "<p class=\"banner\" role=\"status\"><strong>Partial results: {} of {} so far.</strong> Everything below "
@@ -175,6 +189,8 @@ std::string render_page(const StudyResults& results, std::string_view library, s
   out += "<nav><a href=\"#answer\">Answer</a>";
   for (const Figure& figure : figures)
     out += fmt::format("<a href=\"#figure-{}\">{}</a>", figure.id, escape(figure.title));
+  const std::string methods = dynamics_tables_html(view);
+  if (!methods.empty()) out += "<a href=\"#methods\">Attractors and agreement</a>";
   out +=
       "<a href=\"#all-cases\">All cases</a><a href=\"#left-out\">Left out</a><a "
       "href=\"#environment\">Environment</a></nav>\n</header>\n<main>\n";
@@ -190,16 +206,18 @@ std::string render_page(const StudyResults& results, std::string_view library, s
   } else if (!figures.empty()) {
     out +=
         "<section id=\"figures\"><h2>Figures</h2>\n<p class=\"fine\">Drag over a chart to zoom in, double-click to "
-        "zoom out; charts over time "
+        "zoom out; charts over time or along a parameter "
         "zoom together. Shift + wheel zooms along the horizontal axis, Alt + wheel along the vertical one. A legend "
-        "entry hides or shows its "
-        "curve in every chart of the figure. Colour: mass matrix, the same everywhere, where the study has "
-        "several.</p>\n";
+        "entry hides or shows what it names in every chart of the figure.";
+    if (!sweeps(results)) out += " Colour: mass matrix, the same everywhere, where the study has several.";
+    out += "</p>\n";
     if (const std::string thinning = curves.thinning(); !thinning.empty())
       out += "<p class=\"fine\">" + escape(thinning) + "</p>\n";
     out += "<noscript><p class=\"banner\">Charts need JavaScript; the tables do not.</p></noscript>\n</section>\n";
     for (const Figure& figure : figures) out += figure_html(figure);
   }
+  if (!methods.empty())
+    out += "<section id=\"methods\">\n<h2>What the methods have in common</h2>\n" + methods + "</section>\n";
   if (const std::string effects = effects_html(view); !effects.empty())
     out += "<section id=\"effects\">\n<h2>How much is owed to each choice</h2>\n" + effects + "</section>\n";
   out += "<section id=\"all-cases\">\n<h2>All cases</h2>\n" + case_table_html(view) + "</section>\n";

@@ -167,6 +167,78 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
   return record;
 }
 
+/// The derived tables, as runners/execution/derive_dynamics.hpp says them, from formulas as well.
+inline void derive_synthetic(StudyResults& out) {
+  std::vector<std::string> head = {"case"};
+  head.insert(head.end(), out.columns.begin(), out.columns.end());
+  const auto table = [&](const char* name, const std::vector<std::string>& columns, bool by_case) {
+    DerivedTable made{name, by_case ? head : std::vector<std::string>(), {}};
+    made.columns.insert(made.columns.end(), columns.begin(), columns.end());
+    return made;
+  };
+  const auto row_of = [&](const CaseRecord& record, std::initializer_list<Cell> more) {
+    std::vector<Cell> row = {record.id};
+    for (const auto& [name, value] : record.axes) row.push_back(value);
+    row.insert(row.end(), more.begin(), more.end());
+    return row;
+  };
+  DerivedTable distances = table("distances",
+                                 {"reference_case", "parameter", "start", "wasserstein", "hausdorff",
+                                  "null_wasserstein", "null_hausdorff", "ratio", "same_class", "formula"},
+                                 true),
+               shifts = table("shifts",
+                              {"reference_case", "start", "from", "to", "kind", "reference_value", "value", "shift",
+                               "low", "high", "found"},
+                              true),
+               agreement =
+                   table("agreement",
+                         {"case", "other_case", "compared", "same_class", "share", "same_attractor", "share_attractor"},
+                         false),
+               values = table("values", {"parameter", "start", "attractor"}, true);
+  const std::string& reference = out.cases.front().id;
+  for (size_t c = 0; c < out.cases.size(); ++c) {
+    const CaseRecord& record = out.cases[c];
+    for (const auto& row : record.tables.front().rows) {
+      const double parameter = row[0].get<double>();
+      values.rows.push_back(
+          row_of(record, {parameter, row[1], row[2] == "failed" ? Cell(nullptr) : Cell(1 + (parameter > 0.085))}));
+      if (c == 0 || row[2] == "failed") continue;
+      const double far = 0.02 * static_cast<double>(c) * std::exp(60 * (parameter - 0.085));
+      const bool same = row[2] == "no contact";
+      distances.rows.push_back(row_of(record, {reference, parameter, row[1], same ? 0.0 : far, same ? 0.0 : 3 * far,
+                                               0.01, 0.03, far / 0.01, parameter < 0.085, "exact"}));
+    }
+    if (c > 0) {
+      shifts.rows.push_back(row_of(record, {reference, "up", "periodic 1", "periodic 2", "change", 0.0838, 0.0828,
+                                            -0.001, -0.0012, -0.0008, true}));
+      shifts.rows.push_back(row_of(record, {reference, "up", "chaotic", "periodic 3", "change", 0.0938, nullptr,
+                                            nullptr, nullptr, nullptr, false}));
+    }
+    for (size_t o = 0; o < out.cases.size(); ++o) {
+      const double share = std::exp(-0.3 * std::abs(static_cast<double>(c) - static_cast<double>(o)));
+      agreement.rows.push_back({record.id, out.cases[o].id, 300, std::round(300 * share), std::round(300 * share) / 300,
+                                std::round(280 * share), std::round(280 * share) / 300});
+    }
+  }
+  out.derived.push_back(std::move(values));
+  out.derived.push_back({"attractors",
+                         {"attractor", "label", "cases", "from", "to", "class", "period", "symmetric", "fraction",
+                          "fraction_low", "fraction_high", "presence", "sentence"},
+                         {{1, "common to all", 2, 0.07, 0.085, "periodic", 1, true, 0.66, 0.6, 0.71, "",
+                           "Attractor 1 is met by all cases."},
+                          {2, "depends on time.beta", 1, 0.085, 0.1, "chaotic", nullptr, nullptr, 0.34, 0.29, 0.4,
+                           "time.beta 0.25: 1 of 1, 0.5: 0 of 1", "Attractor 2 is met with time.beta 0.25 <only>."}}});
+  out.derived.push_back(std::move(distances));
+  out.derived.push_back(std::move(shifts));
+  out.derived.push_back(std::move(agreement));
+  out.derived.push_back(
+      {"verdicts",
+       {"from", "to", "verdict", "choice", "sentence"},
+       {{0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
+        {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
+        {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}}});
+}
+
 /// The study with the tables that are derived of all cases.
 inline StudyResults dynamics(const DynamicsShape& shape = {}) {
   StudyResults out;
@@ -181,12 +253,7 @@ inline StudyResults dynamics(const DynamicsShape& shape = {}) {
   out.columns = {"mass", "contact", "time", "time.beta", "elements", "steps_per_period"};
   for (const auto& [time, beta] : shape.methods) out.cases.push_back(dynamics_case(time, beta, shape));
   out.expected_cases = static_cast<int>(out.cases.size());
-  out.derived.push_back(
-      {"verdicts",
-       {"from", "to", "verdict", "choice", "sentence"},
-       {{0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
-        {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
-        {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}}});
+  derive_synthetic(out);
   return out;
 }
 
