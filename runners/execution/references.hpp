@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -18,6 +19,8 @@ namespace ricochet {
 struct MotionShelf {
   std::function<std::string(const std::string& key)> find;
   std::function<void(const std::string& key, const std::string& content)> keep;
+  /// Shows what a case under way has so far; empty where nobody looks.
+  std::function<void(const CaseRecord&)> show;
 };
 
 /// A reference as cases are compared with it.

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <thread>
 
 #include "runners/execution/environment.hpp"
+#include "runners/execution/run_bifurcation.hpp"
 #include "runners/execution/run_comparison.hpp"
 #include "runners/execution/run_stability.hpp"
 #include "runners/execution/study_runner.hpp"
 #include "runners/report/report.hpp"
+#include "runners/store/fingerprint.hpp"
 #include "runners/study/field.hpp"
 
 namespace ricochet {
@@ -32,6 +35,7 @@ void require_reference(const Study& study, References& references, const std::at
 }  // namespace
 
 CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry) {
+  if (kind == "bifurcation") return plan_bifurcation(study_case, registry);
   return kind == "stability" ? plan_stability(study_case, registry) : plan_case(study_case, registry);
 }
 
@@ -55,6 +59,17 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
     runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return run_stability(study_case, registry, stop);
     };
+  MotionShelf shelf;
+  if (study.kind == "bifurcation") {
+    runner.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
+    runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      Fingerprints fingerprints(study.kind, program_hash());
+      const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+      const int jobs = options.jobs > 0 ? options.jobs : processors, cases = static_cast<int>(study.cases.size());
+      const CaseDesk desk{shelf, fingerprints.of(study_case, runner.libraries(study_case)), std::max(1, jobs / cases)};
+      return run_bifurcation(study_case, registry, desk, stop);
+    };
+  }
   if (study.resolved.contains("repeats"))
     runner.time = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return time_case(study_case, registry, stop);

@@ -83,6 +83,14 @@ int interrupted(const StudyRunner& runner, const Store& store, const std::filesy
   return kInterrupted;
 }
 
+/// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
+void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
+                  const CaseRecord& record) {
+  store.save_partial(record);
+  const std::set<std::string> none;
+  write_outputs(folder, with_tables(store.load()), runner.render, &none);
+}
+
 int run_in(const StudyRunner& runner, const Study& study, const RunOptions& options,
            const std::filesystem::path& folder) {
   const auto begin = std::chrono::steady_clock::now();
@@ -92,7 +100,8 @@ int run_in(const StudyRunner& runner, const Study& study, const RunOptions& opti
   const std::set<std::string> kept = store.begin(header(study), expected_cases(runner, study));
   if (runner.open)
     runner.open({[&](const std::string& key) { return store.motion(key); },
-                 [&](const std::string& key, const std::string& content) { store.save_motion(key, content); }},
+                 [&](const std::string& key, const std::string& content) { store.save_motion(key, content); },
+                 [&](const CaseRecord& record) { show_partial(runner, store, folder, record); }},
                 stop);
   std::vector<CaseRecord> excluded;
   std::vector<PendingCase> pending;

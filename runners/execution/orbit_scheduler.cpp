@@ -1,0 +1,305 @@
+#include "runners/execution/orbit_scheduler.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "runners/execution/prepare_case.hpp"
+#include "runners/execution/run_case.hpp"
+
+namespace ricochet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point then) {
+  return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+}  // namespace
+
+struct OrbitScheduler::Shared {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<int> ready;      // tasks that may begin
+  std::deque<Orbit> resumed;  // orbits that may go on
+  int open = 0;               // tasks not finished
+  bool ended = false;
+  std::exception_ptr failure;
+  const std::atomic<bool>* stop = nullptr;
+  const std::function<void(const MarchedOrbits&)>* checkpoint = nullptr;
+  std::vector<Orbit> fresh;                   // finished since the last checkpoint
+  std::vector<std::vector<Orbit>> snapshots;  // per worker, what is on its way
+  Clock::time_point last = Clock::now();
+  long long wanted = 0;  // snapshots asked for so far
+  double spent = 0;
+};
+
+OrbitScheduler::OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options)
+    : scenes_(scenes), options_(std::move(options)) {}
+
+int OrbitScheduler::add(OrbitTask task) {
+  const int number = count();
+  if (task.after >= 0) tasks_[static_cast<std::size_t>(task.after)].follower = number;
+  tasks_.push_back(std::move(task));
+  orbits_.emplace_back();
+  done_.push_back(false);
+  return number;
+}
+
+void OrbitScheduler::restore(MarchedOrbits marched) {
+  for (Orbit& orbit : marched.finished) {
+    const auto number = static_cast<std::size_t>(orbit.task);
+    if (number >= tasks_.size()) continue;
+    done_[number] = true;
+    orbit.lane = tasks_[number].lane;
+    orbits_[number] = std::move(orbit);
+  }
+  for (Orbit& orbit : marched.running) {
+    const auto number = static_cast<std::size_t>(orbit.task);
+    if (number >= tasks_.size() || done_[number]) continue;
+    orbit.lane = tasks_[number].lane;
+    waiting_.push_back(std::move(orbit));
+  }
+}
+
+// An orbit whose start is another's end.
+Orbit OrbitScheduler::begin(int number) const {
+  const OrbitTask& one = task(number);
+  Orbit orbit;
+  orbit.task = number;
+  orbit.lane = one.lane;
+  const Orbit& before = orbits_[static_cast<std::size_t>(one.after)];
+  orbit.now = scenes_.carry(before.now, scenes_[task(one.after).scene].group, scenes_[one.scene].group);
+  return orbit;
+}
+
+// Orbits that start from an initial state march their first period together.
+std::vector<Orbit> OrbitScheduler::start(const std::vector<int>& numbers) {
+  std::vector<LaneSpec> lanes;
+  for (const int number : numbers) lanes.push_back(task(number).lane);
+  const int group = scenes_[task(numbers.front()).scene].group;
+  StartedOrbits started = start_orbits(scenes_.program(group, lanes), options_.section);
+  std::vector<Orbit> orbits;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    Orbit orbit;
+    orbit.task = numbers[i];
+    orbit.lane = lanes[i];
+    orbit.now = std::move(started.states[i]);
+    orbit.transient_periods = 1;
+    if (!started.causes[i].empty()) {
+      orbit.stage = Orbit::Stage::stopped;
+      orbit.cause = started.causes[i];
+      orbit.stopped_period = 1;
+    }
+    orbits.push_back(std::move(orbit));
+  }
+  return orbits;
+}
+
+void OrbitScheduler::finish(Shared& shared, Orbit orbit) {
+  const auto number = static_cast<std::size_t>(orbit.task);
+  const int follower = tasks_[number].follower;
+  shared.fresh.push_back(orbit);
+  orbits_[number] = std::move(orbit);
+  done_[number] = true;
+  --shared.open;
+  if (follower >= 0 && !done_[static_cast<std::size_t>(follower)]) shared.ready.push_front(follower);
+  shared.changed.notify_all();
+}
+
+// Tasks of one group that may begin now; group −1: of the group of the first one.
+std::vector<int> OrbitScheduler::take(Shared& shared, int group, int most) {
+  std::vector<int> taken;
+  const auto chained = [&](int number) { return task(number).follower >= 0 || task(number).after >= 0; };
+  std::optional<bool> kind;
+  for (auto it = shared.ready.begin(); it != shared.ready.end() && static_cast<int>(taken.size()) < most;) {
+    const int its_group = scenes_[task(*it).scene].group;
+    if (group < 0) group = its_group;
+    // A new block holds either chains or single orbits: chains are long, and fastest in narrow blocks.
+    if (its_group == group && (!kind || *kind == chained(*it))) {
+      kind = chained(*it);
+      taken.push_back(*it);
+      it = shared.ready.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return taken;
+}
+
+void OrbitScheduler::work(Shared& shared, int worker) {
+  const double began = thread_seconds();
+  double counted = began;
+  long long shown = 0;  // snapshots given
+  std::unique_lock lock(shared.mutex);
+  while (shared.open > 0 && !shared.ended) {
+    std::vector<Orbit> orbits;
+    int group = -1;
+    while (!shared.resumed.empty() && static_cast<int>(orbits.size()) < options_.lanes) {
+      const int its_group = scenes_[task(shared.resumed.front().task).scene].group;
+      if (group >= 0 && its_group != group) break;
+      group = its_group;
+      orbits.push_back(std::move(shared.resumed.front()));
+      shared.resumed.pop_front();
+    }
+    std::vector<int> taken;
+    if (orbits.empty()) {
+      const int fair = (static_cast<int>(shared.ready.size()) + options_.workers - 1) / options_.workers;
+      taken = take(shared, -1, std::clamp(fair, 1, options_.lanes));
+      if (taken.empty()) {
+        shared.changed.wait(lock);
+        continue;
+      }
+      group = scenes_[task(taken.front()).scene].group;
+    }
+    std::optional<SectionMarch> block;
+    const auto admit = [&](const std::vector<int>& numbers) {
+      std::vector<int> first;
+      for (const int number : numbers)
+        if (const int after = task(number).after;
+            after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty())
+          orbits.push_back(begin(number));
+        else
+          first.push_back(number);
+      if (first.empty()) return;
+      lock.unlock();
+      std::vector<Orbit> started = start(first);
+      lock.lock();
+      for (Orbit& orbit : started) {
+        if (orbit.stage == Orbit::Stage::stopped) {
+          orbit.now = {};
+          finish(shared, std::move(orbit));
+        } else {
+          orbits.push_back(std::move(orbit));
+        }
+      }
+    };
+    admit(taken);
+    while (!orbits.empty() && !shared.ended) {
+      const LaneSpec place = orbits.front().lane;
+      lock.unlock();
+      const int width = lane_width(static_cast<int>(orbits.size()));
+      block.emplace(scenes_.program(group, std::vector<LaneSpec>(static_cast<std::size_t>(width), place)),
+                    options_.section);
+      for (std::size_t i = 0; i < orbits.size(); ++i) block->load(static_cast<int>(i), std::move(orbits[i]));
+      orbits.clear();
+      lock.lock();
+      int running = 0;
+      for (int i = 0; i < block->places(); ++i) running += !block->idle(i);
+      bool narrow = false;
+      while (running > 0 && !narrow && !shared.ended) {
+        lock.unlock();
+        std::vector<Orbit> ended = block->period();
+        const double now = thread_seconds();
+        lock.lock();
+        shared.spent += now - counted;
+        counted = now;
+        lane_periods_ += running;
+        running -= static_cast<int>(ended.size());
+        for (Orbit& orbit : ended) {
+          if (orbit.stage == Orbit::Stage::stopped) {
+            // What it began with, for a follower; nothing where that was its own initial state.
+            const int after = task(orbit.task).after;
+            const bool follows = after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty();
+            orbit.now = follows ? begin(orbit.task).now : LaneState{};
+            orbit.entry = {};
+          }
+          finish(shared, std::move(orbit));
+        }
+        if (running < block->places() && !shared.ready.empty()) {
+          admit(take(shared, group, block->places() - running));
+          for (int i = 0; i < block->places() && !orbits.empty(); ++i) {
+            if (!block->idle(i)) continue;
+            block->load(i, std::move(orbits.back()));
+            orbits.pop_back();
+            ++running;
+          }
+        }
+        const bool stopping = *shared.stop || shared.spent > options_.budget;
+        if (since(shared.last) > options_.interval) ++shared.wanted;
+        if (shared.wanted != shown) shared.snapshots[static_cast<std::size_t>(worker)] = block->running();
+        shown = shared.wanted;
+        if (stopping) {
+          over_budget_ = over_budget_ || shared.spent > options_.budget;
+          shared.ended = true;
+        }
+        if (since(shared.last) > options_.interval) {
+          shared.last = Clock::now();
+          MarchedOrbits marched;
+          marched.finished = std::move(shared.fresh);
+          shared.fresh.clear();
+          for (const auto& snapshot : shared.snapshots)
+            for (const Orbit& orbit : snapshot)
+              if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(orbit);
+          (*shared.checkpoint)(marched);
+        }
+        narrow = running > 0 && 2 * running <= block->places();
+      }
+      if (shared.ended && running > 0) shared.snapshots[static_cast<std::size_t>(worker)] = block->running();
+      if (narrow && !shared.ended) orbits = block->running();
+      if (!shared.ended) shared.snapshots[static_cast<std::size_t>(worker)].clear();
+    }
+  }
+}
+
+void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint) {
+  Shared shared;
+  shared.stop = &stop;
+  shared.checkpoint = &checkpoint;
+  shared.snapshots.resize(static_cast<std::size_t>(options_.workers));
+  std::vector<bool> on_its_way(tasks_.size(), false);
+  for (Orbit& orbit : waiting_) {
+    on_its_way[static_cast<std::size_t>(orbit.task)] = true;
+    shared.resumed.push_back(std::move(orbit));
+  }
+  waiting_.clear();
+  for (std::size_t number = 0; number < tasks_.size(); ++number) {
+    if (done_[number]) continue;
+    ++shared.open;
+    const int after = tasks_[number].after;
+    if (!on_its_way[number] && (after < 0 || done_[static_cast<std::size_t>(after)]))
+      shared.ready.push_back(static_cast<int>(number));
+  }
+  // Chains first.
+  std::stable_partition(shared.ready.begin(), shared.ready.end(),
+                        [&](int number) { return task(number).follower >= 0 || task(number).after >= 0; });
+  std::vector<std::jthread> threads;
+  std::mutex total;
+  const auto body = [&](int worker) {
+    const double began = thread_seconds();
+    try {
+      work(shared, worker);
+    } catch (const Refusal& refusal) {
+      const std::lock_guard guard(shared.mutex);
+      shared.failure = std::make_exception_ptr(std::runtime_error(refusal.sentence));
+      shared.ended = true;
+    } catch (...) {
+      const std::lock_guard guard(shared.mutex);
+      shared.failure = std::current_exception();
+      shared.ended = true;
+    }
+    shared.changed.notify_all();
+    const std::lock_guard guard(total);
+    seconds_ += thread_seconds() - began;
+  };
+  for (int worker = 1; worker < options_.workers; ++worker) threads.emplace_back(body, worker);
+  body(0);
+  threads.clear();
+  if (shared.failure) std::rethrow_exception(shared.failure);
+  MarchedOrbits marched;
+  marched.finished = std::move(shared.fresh);
+  for (auto& snapshot : shared.snapshots)
+    for (Orbit& orbit : snapshot)
+      if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(std::move(orbit));
+  for (Orbit& orbit : shared.resumed) marched.running.push_back(std::move(orbit));
+  checkpoint(marched);
+  if (stop) throw Interrupted{};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,445 @@
+#include "runners/execution/run_bifurcation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <ricochet/measure/linear_response.hpp>
+
+#include "runners/execution/orbit_bytes.hpp"
+#include "runners/execution/orbit_exponents.hpp"
+#include "runners/execution/orbit_portraits.hpp"
+#include "runners/execution/orbit_rows.hpp"
+#include "runners/execution/prepare_case.hpp"
+#include "runners/execution/random_states.hpp"
+#include "runners/study/with_parameter.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr int most_refinements = 40;       // halvings
+constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
+constexpr double partial_interval = 20;    // s
+
+/// What an interrupted case had marched: finished orbits in parts that are written once, those on their way anew.
+class Checkpoints {
+ public:
+  explicit Checkpoints(const CaseDesk& desk) : desk_(desk) {}
+  MarchedOrbits find() {
+    MarchedOrbits all;
+    if (!desk_.shelf.find) return all;
+    for (std::string bytes = desk_.shelf.find(part(parts_)); !bytes.empty(); bytes = desk_.shelf.find(part(parts_))) {
+      MarchedOrbits some = marched_orbits(bytes);
+      std::move(some.finished.begin(), some.finished.end(), std::back_inserter(all.finished));
+      ++parts_;
+    }
+    if (const std::string bytes = desk_.shelf.find(part(-1)); !bytes.empty())
+      all.running = marched_orbits(bytes).running;
+    return all;
+  }
+  void save(const MarchedOrbits& marched) {
+    if (!desk_.shelf.keep) return;
+    if (!marched.finished.empty()) desk_.shelf.keep(part(parts_++), to_bytes({marched.finished, {}}));
+    desk_.shelf.keep(part(-1), to_bytes({{}, marched.running}));
+  }
+  void forget() {
+    if (!desk_.shelf.keep) return;
+    for (int i = 0; i < parts_; ++i) desk_.shelf.keep(part(i), "");
+    desk_.shelf.keep(part(-1), "");
+  }
+
+ private:
+  std::string part(int number) const {
+    return fmt::format("orbits/{}/{}", desk_.key, number < 0 ? "now" : std::to_string(number));
+  }
+  const CaseDesk& desk_;
+  int parts_ = 0;
+};
+
+class BifurcationRun {
+ public:
+  BifurcationRun(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+                 const std::atomic<bool>& stop)
+      : case_(study_case),
+        registry_(registry),
+        desk_(desk),
+        stop_(stop),
+        scenes_(study_case, registry),
+        starts_(starts_of(study_case.settings)),
+        values_(parameter_values(study_case.settings)),
+        pointer_(study_case.settings.at("parameter").at("pointer").get<std::string>()) {}
+
+  CaseRecord run() {
+    const double begun = thread_seconds();
+    record_.id = case_.id;
+    record_.axes = case_.axes;
+    for (const double value : values_) add_value(value);
+    section_ = section_plan(case_, scenes_);
+    if (scenes_.groups() == 0) return refused();
+    describe_methods();
+    record_.setup_seconds = thread_seconds() - begun;
+    ScheduleOptions options;
+    options.section = section_;
+    options.workers = desk_.workers;
+    options.budget = budget_of(case_);
+    OrbitScheduler scheduler(scenes_, options);
+    scheduler_ = &scheduler;
+    Checkpoints checkpoints(desk_);
+    saved_ = checkpoints.find();
+    const auto keep = [&](const MarchedOrbits& marched) {
+      checkpoints.save(marched);
+      show_partial();
+    };
+    add_tasks();
+    scheduler.restore(saved_);
+    scheduler.run(stop_, keep);
+    refine(keep);
+    record_.run_seconds = scheduler.seconds();
+    finish();
+    checkpoints.forget();
+    return std::move(record_);
+  }
+
+ private:
+  // One value of the parameter: its scenes, at rest and as the study says, where starts ask for them.
+  struct Value {
+    double value = 0;
+    int rest = -1, state = -1;  // scenes
+    std::vector<int> tasks;     // per start; −1: none
+  };
+
+  void add_value(double value) {
+    Value one;
+    one.value = value;
+    const auto variant = [&] { return with_parameter(case_, pointer_, value); };
+    const auto needs = [&](bool state) {
+      return std::any_of(starts_.begin(), starts_.end(),
+                         [&](const StartSpec& start) { return (start.kind == StartSpec::state) == state; });
+    };
+    if (needs(false)) one.rest = scenes_.add([&] { return at_rest(variant()); });
+    if (needs(true)) one.state = scenes_.add(variant);
+    one.tasks.assign(starts_.size(), -1);
+    known_.push_back(std::move(one));
+  }
+
+  int scene_of(const Value& value, const StartSpec& start) const {
+    return start.kind == StartSpec::state ? value.state : value.rest;
+  }
+
+  OrbitTask task_at(const Value& value, const StartSpec& start) const {
+    OrbitTask task;
+    task.scene = scene_of(value, start);
+    task.lane = scenes_[task.scene].lane;
+    if (start.kind == StartSpec::random) {
+      const int group = scenes_[task.scene].group;
+      set_random_state(task.lane, scenes_.problem(group), start.seed, start.index);
+    }
+    return task;
+  }
+
+  void add_tasks() {
+    for (std::size_t s = 0; s < starts_.size(); ++s) {
+      const bool down = starts_[s].kind == StartSpec::down, chain = down || starts_[s].kind == StartSpec::up;
+      int last = -1;
+      for (std::size_t i = 0; i < known_.size(); ++i) {
+        Value& value = known_[down ? known_.size() - 1 - i : i];
+        if (!scenes_[scene_of(value, starts_[s])].refusal.empty()) continue;
+        OrbitTask task = task_at(value, starts_[s]);
+        if (chain) task.after = last;
+        last = value.tasks[s] = scheduler_->add(std::move(task));
+      }
+    }
+  }
+
+  void describe_methods() {
+    record_.operator_name = scenes_.operator_chosen();
+    for (const LeftOut& item : scenes_.left_out(0)) record_.left_out.emplace_back(item.item, item.reason);
+    record_.notes = scenes_.notes(0);
+    record_.notes.push_back(fmt::format(
+        "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
+        section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
+    analyse_groups();
+  }
+
+  // What the plan alone says of the groups that are not known yet.
+  void analyse_groups() {
+    while (static_cast<int>(marginal_.size()) < scenes_.groups()) {
+      const int group = static_cast<int>(marginal_.size());
+      marginal_.push_back(marginal_roots(scenes_, group));
+      viscosity_.push_back(numerical_viscosity(scenes_, group, case_, registry_));
+    }
+  }
+
+  CaseRecord refused() {
+    record_.status = "refused";
+    record_.reason = "no value of the parameter can be marched";
+    for (const Value& value : known_)
+      for (const int scene : {value.rest, value.state})
+        if (scene >= 0 && !scenes_[scene].refusal.empty()) {
+          record_.reason =
+              fmt::format("no value of the parameter can be marched; at {:g}: {}", value.value, scenes_[scene].refusal);
+          return std::move(record_);
+        }
+    return std::move(record_);
+  }
+
+  // The class of a value as far as it decides where to look closer: what does not repeat is one class.
+  std::string rough_class(int task) const {
+    const Orbit& orbit = scheduler_->orbit(task);
+    if (orbit.stage != Orbit::Stage::complete) return "";
+    if (!touches(orbit)) return "no contact";
+    const Recurrence found = find_recurrence(orbit.readings, section_.reading_scale(), recurrence_tolerance);
+    return found.period > 0 ? fmt::format("periodic {}", found.period) : "not periodic";
+  }
+
+  void refine(const std::function<void(const MarchedOrbits&)>& keep) {
+    const Json& wanted = case_.settings.value("refine", Json(nullptr));
+    if (!wanted.is_number() || scheduler_->over_budget()) return;
+    const auto tolerance = wanted.get<double>();
+    for (int round = 0; round < most_refinements; ++round) {
+      struct Middle {
+        std::size_t start;
+        double value;
+        int left, right;
+      };
+      std::vector<Middle> middles;
+      for (std::size_t s = 0; s < starts_.size(); ++s) {
+        std::size_t brackets = 0;
+        const Value* before = nullptr;
+        std::string was;
+        for (const Value& value : known_) {
+          if (value.tasks[s] < 0) continue;
+          const std::string is = rough_class(value.tasks[s]);
+          if (is.empty()) continue;
+          if (before && was != is && value.value - before->value > tolerance) {
+            if (brackets++ < most_brackets)
+              middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
+            else
+              crowded_ = true;
+          }
+          before = &value;
+          was = is;
+        }
+      }
+      if (middles.empty()) return;
+      int added = 0;
+      for (const Middle& middle : middles) {
+        const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
+                                            [](const Value& value, double at) { return value.value < at; });
+        auto index = static_cast<std::size_t>(place - known_.begin());
+        if (place == known_.end() || place->value != middle.value) {
+          add_value(middle.value);
+          std::rotate(known_.begin() + static_cast<std::ptrdiff_t>(index), known_.end() - 1, known_.end());
+        }
+        Value& value = known_[index];
+        const StartSpec& start = starts_[middle.start];
+        if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) continue;
+        OrbitTask task = task_at(value, start);
+        if (start.kind == StartSpec::up) task.after = middle.left;
+        if (start.kind == StartSpec::down) task.after = middle.right;
+        value.tasks[middle.start] = scheduler_->add(std::move(task));
+        ++added;
+      }
+      if (added == 0) return;
+      analyse_groups();
+      scheduler_->restore(saved_);
+      scheduler_->run(stop_, keep);
+    }
+  }
+
+  std::vector<OrbitView> views() const {
+    std::vector<OrbitView> all;
+    for (std::size_t s = 0; s < starts_.size(); ++s)
+      for (const Value& value : known_) {
+        const int scene = scene_of(value, starts_[s]), task = value.tasks[s];
+        const bool original = std::binary_search(values_.begin(), values_.end(), value.value);
+        if (task < 0 && (!original || scenes_[scene].refusal.empty())) continue;
+        OrbitView view;
+        view.value = value.value;
+        view.start = s;
+        view.refusal = scenes_[scene].refusal;
+        if (task >= 0) {
+          if (!scheduler_->finished(task)) continue;
+          view.orbit = &scheduler_->orbit(task);
+          view.group = scenes_[scene].group;
+          view.scene = scene;
+          view.marginal = marginal_[static_cast<std::size_t>(view.group)].sentence;
+          view.viscosity = viscosity_[static_cast<std::size_t>(view.group)];
+        }
+        all.push_back(view);
+      }
+    return all;
+  }
+
+  void show_partial() {
+    if (!desk_.shelf.show) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - shown_).count() < partial_interval) return;
+    shown_ = now;
+    CaseRecord partial = record_;
+    std::vector<OrbitView> all = views();
+    classify_all(all);
+    write_tables(partial, all);
+    partial.status = "done";
+    partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
+    desk_.shelf.show(partial);
+  }
+
+  void classify_all(std::vector<OrbitView>& all) const {
+    for (OrbitView& view : all) judge(view, section_);
+  }
+
+  void write_tables(CaseRecord& record, const std::vector<OrbitView>& all) const {
+    std::vector<std::string> names;
+    for (const StartSpec& start : starts_) names.push_back(start.name);
+    add_orbit_tables(record, all, names, exponents(), section_);
+  }
+
+  int exponents() const { return case_.settings.value("exponents", 0); }
+
+  void finish() {
+    std::vector<OrbitView> all = views();
+    std::vector<const Orbit*> complete;
+    std::vector<int> groups;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!all[i].orbit || all[i].orbit->stage != Orbit::Stage::complete) continue;
+      complete.push_back(all[i].orbit);
+      groups.push_back(all[i].group);
+      places.push_back(i);
+    }
+    if (exponents() > 0 && !complete.empty()) {
+      std::vector<bool> sawtooth;
+      for (const MarginalRoots& roots : marginal_) sawtooth.push_back(roots.sawtooth);
+      double seconds = 0;
+      const auto found =
+          measure_exponents(scenes_, complete, groups, section_, exponents(), sawtooth, desk_.workers, seconds, stop_);
+      record_.run_seconds += seconds;
+      for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
+      put("exponent_seconds", seconds);
+    }
+    classify_all(all);
+    write_tables(record_, all);
+    add_portraits(record_, scenes_, all, section_);
+    add_grazing();
+    if (crowded_)
+      record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
+    long long marched = 0, bad = 0;
+    for (const OrbitView& view : all) (view.orbit && view.orbit->stage == Orbit::Stage::complete ? marched : bad) += 1;
+    record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
+    put("orbits", static_cast<double>(marched));
+    if (scheduler_->lane_periods() > 0)
+      put("lane_steps_per_second", static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
+    record_.status = marched > 0 ? "done" : "diverged";
+    if (scheduler_->over_budget()) {
+      record_.status = "failed";
+      record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} orbits are complete", budget_of(case_),
+                                   marched, scheduler_->count());
+    } else if (marched == 0) {
+      for (const OrbitView& view : all)
+        if (view.orbit) record_.reason = "no orbit was completed; " + view.orbit->cause;
+    } else if (bad > 0) {
+      record_.notes.push_back(
+          fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));
+    }
+  }
+
+  // Where the periodic motion without contact first touches a stop, from the scheme's own linear response.
+  void add_grazing() {
+    const auto excess = [&](double value) -> std::optional<double> {
+      ForcedScenes one(case_, registry_);
+      const int scene = one.add([&] { return at_rest(with_parameter(case_, pointer_, value)); });
+      if (!one[scene].refusal.empty() || one.problem(0).points() == 0) return std::nullopt;
+      const auto response = linear_response(one.problem(0), one.plan(0), one.step(0));
+      if (!response) return std::nullopt;
+      return overlap(*response, one[scene].lane);
+    };
+    std::optional<double> before;
+    double low = 0;
+    for (std::size_t i = 0; i < values_.size(); i += std::max<std::size_t>(1, (values_.size() - 1) / 16)) {
+      const auto now = excess(values_[i]);
+      if (before && now && (*before < 0) != (*now < 0)) {
+        double left = low, right = values_[i];
+        int steps = 0;
+        for (; steps < 60 && right - left > 1e-12 * std::max(std::abs(left), std::abs(right)); ++steps) {
+          const double middle = 0.5 * (left + right);
+          const auto there = excess(middle);
+          if (!there) break;
+          ((*there < 0) == (*before < 0) ? left : right) = middle;
+        }
+        add_grazing_row(record_, *before < 0, 0.5 * (left + right), left, right, steps);
+      }
+      before = now;
+      low = values_[i];
+    }
+  }
+
+  void put(const char* name, double value) {
+    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
+  }
+
+  const StudyCase& case_;
+  const Registry& registry_;
+  const CaseDesk& desk_;
+  const std::atomic<bool>& stop_;
+  ForcedScenes scenes_;
+  std::vector<StartSpec> starts_;
+  std::vector<double> values_;  // of the study
+  std::string pointer_;
+  std::vector<Value> known_;  // ascending; refined ones among them
+  SectionPlan section_;
+  std::vector<MarginalRoots> marginal_;  // per group
+  std::vector<std::optional<EquivalentViscosity>> viscosity_;
+  OrbitScheduler* scheduler_ = nullptr;
+  MarchedOrbits saved_;
+  CaseRecord record_;
+  bool crowded_ = false;
+  std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  const std::vector<double> values = parameter_values(study_case.settings);
+  const std::vector<StartSpec> starts = starts_of(study_case.settings);
+  const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
+  ForcedScenes scenes(study_case, registry);
+  int representative = -1;
+  for (const double value : values) {
+    const int scene = scenes.add([&] { return at_rest(with_parameter(study_case, pointer, value)); });
+    if (scenes[scene].refusal.empty()) {
+      representative = scene;
+      break;
+    }
+    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
+  }
+  if (representative < 0) return out;
+  out.refusal.clear();
+  out.operator_name = scenes.operator_chosen();
+  for (const LeftOut& item : scenes.left_out(0)) out.left_out.emplace_back(item.item, item.reason);
+  out.notes = scenes.notes(0);
+  const Json& settings = study_case.settings;
+  const auto periods = settings.at("transient").at("periods").get<double>() + settings.at("keep").get<double>();
+  double chains = 0, singles = 0;
+  for (const StartSpec& start : starts)
+    (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
+  const double orbit = periods * study_case.steps_per_period, count = static_cast<double>(values.size());
+  const auto lanes = [&](int width) { return scenes.predicted_step_seconds(0, width) / width; };
+  out.steps = static_cast<long long>(orbit * count * (chains + singles));
+  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
+  out.predicted_seconds +=
+      settings.at("keep").get<double>() * study_case.steps_per_period * count * (chains + singles) *
+      (settings.value("exponents", 0) > 0 ? 3.0 + settings.value("exponents", 0) : 0.0) * lanes(16);
+  return out;
+}
+
+CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+                           const std::atomic<bool>& stop) {
+  return BifurcationRun(study_case, registry, desk, stop).run();
+}
+
+}  // namespace ricochet
