@@ -14,19 +14,19 @@ constexpr std::size_t kDirections = 8, kExact = 16, kLargest = 64, kBlocks = 10,
 constexpr int kDraws = 19;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-using Points = std::span<const SectionPoint>;
+using Points = std::span<const CloudPoint>;
 
-double length(const SectionPoint& a, const SectionPoint& b) {
+double length(const CloudPoint& a, const CloudPoint& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-bool finite(const SectionPoint& p) {
+bool finite(const CloudPoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]);
 }
 
-const std::array<SectionPoint, kDirections>& directions() {
+const std::array<CloudPoint, kDirections>& directions() {
   static const auto all = [] {
-    std::array<SectionPoint, kDirections> out;
+    std::array<CloudPoint, kDirections> out;
     for (std::size_t k = 0; k < kDirections; ++k) {
       const double angle = std::numbers::pi * (static_cast<double>(k) + 0.5) / kDirections;
       out[k] = {std::cos(angle), std::sin(angle)};
@@ -36,16 +36,16 @@ const std::array<SectionPoint, kDirections>& directions() {
   return all;
 }
 
-double projection(const SectionPoint& p, const SectionPoint& direction) {
+double projection(const CloudPoint& p, const CloudPoint& direction) {
   return p[0] * direction[0] + p[1] * direction[1];
 }
 
 std::vector<double> sorted_slices(Points points) {
   std::vector<double> out;
   out.reserve(kDirections * points.size());
-  for (const SectionPoint& direction : directions()) {
+  for (const CloudPoint& direction : directions()) {
     const std::size_t first = out.size();
-    for (const SectionPoint& p : points) out.push_back(projection(p, direction));
+    for (const CloudPoint& p : points) out.push_back(projection(p, direction));
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
   }
   return out;
@@ -84,15 +84,15 @@ double distance(Points a, Points b, std::span<const double> a_slices, std::span<
   return slices_distance(a_slices, b_slices);
 }
 
-std::vector<SectionPoint> scaled(Points points, const SectionPoint& scale) {
-  std::vector<SectionPoint> out;
-  for (const SectionPoint& p : points)
+std::vector<CloudPoint> scaled(Points points, const CloudPoint& scale) {
+  std::vector<CloudPoint> out;
+  for (const CloudPoint& p : points)
     if (finite(p)) out.push_back({p[0] / scale[0], p[1] / scale[1]});
   return out;
 }
 
-std::vector<SectionPoint> even_sample(Points points, std::size_t count) {
-  std::vector<SectionPoint> out;
+std::vector<CloudPoint> even_sample(Points points, std::size_t count) {
+  std::vector<CloudPoint> out;
   for (std::size_t i = 0; i < count; ++i) out.push_back(points[i * points.size() / count]);
   return out;
 }
@@ -132,7 +132,7 @@ double null_by_slices(Points pool, std::vector<double>* slices) {
     for (std::size_t k = 0; k < kBlocks; ++k)
       weights[static_cast<std::size_t>(d)][k] = (draw[k] ? -1.0 : 1.0) / static_cast<double>(sizes[draw[k]]);
   }
-  for (const SectionPoint& direction : directions()) {
+  for (const CloudPoint& direction : directions()) {
     for (std::size_t i = 0; i < pool.size(); ++i)
       sorted[i] = {projection(pool[i], direction), static_cast<std::uint32_t>(i)};
     std::sort(sorted.begin(), sorted.end());
@@ -152,7 +152,7 @@ double null_by_slices(Points pool, std::vector<double>* slices) {
 }
 
 struct Halves {
-  std::vector<SectionPoint> first, second;
+  std::vector<CloudPoint> first, second;
 };
 
 Halves halves(Points pool, const std::array<bool, kBlocks>& draw) {
@@ -234,9 +234,9 @@ double sliced_wasserstein(Points a, Points b) {
 double hausdorff_distance(Points a, Points b) {
   const auto farthest = [](Points from, Points to) {
     double worst = 0;
-    for (const SectionPoint& p : from) {
+    for (const CloudPoint& p : from) {
       double nearest = kInfinite;
-      for (const SectionPoint& q : to) {
+      for (const CloudPoint& q : to) {
         const double x = p[0] - q[0], v = p[1] - q[1];
         nearest = std::min(nearest, x * x + v * v);
         if (nearest <= worst) break;
@@ -248,9 +248,9 @@ double hausdorff_distance(Points a, Points b) {
   return std::sqrt(std::max(farthest(a, b), farthest(b, a)));
 }
 
-SectionCloud make_cloud(Points run, Points opposite, const SectionPoint& scale, int cycle) {
+SectionCloud make_cloud(Points run, Points opposite, const CloudPoint& scale, int cycle) {
   SectionCloud cloud;
-  std::vector<SectionPoint> points = scaled(run, scale), mirrored = scaled(opposite, scale);
+  std::vector<CloudPoint> points = scaled(run, scale), mirrored = scaled(opposite, scale);
   if (points.empty()) return cloud;
   if (mirrored.size() != points.size()) mirrored.clear();
   if (cycle > 0) {
@@ -264,7 +264,7 @@ SectionCloud make_cloud(Points run, Points opposite, const SectionPoint& scale, 
     cloud.points = even_sample(points, count);
     cloud.slices = sorted_slices(cloud.points);
   } else {
-    const std::vector<SectionPoint> pool = even_sample(points, 2 * count);
+    const std::vector<CloudPoint> pool = even_sample(points, 2 * count);
     for (std::size_t i = 0; i < pool.size(); i += 2) cloud.points.push_back(pool[i]);
     cloud.null = null_by_slices(pool, &cloud.slices);
   }
@@ -275,9 +275,9 @@ SectionCloud make_cloud(Points run, Points opposite, const SectionPoint& scale, 
   return cloud;
 }
 
-std::vector<SectionPoint> distinct_points(Points points, double tolerance) {
-  std::vector<SectionPoint> out;
-  for (const SectionPoint& p : points)
+std::vector<CloudPoint> distinct_points(Points points, double tolerance) {
+  std::vector<CloudPoint> out;
+  for (const CloudPoint& p : points)
     if (finite(p) && std::none_of(out.begin(), out.end(), [&](const auto& q) { return length(p, q) <= tolerance; }))
       out.push_back(p);
   return out;
@@ -303,8 +303,8 @@ double cloud_hausdorff(const SectionCloud& a, const SectionCloud& b) {
   return least;
 }
 
-HalvesNull null_of_halves(Points run, const SectionPoint& scale, int cycle) {
-  const std::vector<SectionPoint> points = scaled(run, scale);
+HalvesNull null_of_halves(Points run, const CloudPoint& scale, int cycle) {
+  const std::vector<CloudPoint> points = scaled(run, scale);
   HalvesNull out;
   if (cycle > 0) {
     const std::size_t length = static_cast<std::size_t>(cycle);
@@ -315,7 +315,7 @@ HalvesNull null_of_halves(Points run, const SectionPoint& scale, int cycle) {
     return out;
   }
   if (points.size() < kFewest) return out;
-  const std::vector<SectionPoint> pool = even_sample(points, 2 * sample_size(points.size()));
+  const std::vector<CloudPoint> pool = even_sample(points, 2 * sample_size(points.size()));
   out.wasserstein = null_by_slices(pool, nullptr);
   for (const auto& draw : draws()) {
     const Halves split = halves(pool, draw);
@@ -324,7 +324,7 @@ HalvesNull null_of_halves(Points run, const SectionPoint& scale, int cycle) {
   return out;
 }
 
-void ScaleOfPoints::add(const SectionPoint& point) {
+void ScaleOfPoints::add(const CloudPoint& point) {
   if (!finite(point)) return;
   ++count_;
   for (std::size_t c = 0; c < 2; ++c) {
@@ -335,8 +335,8 @@ void ScaleOfPoints::add(const SectionPoint& point) {
   }
 }
 
-SectionPoint ScaleOfPoints::scale() const {
-  SectionPoint out = {1, 1};
+CloudPoint ScaleOfPoints::scale() const {
+  CloudPoint out = {1, 1};
   for (std::size_t c = 0; c < 2; ++c) {
     const double spread = count_ > 0 ? std::sqrt(squares_[c] / static_cast<double>(count_)) : 0;
     if (spread > 1e-9 * largest_[c])

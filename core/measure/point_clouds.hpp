@@ -27,19 +27,19 @@
 /// half holds as many points as the clouds that are compared.
 namespace ricochet {
 
-using SectionPoint = std::array<double, 2>;
+using CloudPoint = std::array<double, 2>;
 
 /// W(a, b), exact. Neither may be empty.
-double exact_wasserstein(std::span<const SectionPoint> a, std::span<const SectionPoint> b);
+double exact_wasserstein(std::span<const CloudPoint> a, std::span<const CloudPoint> b);
 /// The sliced formula above. Neither may be empty.
-double sliced_wasserstein(std::span<const SectionPoint> a, std::span<const SectionPoint> b);
+double sliced_wasserstein(std::span<const CloudPoint> a, std::span<const CloudPoint> b);
 /// The farthest that a point of one cloud is from the other cloud. Neither may be empty.
-double hausdorff_distance(std::span<const SectionPoint> a, std::span<const SectionPoint> b);
+double hausdorff_distance(std::span<const CloudPoint> a, std::span<const CloudPoint> b);
 
 /// A section made ready to be compared many times.
 struct SectionCloud {
-  std::vector<SectionPoint> points;    ///< at most 64, dimensionless: the points of a cycle, or an even sample of a run
-  std::vector<SectionPoint> opposite;  ///< of the mirror image x → −x, t → t + T/2; empty where it is not known
+  std::vector<CloudPoint> points;    ///< at most 64, dimensionless: the points of a cycle, or an even sample of a run
+  std::vector<CloudPoint> opposite;  ///< of the mirror image x → −x, t → t + T/2; empty where it is not known
   std::vector<double> slices, opposite_slices;  ///< sorted projections, direction by direction; empty for a cycle
   double null = 0;                              ///< W of the run against itself; 0 for a cycle
   bool empty() const { return points.empty(); }
@@ -49,12 +49,12 @@ struct SectionCloud {
 /// by `scale` here. `cycle` > 0: the section repeats after that many points, and the last ones stand for it; 0: an even
 /// sample of at most 64 points, never more than half of the run (so that the null has halves of that size). Points that
 /// are not finite are left out. Deterministic.
-SectionCloud make_cloud(std::span<const SectionPoint> run, std::span<const SectionPoint> opposite,
-                        const SectionPoint& scale, int cycle);
+SectionCloud make_cloud(std::span<const CloudPoint> run, std::span<const CloudPoint> opposite, const CloudPoint& scale,
+                        int cycle);
 
 /// The points that are further apart than `tolerance` (dimensionless), in the order met: a periodic section whose
 /// number of points is not known.
-std::vector<SectionPoint> distinct_points(std::span<const SectionPoint> points, double tolerance);
+std::vector<CloudPoint> distinct_points(std::span<const CloudPoint> points, double tolerance);
 
 /// Whether W between two clouds is computed exactly.
 bool compared_exactly(const SectionCloud& a, const SectionCloud& b);
@@ -70,18 +70,18 @@ struct HalvesNull {
 };
 /// The null of a run for both distances. A cycle's is the distance of its first to its last points: what is left of its
 /// transient. {0, 0} where the run has fewer than 20 points (fewer than two cycles).
-HalvesNull null_of_halves(std::span<const SectionPoint> run, const SectionPoint& scale, int cycle);
+HalvesNull null_of_halves(std::span<const CloudPoint> run, const CloudPoint& scale, int cycle);
 
 /// Standard deviation of each coordinate over all finite points, one after the other; the largest magnitude where they
 /// do not spread, 1 where they are all zero or there are none.
 class ScaleOfPoints {
  public:
-  void add(const SectionPoint& point);
-  SectionPoint scale() const;
+  void add(const CloudPoint& point);
+  CloudPoint scale() const;
 
  private:
   std::size_t count_ = 0;
-  SectionPoint mean_{}, squares_{}, largest_{};
+  CloudPoint mean_{}, squares_{}, largest_{};
 };
 
 }  // namespace ricochet
