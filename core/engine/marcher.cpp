@@ -151,6 +151,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
       state->effort_pointers[static_cast<std::size_t>(k)] = state->effort[static_cast<std::size_t>(k)].data();
     }
     state->free = Block(points, T);
+    if (stage.effort.size() > 1 || stage.effort[0] != 1.0) state->weighted = Block(points, T);
     state->measure_weights = with_z(stage.measure);
     if (program_.tangents > 0) state->tangents.reserve(points);
     if (stage.compliance && program_.law->reads_rate()) {
@@ -313,6 +314,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     if (state.delassus) {
       view.effort = state.effort_pointers.data();
       view.outcome = outcome_.data();
+      view.free = state.free.data();
       view.contact_lanes = state.contact_lanes;
     }
     observer->stage_solved(*this, view);
@@ -426,8 +428,8 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     std::copy_n(state.effort[0].data(), size, state.effort[1].data());
     for (std::size_t k = 1; k < program.effort.size(); ++k) {
       if (program.effort[k] == 0) continue;
-      for (std::size_t e = 0; e < size; ++e) state.free.data()[e] = program.effort[k] * state.effort[k].data()[e];
-      correct(state.free.data());
+      for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort[k].data()[e];
+      correct(state.weighted.data());
     }
   }
   std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
@@ -477,8 +479,8 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   if (program.effort[0] == 1.0) {
     if (state.contact_lanes != 0) correct(state.effort[0].data());
   } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
-    for (std::size_t e = 0; e < size; ++e) state.free.data()[e] = program.effort[0] * state.effort[0].data()[e];
-    correct(state.free.data());
+    for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
+    correct(state.weighted.data());
   }
 }
 

@@ -32,6 +32,7 @@ struct StageView {
   const double* z = nullptr;              ///< the stage's unknown, efforts included
   const double* const* effort = nullptr;  ///< p, p₋₁, p₋₂ (null beyond what the plan weights); null: no contact
   const LaneOutcome* outcome = nullptr;   ///< per lane, of the law
+  const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
   std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
 };
 

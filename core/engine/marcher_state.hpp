@@ -83,7 +83,7 @@ struct Marcher::StageState {
   std::unique_ptr<StageDelassus> delassus;
   std::array<Block, 3> effort;  // p, p₋₁, p₋₂
   std::array<const double*, 3> effort_pointers{};
-  Block free, rate, gap, gate_lower, gate_upper, approach;
+  Block free, weighted, rate, gap, gate_lower, gate_upper, approach;
   Block fastest;                    // largest speed seen at a closed point, per lane
   std::uint32_t contact_lanes = 0;  // lanes with a non-zero effort
   std::uint32_t closed_lanes = 0;   // lanes with a closed gate

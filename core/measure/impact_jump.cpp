@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <ricochet/measure/impact_jump.hpp>
+#include <ricochet/measure/plan_restitution.hpp>
 #include <ricochet/measure/velocity_offset.hpp>
 
 namespace ricochet {
@@ -80,6 +81,7 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   if (!needed_) return;
   marcher.hold_tangents(massive_, longest_impact);
   offset_ = velocity_offset(program.plan);
+  restitution_ = plan_restitution(program.plan, program.h);
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     lanes_.push_back(std::make_unique<Lane>());
     lanes_.back()->columns.resize(static_cast<std::size_t>(program.tangents));
@@ -176,7 +178,10 @@ void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
   const Impact& impact = lane.impact;
   const double omega = program.problem->support.pulsation;
   const Eigen::VectorXd after = lane.orbit.velocity(h, since), acceleration = lane.orbit.acceleration(h);
-  const Eigen::VectorXd lost = impact.velocity - after;
+  // Its direction is that of the orbit; its size is the law's, which the orbit itself keeps to O(h) only.
+  Eigen::VectorXd lost = impact.velocity - after;
+  const double taken = rows.times(impact.point, lost.data());
+  if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
   const double clamp = -omega * omega * marcher.support(index, impact.time);
   const double pushed = rows.times(impact.point, impact.acceleration.data()) + clamp;
   for (std::size_t k = 0; k < lane.columns.size(); ++k) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <vector>
 
@@ -15,9 +16,9 @@ namespace ricochet {
 ///     δv⁺ = δv⁻ + (a⁻ − a⁺) δt − (1+e) r [H δv⁻ + (H a⁻ + φ'') δt],        (1+e) r = (v⁻ − v⁺)/w⁻
 ///
 /// w = Hv + φ' the speed of the point; v±, a± are those of the orbit, from its displacements before and after, carried
-/// to the time of the impact; nothing is asked of the law. A contact that lasts longer is a point that rests: there the
-/// derivative of the step with its contact set is right. Second-order accurate in h on regular masses. Source: Müller
-/// (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
+/// to the time of the impact; e is what the plan restitutes to a free mass. A contact that lasts longer is a point that
+/// rests: there the derivative of the step with its contact set is right. Second-order accurate in h on regular masses.
+/// Source: Müller (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
 class ImpactJump final : public StepObserver {
  public:
   /// Looks at rigid contact points whose mass is not zero, and has the marcher hold the tangents there.
@@ -42,6 +43,7 @@ class ImpactJump final : public StepObserver {
 
   bool needed_ = false;
   double offset_ = 0;  // of velocity slots, in steps
+  std::optional<double> restitution_;
   std::vector<bool> massive_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   struct Inverse;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/measure/section_march.hpp>
+#include <ricochet/measure/velocity_offset.hpp>
 
 namespace ricochet {
 namespace {
@@ -20,7 +21,11 @@ double central(const std::vector<double>& before, const std::vector<double>& aft
 class SectionMarch::Watch final : public StepObserver {
  public:
   Watch(const Marcher& marcher, const SectionPlan& plan, std::vector<std::optional<Orbit>>& orbits)
-      : model_(*marcher.program().model), plan_(plan), orbits_(orbits), h_(marcher.program().h) {
+      : model_(*marcher.program().model),
+        plan_(plan),
+        orbits_(orbits),
+        h_(marcher.program().h),
+        offset_(velocity_offset(marcher.program().plan)) {
     tips_.resize(orbits.size());
   }
 
@@ -89,7 +94,7 @@ class SectionMarch::Watch final : public StepObserver {
 
   void begin(const Marcher& marcher, const StageView& view, int lane, int side, int point, Orbit& orbit) {
     const double t = view.time;
-    const double speed = velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t);
+    const double speed = closing_speed(marcher, view, lane, side, point);
     const double turns = static_cast<double>(marcher.step() % plan_.steps_per_period) / plan_.steps_per_period;
     orbit.impacts.push_back({2 * std::numbers::pi * turns, side, std::abs(speed)});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
@@ -97,6 +102,44 @@ class SectionMarch::Watch final : public StepObserver {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     orbit.points.push_back({displacement(marcher, view, lane) + marcher.support(lane, t),
                             velocity(marcher, view, lane, model_.tip(), 0) + marcher.support_rate(lane, t), nan, nan});
+  }
+
+  // The velocity at which a point meets its stop: between that of the scheme and that of the free step to come, at the
+  // time when the gap closes. A point without mass changes its velocity within few steps.
+  double closing_speed(const Marcher& marcher, const StageView& view, int lane, int side, int point) const {
+    const double t = view.time;
+    const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t);
+    const Program& program = marcher.program();
+    const StageProgram& stage = program.stages[static_cast<std::size_t>(view.stage)];
+    const Combination& update = view.plan->update[0];
+    if (program.stages.size() != 1 || stage.gate || stage.measure_z == 0 || update.z == 0) return before;
+    // H q₊ of the free step from what the law measured, which is affine in the same z°.
+    const auto at = [&](const std::vector<double>& weights) {
+      double sum = 0;
+      for (std::size_t j = 0; j < weights.size(); ++j)
+        if (weights[j] != 0) sum += weights[j] * slot_at(view, marcher.width(), lane, static_cast<int>(j), point);
+      return sum;
+    };
+    const double measured = view.free[static_cast<std::ptrdiff_t>(point) * marcher.width() + lane] -
+                            marcher.support_levels(lane, t, stage.measure_levels);
+    const double z = (measured - at(stage.measure.slots)) / stage.measure_z;
+    const double now = at({1.0}) + marcher.support(lane, t);
+    const double next = at(update.slots) + update.z * z + marcher.support(lane, t + h_);
+    const double after = (next - now) / h_;
+    const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane)];
+    const double stop = side == 0 ? spec.lower[point] : spec.upper[point];
+    const double ahead = next != now ? std::clamp((stop - now) / (next - now), 0.0, 1.0) : 0.0;
+    const double share = (ahead - offset_) / (0.5 - offset_);
+    return before + share * (after - before);
+  }
+
+  double slot_at(const StageView& view, int width, int lane, int slot, int point) const {
+    const RowMatrix& rows = model_.contact();
+    double sum = 0;
+    for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e)
+      sum += rows.value[static_cast<std::size_t>(e)] *
+             view.slots[slot][static_cast<std::ptrdiff_t>(rows.index[static_cast<std::size_t>(e)]) * width + lane];
+    return sum;
   }
 
   double displacement(const Marcher& marcher, const StageView& view, int lane) const {
@@ -122,7 +165,7 @@ class SectionMarch::Watch final : public StepObserver {
   const MarchModel& model_;
   const SectionPlan& plan_;
   std::vector<std::optional<Orbit>>& orbits_;
-  double h_;
+  double h_, offset_;
   std::uint32_t keeping_ = 0, closed_ = 0;
   std::array<std::array<int, 2>, 32> counts_{};
   std::vector<Tips> tips_;
