@@ -32,6 +32,41 @@ Interval interval_of(const std::vector<double>& rates) {
   return {mean, mean, mean};
 }
 
+double spread(const std::vector<double>& a, const std::vector<double>& b) {
+  double mean = 0, sum = 0;
+  const auto count = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) mean += (a[i] + b[i]) / count;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] + b[i] - mean) * (a[i] + b[i] - mean) / count;
+  return sum;
+}
+
+// Exponents of the columns. Two multipliers that are a complex pair turn their plane: each column's growth swings from
+// period to period while that of the area does not, and both exponents are half of it.
+std::vector<Interval> intervals_of(const std::vector<std::vector<double>>& rates, int count) {
+  constexpr double steadier = 0.05;  // variance of the area's growth over that of one column
+  std::vector<Interval> found;
+  for (std::size_t k = 0; k < rates.size() && static_cast<int>(found.size()) < count; ++k) {
+    if (k + 1 < rates.size()) {
+      const double alone = spread(rates[k], std::vector<double>(rates[k].size(), 0.0));
+      const auto count_of = static_cast<double>(rates[k].size());
+      double apart = 0;
+      for (std::size_t i = 0; i < rates[k].size(); ++i) apart += (rates[k][i] - rates[k + 1][i]) / count_of;
+      // Two real multipliers stay apart; the means of a pair's columns agree up to their swing.
+      const bool together = apart * apart <= 16 * alone / count_of;
+      if (together && spread(rates[k], rates[k + 1]) < steadier * alone) {
+        std::vector<double> half(rates[k].size());
+        for (std::size_t i = 0; i < half.size(); ++i) half[i] = 0.5 * (rates[k][i] + rates[k + 1][i]);
+        found.insert(found.end(), 2, interval_of(half));
+        ++k;
+        continue;
+      }
+    }
+    found.push_back(interval_of(rates[k]));
+  }
+  found.resize(std::min(found.size(), static_cast<std::size_t>(count)));
+  return found;
+}
+
 bool usable(const std::vector<double>& rates) {
   return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
 }
@@ -55,7 +90,9 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   std::map<int, std::vector<std::size_t>> by_group;
   for (std::size_t i = 0; i < orbits.size(); ++i) by_group[groups[i]].push_back(i);
   std::vector<Batch> batches;
-  const auto most = static_cast<std::size_t>(std::max(1, block_width / (1 + count)));
+  // One column more than asked for: it may belong to the last one as a complex pair.
+  const int columns = groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(groups.front()).dofs()});
+  const auto most = static_cast<std::size_t>(std::max(1, block_width / (1 + columns)));
   for (const auto& [group, members] : by_group)
     for (std::size_t first = 0; first < members.size(); first += most)
       batches.push_back({group,
@@ -79,13 +116,14 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     }
     bool tangents = true;
     try {
-      const auto rates = lyapunov_rates(scenes.program(batch.group, lanes, count), states, one);
+      const auto rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
       for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
         OrbitExponents& exponents = found[batch.orbits[b]];
         exponents.cause = rates[b].cause;
         if (!rates[b].cause.empty()) continue;
-        for (const auto& series : rates[b].rates)
-          if (usable(series)) exponents.values.push_back(interval_of(series));
+        // A column beyond what the state can tell apart has no growth to speak of.
+        const auto& all = rates[b].rates;
+        exponents.values = intervals_of({all.begin(), std::find_if_not(all.begin(), all.end(), usable)}, count);
         exponents.method = rates[b].jumps > 0 ? "tangent+jump" : "tangent";
       }
     } catch (const Refusal&) {
