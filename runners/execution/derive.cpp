@@ -9,6 +9,8 @@
 #include <ricochet/measure/orders.hpp>
 #include <set>
 
+#include "runners/execution/derive_dynamics.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -187,6 +189,7 @@ DerivedTable work_precision_table(const StudyResults& results) {
 void collect(StudyResults& results) {
   for (const CaseRecord& record : results.cases)
     for (const DerivedTable& own : record.tables) {
+      if (has_dynamics(results) && derived_as_dynamics(own.name)) continue;
       auto found = std::find_if(results.derived.begin(), results.derived.end(),
                                 [&](const DerivedTable& table) { return table.name == own.name; });
       if (found == results.derived.end()) {
@@ -251,6 +254,7 @@ void derive_tables(StudyResults& results) {
   }
   if (results.kind == "work-precision") results.derived.push_back(work_precision_table(results));
   collect(results);
+  if (has_dynamics(results)) derive_dynamics(results);
   if (DerivedTable effects = effects_table(results); !effects.rows.empty())
     results.derived.push_back(std::move(effects));
 }

@@ -4,7 +4,8 @@
 namespace ricochet {
 
 /// Works out the tables that stand beside cases.csv from the cases alone: errors, orders, work_precision, stability,
-/// effects (those that the study's kind has; effects wherever at least two factors vary). Rows speak of finished cases
+/// effects, and those of derive_dynamics() (those that the study's kind has; effects wherever at least two factors
+/// vary). Rows speak of finished cases
 /// only; a partial study has partial tables.
 void derive_tables(StudyResults& results);
 

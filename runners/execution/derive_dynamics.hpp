@@ -38,6 +38,8 @@ namespace ricochet {
 
 /// Whether the study's cases leave sections: kinds `bifurcation` and `basins`.
 bool has_dynamics(const StudyResults& results);
+/// Whether a table of the cases is among those that derive_dynamics() collects.
+bool derived_as_dynamics(const std::string& table);
 
 /// Appends the tables above to results.derived; an unfinished study has partial ones. Failed values make no attractor.
 void derive_dynamics(StudyResults& results);
