@@ -366,7 +366,7 @@ bool conservative(const CaseView& view) {
 std::string answer_html(const CaseView& view) {
   const Cases done = view.with_status("done");
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
-  if (const std::string dynamics = dynamics_answer_html(view); !dynamics.empty()) return dynamics;
+  if (const std::string dynamics = dynamics_answer_html(view) + basins_html(view); !dynamics.empty()) return dynamics;
   if (done.empty()) return "<p>No case has finished with a result; the table below says why.</p>\n";
   const StudyResults& results = view.results();
   if (results.kind != "trajectory") return stability_html(view) + work_precision_html(view) + orders_html(view);

@@ -72,7 +72,26 @@ const ricochetDynamics = (function () {
     });
     return { rows, orbits, ids };
   }
+  // Cells of one label (or of one outcome of a comparison) in its colour, the others clear; several pixels a cell, so that edges stay sharp.
+  function image(reference) {
+    const own = block(reference.case, "cells"), other = reference.other === undefined ? null : block(reference.other, "cells");
+    const undecided = new Set(reference.undecided || []), known = (k) => k !== 255 && !undecided.has(k);
+    const wanted = (i) => (other ? (known(own[i]) && known(other[i]) ? (own[i] === other[i] ? 1 : 0) : 2) === reference.differs : own[i] === reference.label);
+    const each = Math.max(1, Math.ceil(1000 / Math.max(reference.columns, reference.rows)));
+    const canvas = Object.assign(document.createElement("canvas"), { width: each * reference.columns, height: each * reference.rows }), context = canvas.getContext("2d");
+    context.fillStyle = reference.colour;
+    for (let row = 0; row < reference.rows; ++row) {
+      for (let from = 0; from < reference.columns;) {
+        let to = from;
+        while (to < reference.columns && wanted(row * reference.columns + to)) ++to;
+        if (to > from) context.fillRect(each * from, each * (reference.rows - 1 - row), each * (to - from), each);
+        from = Math.max(to, from + 1);
+      }
+    }
+    return { rows: [reference.bounds], canvas };
+  }
   function make(reference, option) {
+    if (reference.sweep === "image") return image(reference);
     if (reference.sweep === "cells") return cells(reference);
     if (reference.sweep === "zero") return { rows: [[option.xAxis[0].min, 0], [option.xAxis[0].max, 0]] };
     return makers[reference.sweep](reference, orbitsOf(reference.case));
@@ -90,7 +109,7 @@ const ricochetDynamics = (function () {
       if (!reference || typeof reference.sweep !== "string") return null;
       const key = JSON.stringify(reference);
       if (!made.has(key)) made.set(key, make(reference, option));
-      const built = made.get(key), source = { reference, orbits: built.orbits || null, ids: built.ids || null, values: built.values || null, rows: built.rows || null };
+      const built = made.get(key), source = { reference, orbits: built.orbits || null, ids: built.ids || null, values: built.values || null, rows: built.rows || null, canvas: built.canvas || null };
       if (!built.values) { series.data = built.rows; return source; }
       const count = built.values.length / 2;
       if (reference.sweep === "points" && count > 2500) {
@@ -113,6 +132,11 @@ const ricochetDynamics = (function () {
     const from = Math.floor(left), to = Math.max(Math.floor(right), from + 1);
     return { type: "rect", shape: { x: from, y: low[1] - tall / 2 + 0.5, width: to - from, height: Math.max(tall - 1, 1) }, style: { fill: api.visual("color") } };
   }
+
+  const drawImage = (view) => (params, api) => {
+    const low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(3)]);
+    return { type: "image", style: { image: view.sources[params.seriesIndex].canvas, x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
+  };
 
   // ---- words --------------------------------------------------------------------------------------------------------
   function regime(one, o) {
@@ -142,6 +166,21 @@ const ricochetDynamics = (function () {
       if (source.reference.sweep === "points") out += line(view.y[0], page.number(p.value[1], 8) + unitText(view.y));
       if (interval(one, "exponent_1", o)) out += line("exponent", interval(one, "exponent_1", o));
       return out;
+    };
+  }
+
+  function cellTooltip(view) {
+    return (given) => {
+      const p = Array.isArray(given) ? given[0] : given, source = view.sources && p && view.sources[p.seriesIndex];
+      const mouse = view.mouse, reference = source && source.reference;
+      if (!reference || !mouse) return p && p.value ? page.escapeText(view.x[0]) + " = " + page.number(p.value[0], 6) : "";
+      const at = mouse.chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, mouse.at), b = reference.bounds;
+      const column = Math.floor((at[0] - b[0]) / (b[1] - b[0]) * reference.columns), row = Math.floor((at[1] - b[2]) / (b[3] - b[2]) * reference.rows);
+      if (column < 0 || row < 0 || column >= reference.columns || row >= reference.rows) return "";
+      const ends = (id) => { const k = block(id, "cells")[row * reference.columns + column]; return k === 255 ? "not known yet" : reference.names[k]; };
+      const middle = (k, low, high, count) => low + (k + 0.5) * (high - low) / count;
+      return "<div>" + page.escapeText(view.x[0]) + " = " + page.number(middle(column, b[0], b[1], reference.columns), 6) + "<br>" + page.escapeText(view.y[0]) + " = " + page.number(middle(row, b[2], b[3], reference.rows), 6) + "</div>" +
+        '<div class="tip-row">' + page.escapeText(ends(reference.case)) + "</div>" + (reference.other && reference.other !== reference.case ? '<div class="fine">the other: ' + page.escapeText(ends(reference.other)) + "</div>" : "");
     };
   }
 
@@ -270,5 +309,5 @@ const ricochetDynamics = (function () {
   }
   document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
 
-  return { start, dress, tooltip, drawCell, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
+  return { start, dress, tooltip, drawCell, drawImage, cellTooltip, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
 })();

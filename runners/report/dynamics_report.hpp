@@ -19,6 +19,12 @@ std::vector<Figure> diagram_figures(const CaseView& view, CurveData& curves);
 /// of them reach). The null level, of two halves of one run, is a band behind both.
 std::vector<Figure> distance_figures(const CaseView& view);
 
+/// Images of the basins, one per case, with the difference to the first case as their second view.
+std::vector<Figure> basin_figures(const CaseView& view, CurveData& curves);
+
+/// Kind `basins`: what the cells end in by case, how fractal the boundary is, how many cells depend on the method.
+std::string basins_html(const CaseView& view);
+
 /// What the study answers: verdicts, how often each regime occurs by method beside its numerical viscosity, where
 /// regimes change.
 std::string dynamics_answer_html(const CaseView& view);

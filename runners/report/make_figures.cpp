@@ -30,6 +30,7 @@ std::vector<Figure> make_figures(const CaseView& view, CurveData& curves) {
   if (kind == "trajectory") append(out, trajectory_figures(view, curves));
   append(out, diagram_figures(view, curves));
   append(out, distance_figures(view));
+  append(out, basin_figures(view, curves));
   append(out, stability_figures(view));
   append(out, work_precision_figures(view));
   append(out, error_figures(view));

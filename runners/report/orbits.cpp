@@ -139,10 +139,22 @@ Quantity pointer_quantity(std::string_view pointer) {
   return {name, axis_unit(name)};
 }
 
+Quantity scene_quantity(const nlohmann::ordered_json& study, const std::string& pointer) {
+  Quantity out = pointer_quantity(pointer);
+  try {
+    const nlohmann::ordered_json::json_pointer place(pointer);
+    if (study.contains(place) && study.at(place).is_string() && pointer.starts_with("/scene/"))
+      return {"factor of " + out.name, ""};
+  } catch (const nlohmann::ordered_json::exception&) {
+    // A pointer that is none keeps its text as its name.
+  }
+  return out;
+}
+
 Quantity swept_parameter(const StudyResults& results) {
   const auto found = results.study.find("parameter");
   if (found == results.study.end() || !found->is_object()) return {"parameter", ""};
-  return pointer_quantity(found->value("pointer", "parameter"));
+  return scene_quantity(results.study, found->value("pointer", "parameter"));
 }
 
 }  // namespace ricochet::report

@@ -80,6 +80,8 @@ Quantity swept_parameter(const StudyResults& results);
 
 /// A pointer such as "/scene/support/amplitude" as the axes of a study name it, with its unit.
 Quantity pointer_quantity(std::string_view pointer);
+/// The same in a study, where a value that is swept through a formula is a factor of it, without a unit.
+Quantity scene_quantity(const nlohmann::ordered_json& study, const std::string& pointer);
 
 /// Whether the case is still being worked on.
 template <class Record>

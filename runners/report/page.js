@@ -81,6 +81,8 @@
     if (value === "@tooltip") return tooltip(view);
     if (value === "@orbit-tooltip") return ricochetDynamics.tooltip(view);
     if (value === "@cell") return ricochetDynamics.drawCell;
+    if (value === "@image") return ricochetDynamics.drawImage(view);
+    if (value === "@cell-tooltip") return ricochetDynamics.cellTooltip(view);
     if (Array.isArray(value)) return value.map((v) => revive(view, v));
     if (value && typeof value === "object") {
       if (typeof value.x === "string" && typeof value.y === "string") return points(value);
@@ -137,6 +139,7 @@
         slot.chart = echarts.init(slot.element, null, { renderer: "canvas" });
         slot.chart.on("datazoom", (event) => this.follow(slot, event));
         slot.chart.getZr().on("dblclick", () => this.reset());
+        slot.chart.getZr().on("mousemove", (event) => { this.viewOf(slot).mouse = { chart: slot.chart, at: [event.offsetX, event.offsetY] }; });
         slot.chart.getZr().on("click", (event) => this.pick(slot, [event.offsetX, event.offsetY]));
       }
       slot.drawn = option;

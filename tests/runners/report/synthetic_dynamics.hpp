@@ -257,4 +257,64 @@ inline StudyResults dynamics(const DynamicsShape& shape = {}) {
   return out;
 }
 
+/// A study of kind `basins`: the half-planes of x + y/2 against a wavy border, which the second case moves by `shift`;
+/// a third attractor near the origin, a corner that failed, and one row that is not known yet.
+inline StudyResults basins(int count = 40, double shift = 0.2) {
+  StudyResults out;
+  out.name = "basins";
+  out.question = "Does the mass matrix move the border?";
+  out.kind = "basins";
+  out.study = {{"name", out.name},
+               {"scene", {{"initial", {{"displacement", "0.1*x"}, {"velocity", 0}}}}},
+               {"axes", {{{"pointer", "/scene/initial/displacement"}}, {{"pointer", "/scene/initial/velocity"}}}}};
+  out.columns = {"mass", "elements"};
+  DerivedTable cells{
+      "cells", {"case", "mass", "elements", "x", "y", "class", "period", "attractor", "status", "reason"}, {}};
+  for (const std::string mass : {"full", "poor"}) {
+    CaseRecord record;
+    record.id = mass;
+    record.status = "done";
+    record.axes = {{"mass", mass}, {"elements", 10}};
+    DerivedTable own{"cells", {"x", "y", "class", "period", "attractor", "status", "reason"}, {}};
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i < count; ++i) {
+        const double x = -1 + 2.0 * i / (count - 1), y = -2 + 4.0 * j / (count - 1);
+        if (j == count - 1) continue;
+        const bool corner = x < -0.9 && y < -1.8;
+        const int attractor = x * x + y * y < 0.1                                                  ? 3
+                              : x + 0.5 * y + 0.2 * std::sin(6 * y) > (mass == "poor" ? shift : 0) ? 2
+                                                                                                   : 1;
+        const Cell number = corner ? Cell(nullptr) : Cell(attractor), period = corner ? Cell(nullptr) : Cell(attractor);
+        const std::string kind = corner ? "failed" : "periodic", status = corner ? "failed" : "done",
+                          reason = corner ? "the support passes the <stop>" : "";
+        own.rows.push_back({x, y, kind, period, nullptr, status, reason});
+        cells.rows.push_back({record.id, mass, 10, x, y, kind, period, number, status, reason});
+      }
+    record.tables = {std::move(own)};
+    out.cases.push_back(std::move(record));
+  }
+  out.expected_cases = 2;
+  out.derived.push_back(std::move(cells));
+  DerivedTable attractors{"attractors", {"attractor", "label", "cases", "class", "period"}, {}};
+  DerivedTable fractions{
+      "basin_fractions",
+      {"case", "mass", "elements", "attractor", "class", "period", "cells", "fraction", "low", "high"},
+      {}};
+  DerivedTable uncertainty{
+      "basin_uncertainty", {"case", "mass", "elements", "boundary_share", "exponent", "low", "high"}, {}};
+  for (const int k : {1, 2, 3}) attractors.rows.push_back({k, "common to all", 2, "periodic", k});
+  for (const char* mass : {"full", "poor"}) {
+    for (const int k : {1, 2, 3})
+      fractions.rows.push_back({mass, mass, 10, k, "periodic", k, 100 * k, k / 6.0, k / 6.0 - 0.01, k / 6.0 + 0.01});
+    uncertainty.rows.push_back({mass, mass, 10, 0.12, 0.9, 0.8, 1.0});
+  }
+  out.derived.push_back(std::move(attractors));
+  out.derived.push_back(std::move(fractions));
+  out.derived.push_back(std::move(uncertainty));
+  out.derived.push_back({"basin_differences",
+                         {"case", "other_case", "cells", "differ", "share"},
+                         {{"poor", "full", 1500, 150, 0.1}, {"full", "poor", 1500, 150, 0.1}}});
+  return out;
+}
+
 }  // namespace ricochet::synthetic

@@ -1,0 +1,390 @@
+// The sections of kinds `bifurcation` and `basins`: what is drawn, told and found again is what the cases left.
+#include "runners/report/dynamics_report.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "runners/report/basins.hpp"
+#include "runners/report/orbit_data.hpp"
+#include "runners/report/orbits.hpp"
+#include "runners/report/page.hpp"
+#include "tests/runners/report/synthetic_dynamics.hpp"
+
+using namespace ricochet;
+using namespace ricochet::report;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Bytes of a block of the page.
+std::vector<unsigned char> bytes_of(const CurveData& curves, const std::string& key) {
+  static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::string text = curves.blocks().at(key).get<std::string>();
+  std::vector<unsigned char> out;
+  unsigned buffer = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    buffer = (buffer << 6) | static_cast<unsigned>(digits.find(c));
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    out.push_back(static_cast<unsigned char>(buffer >> bits));
+  }
+  return out;
+}
+
+template <class Number>
+std::vector<Number> numbers_of(const CurveData& curves, const std::string& key) {
+  const std::vector<unsigned char> bytes = bytes_of(curves, key);
+  std::vector<Number> out(bytes.size() / sizeof(Number));
+  std::memcpy(out.data(), bytes.data(), out.size() * sizeof(Number));
+  return out;
+}
+
+const Figure& find(const std::vector<Figure>& figures, const std::string& id) {
+  const auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.id == id; });
+  REQUIRE(found != figures.end());
+  return *found;
+}
+
+bool has_null(const Json& value) {
+  if (value.is_null()) return true;
+  if (value.is_number_float()) return !std::isfinite(value.get<double>());
+  return value.is_structured() && std::any_of(value.begin(), value.end(), [](const Json& v) { return has_null(v); });
+}
+
+/// Series of the first view whose data is of a kind.
+std::vector<Json> sweeps(const Chart& chart, const std::string& kind) {
+  std::vector<Json> out;
+  for (const Json& series : chart.views.at(0).option.at("series"))
+    if (series.at("data").is_object() && series["data"].value("sweep", "") == kind) out.push_back(series);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("an orbit's group follows its class and period", "[report]") {
+  const auto named = [](const char* regime, std::optional<int> period) {
+    return std::string(regime_groups[regime_group(regime, period)].name);
+  };
+  CHECK(named("no contact", 1) == "no contact");
+  CHECK(named("periodic", 1) == "period 1");
+  CHECK(named("periodic", 4) == "period 4");
+  CHECK(named("periodic", 5) == "periods 5–8");
+  CHECK(named("periodic", 8) == "periods 5–8");
+  CHECK(named("periodic", 9) == "periods 9–64");
+  CHECK(named("periodic 3", std::nullopt) == "period 3");
+  CHECK(named("periodic", std::nullopt) == "undecided");
+  CHECK(named("quasi-periodic", std::nullopt) == "quasi-periodic");
+  CHECK(named("chaotic", std::nullopt) == "chaotic");
+  CHECK(named("what is this", std::nullopt) == "undecided");
+  Orbit refused;
+  refused.regime = "periodic";
+  refused.period = 1;
+  refused.status = "refused";
+  CHECK(regime_group(refused) == failed_group);
+  std::set<std::string> colours;
+  for (const RegimeGroup& group : regime_groups) colours.insert(group.colour);
+  CHECK(colours.size() == regime_groups.size());
+}
+
+TEST_CASE("a formula that is swept through is a factor of it", "[report]") {
+  const nlohmann::ordered_json study = {
+      {"scene", {{"stops", {{"upper", "0.1"}, {"lower", -0.1}}}, {"support", {{"amplitude", 0.1}}}}}};
+  CHECK(with_unit(scene_quantity(study, "/scene/support/amplitude")) == "support.amplitude (m)");
+  CHECK(with_unit(scene_quantity(study, "/scene/stops/lower")) == "stops.lower (m)");
+  CHECK(with_unit(scene_quantity(study, "/scene/stops/upper")) == "factor of stops.upper");
+  CHECK(with_unit(scene_quantity(study, "/methods/contact/stiffness")) == "contact.stiffness");
+  CHECK(scene_quantity(study, "no pointer").name == "no pointer");
+}
+
+TEST_CASE("the page has every section point, but for repeats of periodic orbits", "[report]") {
+  const StudyResults results = synthetic::dynamics();
+  const CaseView view(results);
+  CurveData curves(1000);
+  const std::string said = put_points(view, curves);
+  for (const CaseRecord& record : results.cases) {
+    const std::vector<Orbit> orbits = orbits_of(record);
+    const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
+    const auto u = numbers_of<float>(curves, record.id + "/points/u:f32");
+    REQUIRE(orbit.size() == u.size());
+    REQUIRE(u.size() == numbers_of<float>(curves, record.id + "/points/v:f32").size());
+    const NumberTable& points = *number_table(record, "points");
+    std::map<size_t, std::set<float>> drawn, stored;
+    for (size_t i = 0; i < u.size(); ++i) drawn[orbit[i]].insert(u[i]);
+    for (size_t i = 0; i < points.rows(); ++i)
+      for (size_t o = 0; o < orbits.size(); ++o)
+        if (orbits[o].parameter == points.columns[0][i] &&
+            orbits[o].start == points.words[0].second[static_cast<size_t>(points.columns[1][i])])
+          stored[o].insert(static_cast<float>(points.columns[3][i]));
+    for (size_t o = 0; o < orbits.size(); ++o) {
+      if (!orbits[o].done()) {
+        CHECK(drawn[o].empty());
+      } else if (regime_group(orbits[o]) > 6) {
+        CHECK(drawn[o] == stored[o]);
+      } else {
+        // One point per period; where a point lies on the edge of a cell, two.
+        const int period = orbits[o].regime == "periodic" ? orbits[o].period.value() : 1;
+        CHECK(drawn[o].size() >= static_cast<size_t>(period) / 2);
+        CHECK(drawn[o].size() <= static_cast<size_t>(2 * period));
+        CHECK(std::includes(stored[o].begin(), stored[o].end(), drawn[o].begin(), drawn[o].end()));
+      }
+    }
+  }
+  CHECK_THAT(said, Contains("repeat one of their own periodic orbit"));
+  CHECK_THAT(said, !Contains("left out"));
+}
+
+TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[report]") {
+  synthetic::DynamicsShape shape;
+  shape.values = 60;
+  const StudyResults results = synthetic::dynamics(shape);
+  CurveData curves(1000);
+  PageBudget budget;
+  budget.points = 3000;
+  budget.portraits = 2000;
+  const CaseView view(results);
+  CHECK_THAT(put_points(view, curves, budget), Contains("left out evenly"));
+  size_t written = 0, orbits_with = 0, orbits_drawn = 0;
+  for (const CaseRecord& record : results.cases) {
+    const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
+    written += orbit.size();
+    orbits_drawn += std::set<std::uint16_t>(orbit.begin(), orbit.end()).size();
+    for (const Orbit& one : orbits_of(record)) orbits_with += one.done();
+  }
+  CHECK(orbits_drawn == orbits_with);
+  // Shares are rounded upwards, by less than one point per orbit.
+  CHECK(written <= budget.points + orbits_with);
+  CHECK(written >= budget.points / 2);
+  CHECK_THAT(put_portraits(view, curves, budget), Contains("carries the portraits of"));
+  // A portrait is there whole (201 samples here) or not at all.
+  std::map<std::uint16_t, size_t> samples;
+  for (const std::uint16_t o : numbers_of<std::uint16_t>(curves, results.cases[0].id + "/portrait/orbit:u16"))
+    ++samples[o];
+  CHECK(!samples.empty());
+  for (const auto& [o, count] : samples) CHECK(count == 201);
+}
+
+TEST_CASE("a diagram shares one horizontal axis with its exponents, regimes and verdicts", "[report]") {
+  const StudyResults results = synthetic::dynamics();
+  const CaseView view(results);
+  CurveData curves(1000);
+  const std::vector<Figure> figures = diagram_figures(view, curves);
+  const Figure& figure = find(figures, "diagram");
+  CHECK(figure.linked);
+  CHECK(figure.views == std::vector<std::string>{"side by side", "overlaid", "by start"});
+  REQUIRE(figure.charts.size() == 2 + 1 + 6);
+  for (const Chart& chart : figure.charts) {
+    REQUIRE(chart.views.size() == 1);
+    const Json& option = chart.views[0].option;
+    CHECK_FALSE(has_null(option));
+    REQUIRE(option["xAxis"].size() == 4);
+    for (const Json& axis : option["xAxis"]) {
+      CHECK(axis["min"] == option["xAxis"][0]["min"]);
+      CHECK(axis["max"] == option["xAxis"][0]["max"]);
+    }
+    CHECK(option["dataZoom"][0]["xAxisIndex"] == Json({0, 1, 2, 3}));
+    for (const Json& grid : option["grid"]) CHECK(grid["left"] == option["grid"][0]["left"]);
+  }
+  // Side by side: colour is the regime; overlaid: the case.
+  for (const Json& series : sweeps(figure.charts[0], "points"))
+    CHECK(series["color"] == regime_groups[series["data"]["group"].get<size_t>()].colour);
+  std::set<std::string> colours;
+  for (const Json& series : sweeps(figure.charts[2], "points")) colours.insert(series["color"].get<std::string>());
+  CHECK(colours.size() == 2);
+  CHECK(!sweeps(figure.charts[0], "exponents").empty());
+  CHECK(sweeps(figure.charts[0], "exponents").size() == sweeps(figure.charts[0], "whiskers").size());
+  CHECK(!sweeps(figure.charts[0], "cells").empty());
+  CHECK(!sweeps(figure.charts[0], "marks").empty());
+  CHECK_THAT(figure.charts[0].notes.at(0), Contains("refused") && Contains("the support passes the <stop>"));
+  CHECK_THAT(figure.caption, Contains("by tangent+jump") && Contains("marginal root"));
+  // Every regime and start that is drawn can be found in the legend.
+  std::set<std::string> legend;
+  for (const LegendEntry& entry : figure.legend) legend.insert(entry.name);
+  for (const Chart& chart : figure.charts)
+    for (const Json& series : chart.views[0].option["series"])
+      if (series.contains("tags"))
+        for (const Json& tag : series["tags"]) CHECK(legend.contains(tag.get<std::string>()));
+}
+
+TEST_CASE("colours of regimes do not depend on the order of values or cases", "[report]") {
+  synthetic::DynamicsShape shape;
+  StudyResults forward = synthetic::dynamics(shape), backward = forward;
+  std::reverse(backward.cases.begin(), backward.cases.end());
+  for (CaseRecord& record : backward.cases)
+    for (DerivedTable& table : record.tables) std::reverse(table.rows.begin(), table.rows.end());
+  std::vector<std::pair<std::string, std::string>> legends[2];
+  for (int k = 0; k < 2; ++k) {
+    CurveData curves(1000);
+    const CaseView view(k == 0 ? forward : backward);
+    const Figure figure = diagram_figures(view, curves).front();
+    for (const LegendEntry& entry : figure.legend)
+      if (entry.heading == "Regime" || entry.heading == "Start") legends[k].emplace_back(entry.name, entry.colour);
+  }
+  CHECK(legends[0] == legends[1]);
+}
+
+TEST_CASE("without exponents, verdicts or a second case their panels and views are absent", "[report]") {
+  synthetic::DynamicsShape shape;
+  shape.exponents = false;
+  shape.portraits = false;
+  shape.refused = false;
+  shape.starts = {"rest"};
+  shape.methods.resize(1);
+  StudyResults results = synthetic::dynamics(shape);
+  results.derived.clear();
+  CurveData curves(1000);
+  const CaseView view(results);
+  const Figure figure = diagram_figures(view, curves).front();
+  CHECK(figure.views == std::vector<std::string>{"diagram"});
+  REQUIRE(figure.charts.size() == 1);
+  CHECK(figure.charts[0].views[0].option["xAxis"].size() == 2);
+  CHECK(figure.charts[0].notes.empty());
+  CHECK_THAT(figure.caption, !Contains("exponent"));
+  CHECK(distance_figures(view).empty());
+  CHECK(dynamics_answer_html(view).find("robust") == std::string::npos);
+}
+
+TEST_CASE("nothing is drawn of cases that left nothing", "[report]") {
+  StudyResults results = synthetic::dynamics();
+  for (CaseRecord& record : results.cases) {
+    record.tables.clear();
+    record.numbers.clear();
+    record.status = "failed";
+    record.reason = "it went wrong";
+  }
+  results.derived.clear();
+  CurveData curves(1000);
+  const CaseView view(results);
+  CHECK(diagram_figures(view, curves).empty());
+  CHECK(dynamics_answer_html(view).empty());
+  const std::string page = render_page(results, "/* charts */", "6");
+  CHECK_THAT(page, Contains("No case has finished with a result"));
+  // Values without their sections still make a page.
+  StudyResults bare = synthetic::dynamics();
+  for (CaseRecord& record : bare.cases) record.numbers.clear();
+  CHECK_THAT(render_page(bare, "/* charts */", "6"), Contains("data-figure=\"diagram\""));
+}
+
+TEST_CASE("what the script knows of an orbit is its row of values", "[report]") {
+  const StudyResults results = synthetic::dynamics();
+  const Json data = orbit_data(CaseView(results));
+  CHECK(data["parameter"] == Json({"support.amplitude", "m"}));
+  const CaseRecord& record = results.cases[1];
+  const Json& one = data["cases"][record.id];
+  const DerivedTable& table = record.tables[0];
+  for (size_t row = 0; row < table.rows.size(); ++row) {
+    CHECK(one["columns"]["parameter"][row] == table.rows[row][0]);
+    CHECK(one["columns"]["evidence"][row] == table.rows[row][21]);
+    CHECK(one["from"][row].get<double>() < table.rows[row][0].get<double>());
+    CHECK(one["to"][row].get<double>() > table.rows[row][0].get<double>());
+  }
+  // Neighbours of one start share an edge; the derived table gives the attractors.
+  CHECK(one["to"][0] == one["from"][1]);
+  CHECK(one["columns"]["attractor"][0] == "1");
+}
+
+TEST_CASE("the answer tells verdicts, regimes, grazing and viscosity by their numbers", "[report]") {
+  const StudyResults results = synthetic::dynamics();
+  const std::string html = dynamics_answer_html(CaseView(results));
+  CHECK_THAT(html, Contains("<strong>robust</strong> in 1 (50 % of the range)"));
+  CHECK_THAT(html, Contains("<strong>depends on time.beta</strong> in 1"));
+  CHECK_THAT(html, Contains("2 of 2 &lt;differ&gt;."));
+  CHECK_THAT(html, Contains("Grazing, start rest: 0.0792"));
+  // α = 1e-4: 5e-5 is half of it, 2e-9 a fifty-thousandth.
+  CHECK_THAT(html, Contains("▲ 50 % of α: not ≪ α") && Contains("0.002 %, ≪ α"));
+  CHECK_THAT(html, Contains("1 of 2 methods are so marked"));
+  CHECK(html.find("nan") == std::string::npos);
+  size_t orbits = 0;
+  for (const CaseRecord& record : results.cases) orbits += orbits_of(record).size();
+  CHECK_THAT(html, Contains("Regimes of " + std::to_string(orbits) + " orbits"));
+}
+
+TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {
+  const std::string html = dynamics_tables_html(CaseView(synthetic::dynamics()));
+  CHECK_THAT(html, Contains("<h3>Attractors</h3>") && Contains("common to all") && Contains("&lt;only&gt;"));
+  CHECK_THAT(html, Contains("66 % (60 % to 71 %)"));
+  CHECK_THAT(html, Contains("<h3>Agreement of methods</h3>") && Contains(">100</td>") && Contains(">74</td>"));
+  CHECK_THAT(html,
+             Contains("<h3>Shifts of the changes</h3>") && Contains("not found") && Contains("−0.0012 to −0.0008"));
+  CHECK_THAT(html, Contains("<h3>Located changes</h3>") && Contains("grazing"));
+}
+
+TEST_CASE("distances are medians of the table, with the null level behind them", "[report]") {
+  synthetic::DynamicsShape shape;
+  shape.methods = {{"three-level", 0.5}, {"three-level", 0.25}, {"three-level", 0.3}, {"three-level", 0.4}};
+  const StudyResults results = synthetic::dynamics(shape);
+  const std::vector<Figure> figures = distance_figures(CaseView(results));
+  const Figure& against = find(figures, "distance-time-beta");
+  REQUIRE(against.charts.size() == 1);
+  std::vector<double> medians;
+  for (const Json& series : against.charts[0].views[0].option["series"])
+    if (series.value("symbolSize", 0) == 7)
+      for (const Json& item : series["data"]) medians.push_back(item["value"][1].get<double>());
+  // The cases' distances are as 1 : 2 : 3, in the order 0.25, 0.3, 0.4; so are their medians.
+  REQUIRE(medians.size() == 3);
+  CHECK(medians[1] == Approx(2 * medians[0]));
+  CHECK(medians[2] == Approx(3 * medians[0]));
+  CHECK_THAT(against.charts[0].views[0].notes.at(0), Contains("Null level: median 0.01"));
+  const Figure& along = find(figures, "distance");
+  CHECK(along.linked);
+  for (const Figure& figure : figures)
+    for (const Chart& chart : figure.charts)
+      for (const ChartView& one : chart.views) CHECK_FALSE(has_null(one.option));
+}
+
+TEST_CASE("images of basins hold every cell, and their difference counts those that moved", "[report]") {
+  const StudyResults results = synthetic::basins(40, 0.2);
+  const Basins basins = basins_of(results);
+  REQUIRE(basins.grids.size() == 2);
+  REQUIRE(basins.labels.size() == 4);
+  CHECK(basins.labels[0].name == "attractor 1 (periodic 1)");
+  CHECK_FALSE(basins.labels[3].decided);
+  CHECK(basins.xs.size() == 40);
+  CHECK(basins.ys.size() == 39);
+  CHECK(basins.x.name == "factor of initial.displacement");
+  size_t differ = 0, both = 0;
+  for (size_t i = 0; i < basins.grids[0].cells.size(); ++i) {
+    const auto a = basins.grids[0].cells[i], b = basins.grids[1].cells[i];
+    if (a == 3 || b == 3) continue;
+    ++both;
+    differ += a != b;
+  }
+  CHECK(differ > 0);
+  const CaseView view(results);
+  CurveData curves(1000);
+  const Figure figure = basin_figures(view, curves).front();
+  REQUIRE(figure.charts.size() == 2);
+  CHECK_THAT(figure.charts[1].views[1].notes.at(0),
+             Contains(std::to_string(differ) + " of " + std::to_string(both) + " cells that both decide differ"));
+  CHECK(bytes_of(curves, "poor/cells:u8") == basins.grids[1].cells);
+  const std::string html = basins_html(view);
+  CHECK_THAT(html, Contains("3 attractors") && Contains("a smooth boundary is not excluded") && Contains("33.3 %"));
+  // The same colours whatever the order of the cases; the raw cells where nothing was derived.
+  StudyResults turned = results;
+  std::reverse(turned.cases.begin(), turned.cases.end());
+  for (size_t k = 0; k < 4; ++k) CHECK(basins_of(turned).labels[k].colour == basins.labels[k].colour);
+  turned.derived.clear();
+  CHECK(basins_of(turned).labels[0].name == "period 1");
+}
+
+TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") {
+  StudyResults results = synthetic::dynamics();
+  const std::string attack = "</script><script>alert(1)</script><!-- \"'&\xff";
+  results.name = attack;
+  for (CaseRecord& record : results.cases) {
+    record.axes[0].second = attack;
+    for (auto& row : record.tables[0].rows) row[21] = row.back() = attack;
+  }
+  for (DerivedTable& table : results.derived)
+    for (auto& row : table.rows)
+      for (auto& cell : row)
+        if (cell.is_string() && cell != "robust") cell = attack;
+  const std::string page = render_page(results, "/* charts */", "6");
+  CHECK(page.find("<script>alert") == std::string::npos);
+  CHECK(page.find("<!--") == std::string::npos);
+}
