@@ -126,6 +126,25 @@ TEST_CASE("recurrence: a flip that dies out is one period, however small its dou
   CHECK(recurrence(threshold).distance < tolerance);
 }
 
+TEST_CASE("recurrence: a spiral into an orbit is that orbit or not known yet, never a multiple of it") {
+  // Multipliers ρ e^{±iθ}: lags at which pθ is near a turn have small distances of their own long before the others.
+  int arrived = 0;
+  for (const double rho : {0.85, 0.93, 0.96, 0.98, 0.99})
+    for (const double turn : {0.2001, 0.2499, 0.3334, 0.5002, 0.0101, 0.3819}) {
+      INFO("ρ = " << rho << ", θ = " << turn << " turns");
+      const Recurrence found = recurrence(series_of(300, [&](int k) {
+        const double angle = 2 * std::numbers::pi * turn * k, size = 1e-2 * std::pow(rho, k);
+        return std::vector<double>{0.3 + size * std::cos(angle), -1 + size * std::sin(angle)};
+      }));
+      CHECK((found.period == 0 || found.period == 1));
+      // What shrinks does so at its own rate, up to the beating of a column against the other.
+      if (found.contraction != 1) CHECK(found.contraction == Approx(rho).epsilon(0.01));
+      arrived += found.period == 1;
+    }
+  // ρ ≤ 0.93 leaves 2e-7 to the second half at most, whatever the angle; slower ones only where columns do not beat.
+  CHECK(arrived >= 12);
+}
+
 TEST_CASE("recurrence: what slows down without arriving is not taken for an orbit") {
   // The ghost of a saddle-node drifts like 1/k, a period doubling at its threshold decays like k^(−1/2).
   CHECK(recurrence(scalar(300, [](int k) { return 1 / (50.0 + k); })).period == 0);
