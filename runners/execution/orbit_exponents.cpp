@@ -10,6 +10,7 @@
 #include <ricochet/measure/stability.hpp>
 #include <thread>
 
+#include "runners/execution/bytes.hpp"
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/run_case.hpp"
 
@@ -67,6 +68,18 @@ std::vector<Interval> intervals_of(const std::vector<std::vector<double>>& rates
   return found;
 }
 
+template <class Archive, class Exponents>
+void describe(Archive& archive, Exponents& exponents) {
+  bool twin = exponents.twin.has_value();
+  archive(exponents.values);
+  archive(twin);
+  if (twin && !exponents.twin) exponents.twin.emplace();
+  if (twin)
+    for (auto Interval::*part : {&Interval::value, &Interval::low, &Interval::high}) archive((*exponents.twin).*part);
+  archive(exponents.method);
+  archive(exponents.cause);
+}
+
 bool usable(const std::vector<double>& rates) {
   return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
 }
@@ -82,16 +95,17 @@ MarginalRoots marginal_roots(const ForcedScenes& scenes, int group) {
   return {spectrum->marginal, std::abs(spectrum->root + 1.0) < 1e-4 && spectrum->on_kernel};
 }
 
-std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const std::vector<const Orbit*>& orbits,
-                                              const std::vector<int>& groups, const SectionPlan& plan, int count,
-                                              const std::vector<bool>& sawtooth, int workers, double& seconds,
-                                              const std::atomic<bool>& stop) {
+std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
+                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop) {
+  const auto& orbits = task.orbits;
+  const int count = task.count;
   std::vector<OrbitExponents> found(orbits.size());
   std::map<int, std::vector<std::size_t>> by_group;
-  for (std::size_t i = 0; i < orbits.size(); ++i) by_group[groups[i]].push_back(i);
+  for (std::size_t i = 0; i < orbits.size(); ++i) by_group[task.groups[i]].push_back(i);
   std::vector<Batch> batches;
   // One column more than asked for: it may belong to the last one as a complex pair.
-  const int columns = groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(groups.front()).dofs()});
+  const int columns =
+      task.groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(task.groups.front()).dofs()});
   const auto most = static_cast<std::size_t>(std::max(1, block_width / (1 + columns)));
   for (const auto& [group, members] : by_group)
     for (std::size_t first = 0; first < members.size(); first += most)
@@ -106,7 +120,7 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   base.periods = plan.keep;
   const auto measure = [&](const Batch& batch) {
     LyapunovPlan one = base;
-    one.without_sawtooth = sawtooth[static_cast<std::size_t>(batch.group)];
+    one.without_sawtooth = task.sawtooth[static_cast<std::size_t>(batch.group)];
     std::vector<LaneSpec> lanes, twins;
     std::vector<LaneState> states;
     for (const std::size_t i : batch.orbits) {
@@ -129,6 +143,8 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     } catch (const Refusal&) {
       tangents = false;  // the law has none: twins alone
     }
+    // A twin carries the sawtooth of single steps, which its distance cannot be rid of.
+    if (one.without_sawtooth && tangents) return;
     const auto twin = twin_rates(scenes.program(batch.group, twins), states, one, twin_offset);
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
@@ -145,7 +161,19 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   const auto work = [&] {
     const double began = thread_seconds();
     try {
-      for (std::size_t i = next++; i < batches.size() && !stop; i = next++) measure(batches[i]);
+      for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
+        const std::string known = task.find ? task.find(i) : "";
+        if (!known.empty()) {
+          ByteReader reader(known);
+          for (const std::size_t orbit : batches[i].orbits) describe(reader, found[orbit]);
+          continue;
+        }
+        measure(batches[i]);
+        if (!task.keep) continue;
+        ByteWriter writer;
+        for (const std::size_t orbit : batches[i].orbits) describe(writer, found[orbit]);
+        task.keep(i, writer.bytes);
+      }
     } catch (...) {
       const std::lock_guard guard(mutex);
       failure = std::current_exception();
@@ -155,7 +183,7 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   };
   {
     std::vector<std::jthread> threads;
-    for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work);
+    for (int worker = 1; worker < task.workers; ++worker) threads.emplace_back(work);
     work();
   }
   if (failure) std::rethrow_exception(failure);

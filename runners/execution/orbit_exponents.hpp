@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <ricochet/measure/block_bootstrap.hpp>
 #include <string>
@@ -24,11 +25,21 @@ struct MarginalRoots {
 };
 MarginalRoots marginal_roots(const ForcedScenes& scenes, int group);
 
-/// Measures `count` exponents over the kept periods of each orbit, by tangent columns in blocks of lanes (and one twin
-/// each), on `workers` threads. Throws Interrupted when `stop` becomes true.
-std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const std::vector<const Orbit*>& orbits,
-                                              const std::vector<int>& groups, const SectionPlan& plan, int count,
-                                              const std::vector<bool>& sawtooth, int workers, double& seconds,
-                                              const std::atomic<bool>& stop);
+/// What is measured, of which orbits.
+struct ExponentTask {
+  std::vector<const Orbit*> orbits;
+  std::vector<int> groups;     ///< of each orbit
+  std::vector<bool> sawtooth;  ///< per group: see MarginalRoots
+  int count = 1;               ///< exponents
+  int workers = 1;             ///< threads
+  /// Where batches outlive the program: find(number) gives what keep(number, bytes) was given, or "". May be empty.
+  std::function<std::string(std::size_t)> find;
+  std::function<void(std::size_t, const std::string&)> keep;
+};
+
+/// Measures the exponents over the kept periods of each orbit, by tangent columns in blocks of lanes, and one twin
+/// each. Adds the processor seconds. Throws Interrupted when `stop` becomes true.
+std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
+                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop);
 
 }  // namespace ricochet

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
+#include <mutex>
 #include <numbers>
 #include <ricochet/measure/linear_response.hpp>
+#include <set>
 
 #include "runners/execution/orbit_bytes.hpp"
 #include "runners/execution/orbit_exponents.hpp"
@@ -45,8 +46,22 @@ class Checkpoints {
     if (!marched.finished.empty()) desk_.shelf.keep(part(parts_++), to_bytes({marched.finished, {}}));
     desk_.shelf.keep(part(-1), to_bytes({{}, marched.running}));
   }
+  /// Lets batches of exponents be kept as well.
+  void serve(ExponentTask& task) {
+    if (!desk_.shelf.find || !desk_.shelf.keep) return;
+    const auto key = [this](std::size_t batch) { return fmt::format("exponents/{}/{}", desk_.key, batch); };
+    task.find = [this, key](std::size_t batch) { return desk_.shelf.find(key(batch)); };
+    task.keep = [this, key](std::size_t batch, const std::string& bytes) {
+      desk_.shelf.keep(key(batch), bytes);
+      const std::lock_guard guard(mutex_);
+      batches_.insert(key(batch));
+    };
+    for (std::size_t batch = 0; batch < task.orbits.size(); ++batch)
+      if (!task.find(batch).empty()) batches_.insert(key(batch));
+  }
   void forget() {
     if (!desk_.shelf.keep) return;
+    for (const std::string& batch : batches_) desk_.shelf.keep(batch, "");
     for (int i = 0; i < parts_; ++i) desk_.shelf.keep(part(i), "");
     desk_.shelf.keep(part(-1), "");
   }
@@ -57,6 +72,8 @@ class Checkpoints {
   }
   const CaseDesk& desk_;
   int parts_ = 0;
+  std::mutex mutex_;
+  std::set<std::string> batches_;
 };
 
 class BifurcationRun {
@@ -98,7 +115,7 @@ class BifurcationRun {
     scheduler.run(stop_, keep);
     refine(keep);
     record_.run_seconds = scheduler.seconds();
-    finish();
+    finish(checkpoints);
     checkpoints.forget();
     return std::move(record_);
   }
@@ -300,23 +317,23 @@ class BifurcationRun {
 
   int exponents() const { return case_.settings.value("exponents", 0); }
 
-  void finish() {
+  void finish(Checkpoints& checkpoints) {
     std::vector<OrbitView> all = views();
-    std::vector<const Orbit*> complete;
-    std::vector<int> groups;
+    ExponentTask task;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!all[i].orbit || all[i].orbit->stage != Orbit::Stage::complete) continue;
-      complete.push_back(all[i].orbit);
-      groups.push_back(all[i].group);
+      task.orbits.push_back(all[i].orbit);
+      task.groups.push_back(all[i].group);
       places.push_back(i);
     }
-    if (exponents() > 0 && !complete.empty()) {
-      std::vector<bool> sawtooth;
-      for (const MarginalRoots& roots : marginal_) sawtooth.push_back(roots.sawtooth);
+    if (exponents() > 0 && !places.empty()) {
+      for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
+      task.count = exponents();
+      task.workers = desk_.workers;
+      checkpoints.serve(task);
       double seconds = 0;
-      const auto found =
-          measure_exponents(scenes_, complete, groups, section_, exponents(), sawtooth, desk_.workers, seconds, stop_);
+      const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
       record_.run_seconds += seconds;
       for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
       put("exponent_seconds", seconds);
