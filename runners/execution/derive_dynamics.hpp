@@ -5,10 +5,11 @@
 /// What a bifurcation diagram, or an image of basins, owes to its methods: the tables worked out of the `values`,
 /// `bifurcations` and `points` (or `cells` and `cell_points`) that the cases leave.
 ///
-/// Clouds of section points live in (tip displacement, tip velocity), each divided by the standard deviation of all
-/// section points of the study, so that distances are without unit. See core/measure/point_clouds.hpp (distances, their
-/// null), core/measure/attractors.hpp (what counts as one attractor at one value) and core/measure/branches.hpp (along
-/// the parameter).
+/// Clouds of section points live in (tip displacement, tip velocity), each divided by its standard deviation over all
+/// section points of the study and the motions' places half a period later (so that a study of one orbit is measured
+/// against its motion): distances are without unit. Clouds of more than 64 points are thinned evenly to that. See
+/// core/measure/point_clouds.hpp (distances, their null), core/measure/attractors.hpp (what counts as one attractor at
+/// one value) and core/measure/branches.hpp (along the parameter).
 ///
 /// *Reference case*: of the cases with a rigid contact (no `contact.stiffness`; else the largest stiffness) the one
 /// with the most steps per period, then the most elements, then the first of the study that has anything to compare

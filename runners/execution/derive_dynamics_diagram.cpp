@@ -100,6 +100,10 @@ CloudPoint scale_of(const Diagram& diagram) {
     const auto *x = owner.sections.column("tip_displacement"), *v = owner.sections.column("tip_velocity");
     if (!x || !v) continue;
     for (std::size_t k = 0; k < x->size(); ++k) scale.add({(*x)[k], (*v)[k]});
+    const auto *later_x = owner.sections.column("opposite_displacement"),
+               *later_v = owner.sections.column("opposite_velocity");
+    if (!later_x || !later_v) continue;
+    for (std::size_t k = 0; k < later_x->size(); ++k) scale.add({-(*later_x)[k], -(*later_v)[k]});
   }
   return scale.scale();
 }
