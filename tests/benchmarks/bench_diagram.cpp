@@ -1,0 +1,177 @@
+// The reference bifurcation diagram in lane-steps per second: N = 20 elements, singular P1, Signorini at all nodes,
+// newmark-dumont-paoli β = ½, α = 1e-4, 6000 steps per period, amplitudes 0.070 … 0.0999. Blocks of lanes on one and on
+// two cores; where the time goes (march, contact, measure); what one tangent column costs. Medians of interleaved
+// rounds; wall time on several cores is only worth what the machine has free.
+//
+//     bench_diagram [--rounds N] [--lanes T] [--periods P]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <numbers>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/measure/section_march.hpp>
+#include <thread>
+
+using namespace ricochet;
+
+namespace {
+
+constexpr int steps_per_period = 6000, elements = 20;
+constexpr double pulsation = 10, diagram = 500.0 * 600.0 * steps_per_period;
+
+struct Setting {
+  int lanes = 8, periods = 3, rounds = 5;
+};
+
+const Registry& registry() {
+  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static const Registry all = [] {
+    Registry opened;
+    catalogue.open_all(opened);
+    return opened;
+  }();
+  return all;
+}
+
+Parameters defaults(const PluginManual& manual, std::map<std::string, ParameterValue> values = {}) {
+  for (const ParameterSpec& spec : manual.parameters)
+    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
+  return Parameters(values);
+}
+
+Program program(const std::string& law_name, int lanes, int tangents, StopsSpec::Place place) {
+  BeamSpec beam;
+  beam.length = 1.501;
+  beam.young = 2e11;
+  beam.density = 8000;
+  beam.section.outer_diameter = 0.01;
+  beam.section.wall = 0.0005;
+  beam.damping.stiffness = 1e-4;
+  SceneSpec scene;
+  scene.structure = beam;
+  scene.stops.lower = Formula(-0.1);
+  scene.stops.upper = Formula(0.1);
+  scene.stops.place = place;
+  scene.support = {0.08, pulsation, 0};
+  const auto* mass = registry().mass("singular");
+  const auto* law = registry().contact(law_name);
+  const auto* scheme = registry().time("newmark-dumont-paoli");
+  const auto problem = std::make_shared<const SemiDiscrete>(std::get<SemiDiscrete>(
+      discretise(scene, elements, *mass->make(defaults(mass->manual, {{"velocity", std::string("P1")}})))));
+  auto made = law->make(defaults(law->manual));
+  const double h = 2 * std::numbers::pi / pulsation / steps_per_period;
+  const auto plan = std::get<StepPlan>(scheme->make(defaults(scheme->manual))->plan(h, problem_facts(*problem, *made)));
+  std::vector<LaneSpec> block(static_cast<std::size_t>(lanes), scene_lane(*problem, defaults(law->manual)));
+  for (int k = 0; k < lanes; ++k) block[static_cast<std::size_t>(k)].amplitude = 0.070 + 0.0299 * k / lanes;
+  CompileOptions options;
+  options.tangents = tangents;
+  options.expected_steps = 100000000;
+  return std::get<Program>(compile(problem, plan, h, std::move(made), std::move(block), options));
+}
+
+double wall(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// A block past its first periods, so that contact is what it is on the diagram.
+std::unique_ptr<SectionMarch> block(const std::string& law, const Setting& setting, bool kept, StopsSpec::Place place) {
+  SectionPlan plan;
+  plan.pulsation = pulsation;
+  plan.steps_per_period = steps_per_period;
+  plan.transient = kept ? 2 : 1000000;
+  plan.at_most = plan.transient;
+  plan.keep = 1000000;
+  plan.scale = 0.1;
+  const StartedOrbits started = start_orbits(program(law, setting.lanes, 0, place), plan);
+  auto march = std::make_unique<SectionMarch>(program(law, setting.lanes, 0, place), plan);
+  for (int lane = 0; lane < setting.lanes; ++lane) {
+    Orbit orbit;
+    orbit.lane = march->marcher().program().lanes[static_cast<std::size_t>(lane)];
+    orbit.now = started.states[static_cast<std::size_t>(lane)];
+    march->load(lane, orbit);
+  }
+  for (int n = 0; n < 4; ++n) march->period();
+  return march;
+}
+
+struct Row {
+  std::string name;
+  double lane_steps;
+  std::function<void()> work;
+  std::vector<double> seconds = {};
+  double median() {
+    std::sort(seconds.begin(), seconds.end());
+    return seconds[seconds.size() / 2];
+  }
+};
+
+void measure(const Setting& setting, StopsSpec::Place place) {
+  const double steps = static_cast<double>(setting.periods) * steps_per_period;
+  const double lane_steps = steps * setting.lanes;
+  auto free = block("none", setting, false, place);
+  auto contact = block("signorini", setting, false, place);
+  auto kept = block("signorini", setting, true, place);
+  auto other = block("signorini", setting, false, place);
+  const auto go = [&](SectionMarch& march) {
+    for (int n = 0; n < setting.periods; ++n) march.period();
+  };
+  const int half = std::max(1, setting.lanes / 2);
+  const auto tangent_block = [&](int tangents) {
+    auto made = std::make_shared<Marcher>(program("signorini", half, tangents, place));
+    made->start();
+    made->march(4 * steps_per_period);
+    for (int lane = 0; lane < half; ++lane)
+      for (int k = 0; k < tangents; ++k) {
+        LaneState state = made->lane_state(lane);
+        std::fill(state.efforts.begin(), state.efforts.end(), 0.0);
+        made->set_tangent(lane, k, state);
+      }
+    return made;
+  };
+  const auto plain = tangent_block(0), with_tangents = tangent_block(1);
+  const auto march = [&](Marcher& marcher) { marcher.march(static_cast<long long>(steps)); };
+  std::vector<Row> rows;
+  rows.push_back({"march, no contact law", lane_steps, [&] { go(*free); }});
+  rows.push_back({"with contact", lane_steps, [&] { go(*contact); }});
+  rows.push_back({"with contact, kept periods (watched)", lane_steps, [&] { go(*kept); }});
+  rows.push_back({"two blocks on two cores", 2 * lane_steps, [&] {
+                    std::jthread second([&] { go(*other); });
+                    go(*contact);
+                  }});
+  rows.push_back({fmt::format("{} lanes", half), steps * half, [&] { march(*plain); }});
+  rows.push_back({fmt::format("{} lanes, a tangent each", half), steps * half, [&] { march(*with_tangents); }});
+  for (int round = 0; round < setting.rounds; ++round)
+    for (Row& row : rows) row.seconds.push_back(wall(row.work));
+  fmt::print("{} lanes, stops at {}, {} operator\n", setting.lanes,
+             place == StopsSpec::Place::nodes ? "all nodes" : "the tip",
+             operator_name(contact->marcher().program().kind));
+  for (Row& row : rows)
+    fmt::print("  {:<40} {:8.3g} ns per lane-step  {:8.3g} million lane-steps/s   [{:.3g} … {:.3g} s]\n", row.name,
+               1e9 * row.median() / row.lane_steps, 1e-6 * row.lane_steps / row.median(), row.seconds.front(),
+               row.seconds.back());
+  const double open = rows[0].median(), closed = rows[1].median(), watched = rows[2].median();
+  fmt::print("  shares while periods are kept: march {:.0f} %, contact {:.0f} %, measure {:.0f} %\n",
+             100 * open / watched, 100 * (closed - open) / watched, 100 * (watched - closed) / watched);
+  fmt::print("  one tangent column costs {:.2f} of a lane (block against block)\n",
+             rows[5].median() / rows[4].median() - 1);
+  fmt::print("  reference diagram, 500 amplitudes × 600 periods × 6000 steps: {:.0f} s on one core, {:.0f} s on two\n",
+             diagram * (closed + watched) / 2 / lane_steps, diagram * rows[3].median() / rows[3].lane_steps);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Setting setting;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (!std::strcmp(argv[i], "--rounds")) setting.rounds = std::max(1, std::atoi(argv[i + 1]));
+    if (!std::strcmp(argv[i], "--lanes")) setting.lanes = std::clamp(std::atoi(argv[i + 1]), 2, 32);
+    if (!std::strcmp(argv[i], "--periods")) setting.periods = std::max(1, std::atoi(argv[i + 1]));
+  }
+  measure(setting, StopsSpec::Place::nodes);
+  measure(setting, StopsSpec::Place::tip);
+}
