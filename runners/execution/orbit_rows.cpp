@@ -33,14 +33,6 @@ std::string class_text(const OrbitView& view) {
   return text;
 }
 
-// Status and reason of a value, as of a case.
-std::pair<std::string, std::string> status_of(const OrbitView& view) {
-  if (!view.orbit) return {"refused", view.refusal};
-  if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
-  const bool failed = view.orbit->cause.starts_with("the contact law");
-  return {failed ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, view.orbit->cause)};
-}
-
 std::vector<std::string> value_columns(int exponents) {
   std::vector<std::string> columns = {"parameter", "start", "class", "period", "impacts_per_period", "symmetric"};
   for (int k = 1; k <= exponents; ++k)
@@ -107,6 +99,13 @@ DerivedTable changes(const std::vector<OrbitView>& views, const std::vector<std:
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> status_of(const OrbitView& view) {
+  if (!view.orbit) return {"refused", view.refusal};
+  if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
+  const bool failed = view.orbit->cause.starts_with("the contact law");
+  return {failed ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, view.orbit->cause)};
+}
 
 bool touches(const Orbit& orbit) {
   return orbit.contact_steps > 0;

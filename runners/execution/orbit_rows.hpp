@@ -3,6 +3,7 @@
 #include <ricochet/measure/equivalent_viscosity.hpp>
 #include <ricochet/measure/regime.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/execution/orbit_exponents.hpp"
@@ -45,6 +46,9 @@ std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scene
 
 /// Classifies a complete orbit from its readings and exponents.
 void judge(OrbitView& view, const SectionPlan& plan);
+
+/// Status (done, refused, diverged, failed) and reason of a value, as of a case.
+std::pair<std::string, std::string> status_of(const OrbitView& view);
 
 /// Tables `values` and `bifurcations`, numbers `points` and `impacts`. Views are sorted by start, then by value.
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "runners/execution/environment.hpp"
+#include "runners/execution/run_basins.hpp"
 #include "runners/execution/run_bifurcation.hpp"
 #include "runners/execution/run_comparison.hpp"
 #include "runners/execution/run_stability.hpp"
@@ -36,6 +37,7 @@ void require_reference(const Study& study, References& references, const std::at
 
 CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry) {
   if (kind == "bifurcation") return plan_bifurcation(study_case, registry);
+  if (kind == "basins") return plan_basins(study_case, registry);
   return kind == "stability" ? plan_stability(study_case, registry) : plan_case(study_case, registry);
 }
 
@@ -60,14 +62,15 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
       return run_stability(study_case, registry, stop);
     };
   MotionShelf shelf;
-  if (study.kind == "bifurcation") {
+  if (study.kind == "bifurcation" || study.kind == "basins") {
     runner.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
     runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
       Fingerprints fingerprints(study.kind, program_hash());
       const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
       const int jobs = options.jobs > 0 ? options.jobs : processors, cases = static_cast<int>(study.cases.size());
       const CaseDesk desk{shelf, fingerprints.of(study_case, runner.libraries(study_case)), std::max(1, jobs / cases)};
-      return run_bifurcation(study_case, registry, desk, stop);
+      return study.kind == "basins" ? run_basins(study_case, registry, desk, stop)
+                                    : run_bifurcation(study_case, registry, desk, stop);
     };
   }
   if (study.resolved.contains("repeats"))
