@@ -212,8 +212,9 @@ std::string cell_text(const Json& value) {
 // Measures whose spread says nothing of the motion.
 bool of_the_motion(const std::string& measure) {
   static const std::set<std::string> others = {
-      "microseconds_per_step", "timed_seconds", "timed_low",        "timed_high",
-      "declared_order",        "horizon",       "reference_of_mesh"};
+      "microseconds_per_step", "timed_seconds", "timed_low",         "timed_high",
+      "declared_order",        "horizon",       "reference_of_mesh", "exponent_seconds",
+      "lane_steps_per_second", "orbits"};
   return others.count(measure) == 0 && !measure.starts_with("floor.");
 }
 

@@ -219,6 +219,25 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
   record.numbers.push_back(std::move(impacts));
 }
 
+void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
+  double orbits = 0, periodic = 0, chaotic = 0, impacts = 0;
+  std::optional<double> largest;
+  for (const OrbitView& view : views) {
+    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    ++orbits;
+    periodic += view.verdict.regime == Regime::periodic;
+    chaotic += view.verdict.regime == Regime::chaotic;
+    impacts += impacts_per_period(*view.orbit);
+    if (!view.exponents.values.empty())
+      largest = std::max(largest.value_or(-std::numeric_limits<double>::infinity()), view.exponents.values[0].value);
+  }
+  if (orbits == 0) return;
+  record.measures.insert(record.measures.end(), {{"share_periodic", periodic / orbits},
+                                                 {"share_chaotic", chaotic / orbits},
+                                                 {"impacts_per_period", impacts / orbits}});
+  if (largest && std::isfinite(*largest)) record.measures.emplace_back("largest_exponent", *largest);
+}
+
 void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps) {
   for (DerivedTable& table : record.tables)
     if (table.name == "bifurcations")

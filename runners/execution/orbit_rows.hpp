@@ -54,6 +54,9 @@ std::pair<std::string, std::string> status_of(const OrbitView& view);
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
                       int exponents, const SectionPlan& plan);
 
+/// Measures of the case as a whole: shares of regimes, impacts per period, the largest exponent.
+void add_shares(CaseRecord& record, const std::vector<OrbitView>& views);
+
 /// One more row of `bifurcations`: where the motion without contact grazes a stop.
 void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps);
 

@@ -348,6 +348,7 @@ class BifurcationRun {
     for (const OrbitView& view : all) (view.orbit && view.orbit->stage == Orbit::Stage::complete ? marched : bad) += 1;
     record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
     put("orbits", static_cast<double>(marched));
+    add_shares(record_, all);
     if (scheduler_->lane_periods() > 0)
       put("lane_steps_per_second", static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
     record_.status = marched > 0 ? "done" : "diverged";

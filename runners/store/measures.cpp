@@ -70,6 +70,13 @@ const std::vector<MeasureInfo>& further_measures() {
       {"limit_observed", "s", "Largest stable step of the range, found by marching and bisection."},
       {"largest_radius", "1", "Largest spectral radius of the step over the range."},
       {"agreement", "1", "Observed over predicted step limit."},
+      {"orbits", "1", "Orbits that were marched to the end of their kept periods."},
+      {"share_periodic", "1", "Share of these orbits that repeat, contact-free ones not counted."},
+      {"share_chaotic", "1", "Share of these orbits that are chaotic."},
+      {"impacts_per_period", "1", "Impacts in one forcing period, mean over these orbits."},
+      {"largest_exponent", "1/s", "Largest Lyapunov exponent among these orbits."},
+      {"exponent_seconds", "s", "Processor time of the exponents."},
+      {"lane_steps_per_second", "1/s", "Steps of single orbits per second of processor time, exponents not counted."},
   };
   return measures;
 }
