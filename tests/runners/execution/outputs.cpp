@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
 
@@ -38,12 +39,41 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
   CHECK(read_text(folder / "export/points.csv") == points);
 }
 
-TEST_CASE("outputs: a sweep that went wrong is no single run to repeat") {
+TEST_CASE("outputs: a sweep that went wrong leaves a study of that case alone, which is that case") {
+  using namespace ricochet::tests;
   const ScratchFolder folder;
-  StudyResults results = results_with_points();
-  results.study = {{"scene", nlohmann::ordered_json::object()}};
-  results.cases[0].status = "failed";
-  results.cases[0].axes.emplace_back("steps_per_period", 2000);
+  Json text = small_sweep();
+  SECTION("a number of the scene, beside an axis of the scene") {
+    text["scene"]["support"]["pulsation"] = {10, 12};
+  }
+  SECTION("a parameter of the method") {
+    text["methods"]["contact"] = Json::array({"rigid", {{"name", "spring"}, {"stiffness", 1000}}});
+    text["parameter"] = {{"pointer", "/methods/contact/stiffness"}, {"values", {10, 100}}};
+  }
+  SECTION("a grid") {
+    text = small_basins();
+    text["steps_per_period"] = {1000, 2000};
+  }
+  const Study study = parse(text);
+  StudyResults results;
+  results.name = study.name;
+  results.kind = study.kind;
+  results.study = study.resolved;
+  results.columns = study.columns;
+  for (const StudyCase& one : study.cases) {
+    if (one.excluded) continue;
+    CaseRecord record;
+    record.id = one.id;
+    record.axes = one.axes;
+    record.status = "diverged";
+    results.cases.push_back(record);
+  }
+  REQUIRE(results.cases.size() > 1);
   write_outputs(folder.path(), results, [](const StudyResults&) { return std::string("page"); });
-  CHECK_FALSE(std::filesystem::exists(folder / "failures"));
+  for (const CaseRecord& record : results.cases) {
+    const Study alone = parse(read_text(folder / ("failures/" + record.id + ".json")));
+    REQUIRE(alone.cases.size() == 1);
+    CHECK(alone.cases.front().id == record.id);
+    CHECK(alone.kind == study.kind);
+  }
 }
