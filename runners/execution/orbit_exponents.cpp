@@ -1,6 +1,8 @@
 #include "runners/execution/orbit_exponents.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
 #include <exception>
@@ -8,7 +10,6 @@
 #include <mutex>
 #include <ricochet/measure/lyapunov.hpp>
 #include <ricochet/measure/stability.hpp>
-#include <thread>
 
 #include "runners/execution/bytes.hpp"
 #include "runners/execution/prepare_case.hpp"
@@ -181,11 +182,13 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     const std::lock_guard guard(mutex);
     seconds += thread_seconds() - began;
   };
-  {
-    std::vector<std::jthread> threads;
-    for (int worker = 1; worker < task.workers; ++worker) threads.emplace_back(work);
+  tbb::task_arena arena(task.workers);
+  arena.execute([&] {
+    tbb::task_group group;
+    for (int worker = 1; worker < task.workers; ++worker) group.run(work);
     work();
-  }
+    group.wait();
+  });
   if (failure) std::rethrow_exception(failure);
   if (stop) throw Interrupted{};
   return found;

@@ -1,5 +1,8 @@
 #include "runners/execution/orbit_scheduler.hpp"
 
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
+
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -7,7 +10,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/run_case.hpp"
@@ -105,6 +107,12 @@ std::vector<Orbit> OrbitScheduler::start(const std::vector<int>& numbers) {
 void OrbitScheduler::finish(Shared& shared, Orbit orbit) {
   const auto number = static_cast<std::size_t>(orbit.task);
   const int follower = tasks_[number].follower;
+  if (options_.lean) {
+    orbit.impacts = {};
+    orbit.points = {};
+    orbit.settling = {};
+    orbit.entry = orbit.now = {};
+  }
   shared.fresh.push_back(orbit);
   orbits_[number] = std::move(orbit);
   done_[number] = true;
@@ -269,7 +277,6 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
   // Chains first.
   std::stable_partition(shared.ready.begin(), shared.ready.end(),
                         [&](int number) { return task(number).follower >= 0 || task(number).after >= 0; });
-  std::vector<std::jthread> threads;
   std::mutex total;
   const auto body = [&](int worker) {
     const double began = thread_seconds();
@@ -288,9 +295,14 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
     const std::lock_guard guard(total);
     seconds_ += thread_seconds() - began;
   };
-  for (int worker = 1; worker < options_.workers; ++worker) threads.emplace_back(body, worker);
-  body(0);
-  threads.clear();
+  // A worker waits only for orbits that another one is marching: fewer threads than workers make no difference.
+  tbb::task_arena arena(options_.workers);
+  arena.execute([&] {
+    tbb::task_group group;
+    for (int worker = 1; worker < options_.workers; ++worker) group.run([&body, worker] { body(worker); });
+    body(0);
+    group.wait();
+  });
   if (shared.failure) std::rethrow_exception(shared.failure);
   MarchedOrbits marched;
   marched.finished = std::move(shared.fresh);

@@ -27,6 +27,7 @@ struct ScheduleOptions {
   int lanes = 8;          ///< most lanes of a block
   double interval = 5;    ///< s between checkpoints
   double budget = 1e300;  ///< processor seconds
+  bool lean = false;      ///< finished orbits keep what classifies them: no impacts, no states; none may be followed
 };
 
 /// Marches orbits in blocks of lanes, on threads that take from one queue: chains (orbits that follow each other) first

@@ -62,8 +62,9 @@ int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int j
     }
   };
   const int threads = std::max(1, std::min(jobs, static_cast<int>(pending.size())));
-  // TBB's own limit is the number of processors; --jobs may ask for more.
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  // TBB's own limit is the number of processors; --jobs may ask for more. A case may use what the others leave.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(std::max(1, jobs)));
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::task_group group;

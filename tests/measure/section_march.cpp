@@ -1,9 +1,12 @@
 // Orbits of the forced beam and of the impact oscillator against values computed independently: semi-analytic modal
 // orbits, closed forms.
+#include <fmt/format.h>
+
 #include <numbers>
 #include <ricochet/measure/block_bootstrap.hpp>
 #include <ricochet/measure/linear_response.hpp>
 #include <ricochet/measure/lyapunov.hpp>
+#include <ricochet/measure/regime.hpp>
 #include <ricochet/measure/section_march.hpp>
 
 #include "tests/marching.hpp"
@@ -230,4 +233,66 @@ TEST_CASE("the chaotic exponent of the impact oscillator") {
   CHECK(found.low < 0.1566 + 0.0008);
   CHECK(found.high > 0.1566 - 0.0008);
   CHECK(found.high - found.low < 0.02);
+}
+
+TEST_CASE("regimes of the forced beam are those of an independent scan") {
+  // EI/ρS = 282.84, from rest, 300 periods of transient and 300 kept: 0.079–0.084 period 1, 0.085 chaotic, 0.086
+  // period 1, 0.087 period 3, 0.088–0.093 chaotic, 0.094–0.101 period 1. The edges of the windows are tested; 0.094
+  // needs these steps (chaotic at 4000 per period), and 0.087 a transient whose length is a matter of luck.
+  const std::vector<double> values = {0.084, 0.085, 0.086, 0.088, 0.093, 0.094, 0.101};
+  const std::vector<std::string> regimes = {"periodic 1", "chaotic",    "periodic 1", "chaotic",
+                                            "chaotic",    "periodic 1", "periodic 1"};
+  SceneSpec scene = forced_beam(StopsSpec::Place::tip, 1e-4);
+  beam_of(scene).young *= 282.84 / 282.8125;
+  const Methods methods{
+      {"singular"}, {"signorini"}, {"newmark-dumont-paoli", {{"start", std::string("second-order")}}}};
+  SectionPlan plan;
+  plan.pulsation = 10;
+  plan.steps_per_period = 16000;
+  plan.transient = plan.at_most = 400;
+  plan.keep = 120;
+  plan.scale = 0.1;
+  const double h = 2 * std::numbers::pi / 10 / plan.steps_per_period;
+  const auto orbits = orbits_of([&] { return program_of(scene, 20, methods, h, amplitudes(values)); }, plan);
+  LyapunovPlan measure;
+  measure.steps_per_period = plan.steps_per_period;
+  measure.pulsation = plan.pulsation;
+  measure.periods = plan.keep;
+  std::vector<LaneState> states;
+  for (const Orbit& orbit : orbits) states.push_back(orbit.entry);
+  const auto rates = lyapunov_rates(program_of(scene, 20, methods, h, amplitudes(values), 1), states, measure);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    RegimeInput input;
+    input.contact = orbits[i].contact_steps > 0;
+    input.recurrence = find_recurrence(orbits[i].readings, plan.reading_scale(), 1e-3);
+    input.exponent = block_bootstrap_mean(rates[i].rates[0]);
+    input.forcing_period = 2 * std::numbers::pi / plan.pulsation;
+    const RegimeVerdict verdict = classify(input);
+    std::string found = regime_name(verdict.regime);
+    if (verdict.period > 0) found += " " + std::to_string(verdict.period);
+    INFO("A0 = " << values[i] << ": " << verdict.evidence);
+    CHECK(found == regimes[i]);
+  }
+}
+
+TEST_CASE("below grazing an impacting orbit and one without contact coexist") {
+  SceneSpec scene = forced_beam(StopsSpec::Place::tip, 1e-4);
+  scene.support.amplitude = 0.075;
+  // Near the motion without contact, which is almost in phase with the clamp: u_t = ωA(1 + 0.263 s(x)), s the shape
+  // under a uniform load.
+  SceneSpec open = scene;
+  const double L = beam_of(scene).length;
+  open.initial.velocity = Formula(fmt::format("0.75*(1 + 0.263*(6*x^2*{0}^2 - 4*x^3*{0} + x^4)/(3*{0}^4))", L),
+                                  "/scene/initial/velocity", "x");
+  SectionPlan plan;
+  plan.pulsation = 10;
+  plan.steps_per_period = 4000;
+  plan.transient = plan.at_most = 300;
+  plan.keep = 20;
+  plan.scale = 0.1;
+  const double h = 2 * std::numbers::pi / 10 / plan.steps_per_period;
+  const auto rest = orbits_of([&] { return program_of(scene, 20, {}, h, one_lane); }, plan);
+  const auto kept = orbits_of([&] { return program_of(open, 20, {}, h, one_lane); }, plan);
+  CHECK(rest[0].contact_steps > 0);
+  CHECK(kept[0].contact_steps == 0);
 }
