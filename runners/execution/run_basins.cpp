@@ -82,6 +82,7 @@ class BasinsRun {
     options.section = section_;
     options.workers = desk_.workers;
     options.budget = budget_of(case_) - record_.run_seconds;
+    options.lean = true;
     OrbitScheduler scheduler(scenes_.scenes(), options);
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
     OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
