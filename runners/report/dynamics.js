@@ -96,13 +96,8 @@ const ricochetDynamics = (function () {
     if (reference.sweep === "zero") return { rows: [[option.xAxis[0].min, 0], [option.xAxis[0].max, 0]] };
     return makers[reference.sweep](reference, orbitsOf(reference.case));
   }
-  function pairs(values) {
-    const rows = new Array(values.length / 2);
-    for (let i = 0; i < rows.length; ++i) rows[i] = [values[2 * i], values[2 * i + 1]];
-    return rows;
-  }
   // Completes the series that refer to orbits; `view.sources` then says which orbit each item is.
-  function dress(view, option) {
+  function dress(view, option, hidden) {
     view.sources = option.series.map((series) => {
       if (series.symbol === "triangle-down") Object.assign(series, { symbol: "triangle", symbolRotate: 180 });
       const reference = series.data;
@@ -111,18 +106,85 @@ const ricochetDynamics = (function () {
       if (!made.has(key)) made.set(key, make(reference, option));
       const built = made.get(key), source = { reference, orbits: built.orbits || null, ids: built.ids || null, values: built.values || null, rows: built.rows || null, canvas: built.canvas || null };
       if (!built.values) { series.data = built.rows; return source; }
-      const count = built.values.length / 2;
-      if (reference.sweep === "points" && count > 2500) {
-        // Squares of less than four pixels are drawn without a path each: 2·10⁵ of them take a few hundredths of a second.
-        Object.assign(series, { large: true, largeThreshold: 1, symbol: "rect", symbolSize: count > 40000 ? 1.5 : 2.2, dimensions: ["x", "y"], data: built.values });
-        delete series.symbolRotate;
-      } else {
-        if (reference.sweep === "points") series.symbolSize = count < 400 ? 6 : 4.5;
-        series.data = pairs(built.values);
-      }
+      // Points are drawn by hand, all of a panel in one picture; their series keeps its name and colour for the legend.
+      Object.assign(source, { colour: series.color, glyph: glyphOf(series, reference, built.values.length / 2), z: series.z || 2, grid: series.xAxisIndex || 0, axis: series.yAxisIndex || 0, tags: series.tags || [] });
+      Object.assign(series, { type: "scatter", silent: true, data: [] });
       return source;
     });
+    const grids = new Map();
+    view.sources.forEach((source) => { if (source && source.glyph) grids.set(source.grid, source.axis); });
+    for (const [grid, axis] of grids) {
+      option.series.push({ type: "custom", name: "points of panel " + grid, xAxisIndex: grid, yAxisIndex: axis, silent: true, clip: true, progressive: 0, z: 3, renderItem: drawPoints(view, option, hidden, grid), encode: { x: 0, y: 1 },
+        data: [[option.xAxis[grid].min, 0]] });
+      view.sources.push(null);
+    }
   }
+
+  // ---- points, pixel by pixel ---------------------------------------------------------------------------------------
+  // Shape and size in CSS pixels. Starts are told apart by their marks while these are few; clouds are dots.
+  function glyphOf(series, reference, count) {
+    const shape = series.symbolRotate === 180 ? "down" : { triangle: "up", rect: "square", diamond: "diamond" }[series.symbol] || (String(series.symbol).startsWith("path:") ? "cross" : "circle");
+    if (reference.sweep === "points") return count > 2500 ? { shape: "dot", size: count > 40000 ? 1.5 : 2 } : { shape, size: count < 400 ? 6 : 5 };
+    return { shape, size: series.symbolSize || 4 };
+  }
+  // Coverage of the shape, 0 to 255, in device pixels around its centre.
+  function maskOf(glyph, ratio) {
+    const size = Math.max(1, Math.round(glyph.size * ratio));
+    if (glyph.shape === "dot") return { size, alpha: new Uint8Array(size * size).fill(255) };
+    const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size }), c = canvas.getContext("2d"), h = size / 2;
+    c.beginPath();
+    if (glyph.shape === "circle") c.arc(h, h, h, 0, 7);
+    else if (glyph.shape === "square") c.rect(0.5, 0.5, size - 1, size - 1);
+    else if (glyph.shape === "up") { c.moveTo(h, 0); c.lineTo(size, size); c.lineTo(0, size); }
+    else if (glyph.shape === "down") { c.moveTo(h, size); c.lineTo(size, 0); c.lineTo(0, 0); }
+    else if (glyph.shape === "diamond") { c.moveTo(h, 0); c.lineTo(size, h); c.lineTo(h, size); c.lineTo(0, h); }
+    else { c.moveTo(0, 0); c.lineTo(size, size); c.moveTo(size, 0); c.lineTo(0, size); }
+    if (glyph.shape === "cross") c.stroke(); else c.fill();
+    const data = c.getImageData(0, 0, size, size).data, alpha = new Uint8Array(size * size);
+    for (let i = 0; i < alpha.length; ++i) alpha[i] = data[4 * i + 3];
+    return { size, alpha };
+  }
+  const drawPoints = (view, option, hidden, grid) => (params, api) => {
+    const frame = params.coordSys, ratio = api.getDevicePixelRatio(), wide = Math.round(frame.width * ratio), tall = Math.round(frame.height * ratio);
+    if (wide < 1 || tall < 1) return null;
+    const x = option.xAxis[grid], bend = x.type === "log" ? Math.log : (v) => v, low = bend(x.min), high = bend(x.max);
+    const first = api.coord([x.min, 0]), last = api.coord([x.max, 1]);
+    const left = (first[0] - frame.x) * ratio, perX = (last[0] - first[0]) * ratio / (high - low), zero = (first[1] - frame.y) * ratio, perY = (last[1] - first[1]) * ratio;
+    const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: tall }), context = canvas.getContext("2d");
+    const picture = context.createImageData(wide, tall), bytes = picture.data, words = new Uint32Array(bytes.buffer);
+    const drawn = view.sources.filter((s) => s && s.glyph && s.grid === grid && !s.tags.some((tag) => hidden.has(tag))).sort((a, b) => a.z - b.z);
+    for (const source of drawn) {
+      const mask = maskOf(source.glyph, ratio), size = mask.size, alpha = mask.alpha, half = size / 2;
+      const [r, g, b] = [1, 3, 5].map((k) => parseInt(source.colour.slice(k, k + 2), 16)), values = source.values;
+      if (source.glyph.shape === "dot") {
+        const ink = (255 << 24) | (b << 16) | (g << 8) | r, from = left - half + 0.5, base = zero - half + 0.5, straight = x.type !== "log";
+        for (let i = 0; i < values.length; i += 2) {
+          const px = Math.floor(from + ((straight ? values[i] : Math.log(values[i])) - low) * perX), py = Math.floor(base + values[i + 1] * perY);
+          if (px < 0 || py < 0 || px + size > wide || py + size > tall) continue;
+          for (let row = 0, at = py * wide + px; row < size; ++row, at += wide) for (let column = 0; column < size; ++column) words[at + column] = ink;
+        }
+        continue;
+      }
+      for (let i = 0; i < values.length; i += 2) {
+        const px = Math.round(left + (bend(values[i]) - low) * perX - half), py = Math.round(zero + values[i + 1] * perY - half);
+        if (px <= -size || py <= -size || px >= wide || py >= tall) continue;
+        for (let row = 0; row < size; ++row) {
+          const v = py + row;
+          if (v < 0 || v >= tall) continue;
+          for (let column = 0; column < size; ++column) {
+            const u = px + column, a = alpha[row * size + column];
+            if (u < 0 || u >= wide || a === 0) continue;
+            const at = 4 * (v * wide + u), under = bytes[at + 3];
+            if (a === 255 || under === 0) { bytes[at] = r; bytes[at + 1] = g; bytes[at + 2] = b; bytes[at + 3] = Math.max(a, under); continue; }
+            const share = a / 255;
+            bytes[at] += (r - bytes[at]) * share; bytes[at + 1] += (g - bytes[at + 1]) * share; bytes[at + 2] += (b - bytes[at + 2]) * share; bytes[at + 3] = Math.max(a, under);
+          }
+        }
+      }
+    }
+    context.putImageData(picture, 0, 0);
+    return { type: "image", silent: true, style: { image: canvas, x: frame.x, y: frame.y, width: frame.width, height: frame.height } };
+  };
   function drawCell(params, api) {
     const low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(2)]);
     const tall = api.size([0, 1])[1], frame = params.coordSys;
@@ -159,15 +221,30 @@ const ricochetDynamics = (function () {
       const source = view.sources && view.sources[p.seriesIndex], o = source && source.orbits ? source.orbits[p.dataIndex] : undefined;
       const head = (x) => "<div>" + page.escapeText(view.x[0]) + " = " + page.number(x, 9) + page.escapeText(unitText(view.x)) + "</div>";
       if (o === undefined) return head(p.value[0]) + line(p.seriesName, page.number(p.value[1], 8));
-      const id = source.ids ? source.ids[p.dataIndex] : source.reference.case, one = orbitsOf(id);
-      let out = head(one.columns.parameter[o]);
-      if (one.label) out += '<div class="fine">' + page.escapeText(one.label) + "</div>";
-      out += line(regime(one, o), "start " + cell(one, "start", o));
-      if (source.reference.sweep === "points") out += line(view.y[0], page.number(p.value[1], 8) + unitText(view.y));
-      if (interval(one, "exponent_1", o)) out += line("exponent", interval(one, "exponent_1", o));
-      return out;
+      const id = source.ids ? source.ids[p.dataIndex] : source.reference.case;
+      return wordsOf(view, id, o);
     };
   }
+  function wordsOf(view, id, o, value) {
+    const line = (name, text) => '<div class="tip-row">' + page.escapeText(name) + "<b>" + page.escapeText(text) + "</b></div>", one = orbitsOf(id);
+    let out = "<div>" + page.escapeText(view.x[0]) + " = " + page.number(one.columns.parameter[o], 9) + page.escapeText(unitText(view.x)) + "</div>";
+    if (one.label) out += '<div class="fine">' + page.escapeText(one.label) + "</div>";
+    out += line(regime(one, o), "start " + cell(one, "start", o));
+    if (value !== undefined) out += line(view.y[0], page.number(value, 8) + unitText(view.y));
+    if (interval(one, "exponent_1", o)) out += line("exponent", interval(one, "exponent_1", o));
+    return out;
+  }
+  // What lies under the mouse: points are pixels of a picture, which the library knows nothing of.
+  let tip = null;
+  function hover(chart, view, option, hidden, at, where) {
+    const found = pick(chart, view, option, hidden, at, true);
+    if (!found) { leave(); return; }
+    if (!tip) { tip = element("div", "orbit-tip"); document.body.appendChild(tip); }
+    tip.innerHTML = wordsOf(view, found.id, found.orbit, found.value) + '<div class="fine">click: its orbit</div>';
+    tip.style.left = Math.max(0, Math.min(where[0] + 14, window.innerWidth - 300)) + "px";
+    tip.style.top = Math.max(0, Math.min(where[1] + 14, window.innerHeight - 140)) + "px";
+  }
+  function leave() { if (tip) tip.remove(); tip = null; }
 
   function cellTooltip(view) {
     return (given) => {
@@ -185,31 +262,33 @@ const ricochetDynamics = (function () {
   }
 
   // ---- the orbit under a click --------------------------------------------------------------------------------------
-  function pick(chart, view, option, hidden, at) {
+  function pick(chart, view, option, hidden, at, pointsOnly) {
     const grids = [].concat(option.grid), grid = grids.findIndex((g, k) => chart.containPixel({ gridIndex: k }, at));
     if (grid < 0) return null;
-    let best = null, nearest = 14;
+    let best = null, nearest = pointsOnly ? 7 : 14;
     option.series.forEach((series, s) => {
       const source = view.sources[s];
       if (!source || !source.orbits || (series.xAxisIndex || 0) !== grid || (series.tags || []).some((tag) => hidden.has(tag))) return;
       const axes = { xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 };
       if (source.reference.sweep === "cells") {
+        if (pointsOnly) return;
         const value = chart.convertFromPixel(axes, at), k = source.rows.findIndex((r) => r[0] <= value[0] && value[0] <= r[1] && r[2] === Math.round(value[1]));
         if (k >= 0) best = { id: source.ids[k], orbit: source.orbits[k] };
         return;
       }
-      const count = source.orbits.length, x = (i) => (source.values ? source.values[2 * i] : source.rows[i].value[0]), y = (i) => (source.values ? source.values[2 * i + 1] : source.rows[i].value[1]);
-      if (!count) return;
+      if (!source.orbits.length) return;
       // Both scales are straight in what they show: two points give them.
-      const bend = option.xAxis[grid].type === "log" ? Math.log : (v) => v, ends = [option.xAxis[grid].min, option.xAxis[grid].max];
-      const left = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, ends[0]), right = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, ends[1]);
+      const axis = option.xAxis[grid], log = axis.type === "log", bend = log ? Math.log : (v) => v;
+      const left = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, axis.min), right = chart.convertToPixel({ xAxisIndex: axes.xAxisIndex }, axis.max);
       const zero = chart.convertToPixel({ yAxisIndex: axes.yAxisIndex }, 0), unit = chart.convertToPixel({ yAxisIndex: axes.yAxisIndex }, 1) - zero;
-      const scale = (right - left) / (bend(ends[1]) - bend(ends[0])), base = bend(ends[0]);
-      for (let i = 0; i < count; ++i) {
-        const dx = left + (bend(x(i)) - base) * scale - at[0];
-        if (dx > nearest || dx < -nearest) continue;
-        const away = Math.hypot(dx, zero + y(i) * unit - at[1]);
-        if (away < nearest) { nearest = away; best = { id: source.reference.case, orbit: source.orbits[i] }; }
+      const scale = (right - left) / (bend(axis.max) - bend(axis.min)), base = bend(axis.min), middle = base + (at[0] - left) / scale, reach = Math.abs(nearest / scale);
+      const low = log ? Math.exp(middle - reach) : middle - reach, high = log ? Math.exp(middle + reach) : middle + reach;
+      const values = source.values || source.rows.flatMap((row) => row.value);
+      for (let i = 0; i < values.length; i += 2) {
+        const x = values[i];
+        if (!(x >= low && x <= high)) continue;
+        const away = Math.hypot(left + (bend(x) - base) * scale - at[0], zero + values[i + 1] * unit - at[1]);
+        if (away < nearest) { nearest = away; best = { id: source.reference.case, orbit: source.orbits[i >> 1], value: source.reference.sweep === "points" ? values[i + 1] : undefined }; }
       }
     });
     return best;
@@ -309,5 +388,5 @@ const ricochetDynamics = (function () {
   }
   document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
 
-  return { start, dress, tooltip, drawCell, drawImage, cellTooltip, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
+  return { start, dress, hover, leave, tooltip, drawCell, drawImage, cellTooltip, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
 })();

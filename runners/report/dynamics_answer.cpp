@@ -102,7 +102,7 @@ std::string regime_sentence(const Cases& cases) {
   std::string parts;
   for (size_t group = 0; group < counts.size(); ++group)
     if (counts[group] > 0)
-      parts += fmt::format("{}<span class=\"swatch\" style=\"background:{}\"></span>{} {}", parts.empty() ? "" : ", ",
+      parts += fmt::format("{}<span class=\"swatch\" style=\"background:{}\"></span>{}: {}", parts.empty() ? "" : ", ",
                            regime_groups[group].colour, regime_groups[group].name, counts[group]);
   return fmt::format("<p>Regimes of {}: {}.</p>\n", count_text(all, "orbit", "orbits"), parts);
 }
@@ -185,7 +185,7 @@ std::string viscosity_cells(const Viscosity& v) {
         "<td class=\"warned\">▲ {} of α: {}</td>", share_text(v.share),
         v.numerical.low < 0 && -v.numerical.low >= v.numerical.high ? "the scheme feeds energy" : "not ≪ α");
   else
-    said = fmt::format("<td>{}≪ α</td>", v.share > 0 ? share_text(v.share) + ", " : "");
+    said = fmt::format("<td class=\"text\">{}≪ α</td>", v.share > 0 ? share_text(v.share) + ", " : "");
   return range_cell(v.physical) + range_cell(v.numerical) + said;
 }
 

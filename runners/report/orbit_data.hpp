@@ -8,8 +8,8 @@ namespace ricochet::report {
 
 /// How many numbers of sections and portraits a page may carry.
 struct PageBudget {
-  size_t points = 400'000;       ///< of all sections together, shared evenly by the cases that need it
-  size_t portraits = 1'200'000;  ///< samples of all portraits together
+  size_t points = 400'000;     ///< of all sections together, shared evenly by the cases that need it
+  size_t portraits = 600'000;  ///< samples of all portraits together
 };
 
 /// Writes the section points of all cases into the page, as blocks ID/points/orbit, …/u and …/v of equal length: the

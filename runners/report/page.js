@@ -124,7 +124,7 @@
       const view = this.viewOf(slot);
       const option = revive(view, view.option);
       if (!option.series) return null;
-      ricochetDynamics.dress(view, option);
+      ricochetDynamics.dress(view, option, this.hidden);
       if (this.own) for (const axis of [].concat(option.yAxis).slice(0, 1)) { delete axis.min; delete axis.max; }
       option.legend.selected = this.selected(option.series);
       // The brush that a drag starts belongs to the toolbox; its icons stay out of sight.
@@ -139,7 +139,8 @@
         slot.chart = echarts.init(slot.element, null, { renderer: "canvas" });
         slot.chart.on("datazoom", (event) => this.follow(slot, event));
         slot.chart.getZr().on("dblclick", () => this.reset());
-        slot.chart.getZr().on("mousemove", (event) => { this.viewOf(slot).mouse = { chart: slot.chart, at: [event.offsetX, event.offsetY] }; });
+        slot.chart.getZr().on("mousemove", (event) => this.hover(slot, [event.offsetX, event.offsetY], event.event));
+        slot.chart.getZr().on("globalout", () => ricochetDynamics.leave());
         slot.chart.getZr().on("click", (event) => this.pick(slot, [event.offsetX, event.offsetY]));
       }
       slot.drawn = option;
@@ -149,6 +150,11 @@
     }
     redraw() { this.slots.forEach((slot) => { if (slot.chart && this.visible(slot)) { slot.chart.resize(); this.draw(slot); } }); }
     drawAll() { this.slots.forEach((slot) => slot.chart || this.draw(slot)); }
+    hover(slot, at, event) {
+      const view = this.viewOf(slot);
+      view.mouse = { chart: slot.chart, at };
+      if (event && view.sources && view.sources.some((source) => source && source.glyph)) ricochetDynamics.hover(slot.chart, view, slot.drawn, this.hidden, at, [event.clientX, event.clientY]);
+    }
     pick(slot, at) {
       const view = this.viewOf(slot);
       if (!view.sources || !view.sources.some(Boolean)) return;
@@ -325,11 +331,11 @@
 
   // ---- selfcheck: opened as report.html#selfcheck, the page says in an attribute what it really drew -----------------
   function coloured(slot) {
-    const canvas = slot.element.querySelector("canvas");
+    const layers = all("canvas", slot.element), canvas = layers[0];
     if (!canvas || !canvas.width || !canvas.height) return 0;
     const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
     const context = copy.getContext("2d", { willReadFrequently: true });
-    context.drawImage(canvas, 0, 0);
+    for (const layer of layers) context.drawImage(layer, 0, 0);
     const data = context.getImageData(0, 0, copy.width, copy.height).data;
     let count = 0;
     for (let i = 0; i < data.length; i += 4)   // grey is axes and text; curves have a hue

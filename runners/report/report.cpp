@@ -92,7 +92,7 @@ std::string legend_html(const Figure& figure) {
 }
 
 std::string grid_classes(const Figure& figure) {
-  if (figure.linked) return figure.charts.size() == 1 ? "grid single" : "grid stacked";
+  if (figure.linked) return figure.charts.size() == 1 ? "grid single broad" : "grid stacked";
   if (figure.charts.size() == 1) return "grid single";
   std::string out = figure.charts.size() > 12 ? "grid many" : figure.charts.size() == 2 ? "grid pair" : "grid";
   for (const Chart& chart : figure.charts)
