@@ -15,7 +15,10 @@
 #include <ricochet/measure/section_march.hpp>
 #include <thread>
 
+#include "tests/benchmarks/reference_beam.hpp"
+
 using namespace ricochet;
+using namespace ricochet::benchmarks;
 
 namespace {
 
@@ -36,26 +39,8 @@ const Registry& registry() {
   return all;
 }
 
-Parameters defaults(const PluginManual& manual, std::map<std::string, ParameterValue> values = {}) {
-  for (const ParameterSpec& spec : manual.parameters)
-    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
-  return Parameters(values);
-}
-
 Program program(const std::string& law_name, int lanes, int tangents, StopsSpec::Place place) {
-  BeamSpec beam;
-  beam.length = 1.501;
-  beam.young = 2e11;
-  beam.density = 8000;
-  beam.section.outer_diameter = 0.01;
-  beam.section.wall = 0.0005;
-  beam.damping.stiffness = 1e-4;
-  SceneSpec scene;
-  scene.structure = beam;
-  scene.stops.lower = Formula(-0.1);
-  scene.stops.upper = Formula(0.1);
-  scene.stops.place = place;
-  scene.support = {0.08, pulsation, 0};
+  const SceneSpec scene = reference_beam(place);
   const auto* mass = registry().mass("singular");
   const auto* law = registry().contact(law_name);
   const auto* scheme = registry().time("newmark-dumont-paoli");

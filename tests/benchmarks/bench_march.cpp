@@ -18,33 +18,12 @@
 #include <ricochet/measure/motion_sampler.hpp>
 
 #include "tests/benchmarks/fma_peak.hpp"
+#include "tests/benchmarks/reference_beam.hpp"
 
 using namespace ricochet;
+using namespace ricochet::benchmarks;
 
 namespace {
-
-SceneSpec scene(StopsSpec::Place place) {
-  BeamSpec beam;
-  beam.length = 1.501;
-  beam.young = 2e11;
-  beam.density = 8000;
-  beam.section.outer_diameter = 0.01;
-  beam.section.wall = 0.0005;
-  beam.damping.stiffness = 1e-4;
-  SceneSpec made;
-  made.structure = beam;
-  made.stops.lower = Formula(-0.1);
-  made.stops.upper = Formula(0.1);
-  made.stops.place = place;
-  made.support = {0.09, 10, 0};
-  return made;
-}
-
-Parameters defaults(const PluginManual& manual, std::map<std::string, ParameterValue> values = {}) {
-  for (const ParameterSpec& spec : manual.parameters)
-    if (spec.fallback && !values.contains(spec.key)) values[spec.key] = *spec.fallback;
-  return Parameters(values);
-}
 
 // Processor time of this thread: what others do on the machine counts only where they share the core.
 double thread_nanoseconds() {
@@ -136,7 +115,7 @@ int main(int argc, char** argv) {
       std::map<std::string, ParameterValue> values;
       if (!velocity.empty()) values["velocity"] = velocity;
       auto problem = std::make_shared<const SemiDiscrete>(std::get<SemiDiscrete>(
-          discretise(scene(place), 50, *mass_entry->make(defaults(mass_entry->manual, values)))));
+          discretise(reference_beam(place), 50, *mass_entry->make(defaults(mass_entry->manual, values)))));
       auto law = registry.contact("signorini")->make({});
       const auto* time = registry.time("newmark-dumont-paoli");
       const double h = 2 * 3.14159265358979324 / 10 / 6000;
