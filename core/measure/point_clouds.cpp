@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kDirections = 8, kExact = 16, kLargest = 64, kBlocks = 10, kFewest = 20;
-constexpr int kDraws = 19;
+constexpr std::size_t kDraws = 19, kLanes = 20;  // draws, and with one of weight 0 to fill a vector
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 using Points = std::span<const CloudPoint>;
@@ -122,16 +122,23 @@ std::size_t block_of(std::size_t i, std::size_t count) {
 
 // The largest sliced distance of the halves of `pool`, over the draws; every other point's slices go to `slices`.
 double null_by_slices(Points pool, std::vector<double>* slices) {
-  std::array<double, kDraws> sums{};
-  std::vector<std::pair<double, std::uint32_t>> sorted(pool.size());
-  std::array<std::array<double, kBlocks>, kDraws> weights;
-  for (int d = 0; d < kDraws; ++d) {
-    const auto& draw = draws()[static_cast<std::size_t>(d)];
-    std::array<std::size_t, 2> sizes{};
-    for (std::size_t i = 0; i < pool.size(); ++i) ++sizes[draw[block_of(i, pool.size())]];
-    for (std::size_t k = 0; k < kBlocks; ++k)
-      weights[static_cast<std::size_t>(d)][k] = (draw[k] ? -1.0 : 1.0) / static_cast<double>(sizes[draw[k]]);
+  using PerDraw = std::array<double, kLanes>;
+  std::array<std::size_t, kBlocks> block_sizes{};
+  std::vector<std::uint32_t> block(pool.size());
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    block[i] = static_cast<std::uint32_t>(block_of(i, pool.size()));
+    ++block_sizes[block[i]];
   }
+  std::array<PerDraw, kBlocks> weights{};
+  for (std::size_t d = 0; d < kDraws; ++d) {
+    const auto& draw = draws()[d];
+    std::array<std::size_t, 2> sizes{};
+    for (std::size_t k = 0; k < kBlocks; ++k) sizes[draw[k]] += block_sizes[k];
+    for (std::size_t k = 0; k < kBlocks; ++k)
+      weights[k][d] = (draw[k] ? -1.0 : 1.0) / static_cast<double>(sizes[draw[k]]);
+  }
+  PerDraw sums{};
+  std::vector<std::pair<double, std::uint32_t>> sorted(pool.size());
   for (const CloudPoint& direction : directions()) {
     for (std::size_t i = 0; i < pool.size(); ++i)
       sorted[i] = {projection(pool[i], direction), static_cast<std::uint32_t>(i)};
@@ -139,13 +146,14 @@ double null_by_slices(Points pool, std::vector<double>* slices) {
     if (slices)
       for (const auto& [value, i] : sorted)
         if (i % 2 == 0) slices->push_back(value);
-    for (std::size_t d = 0; d < kDraws; ++d) {
-      double gap = 0, sum = 0;
-      for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
-        gap += weights[d][block_of(sorted[i].second, pool.size())];
-        sum += std::abs(gap) * (sorted[i + 1].first - sorted[i].first);
+    PerDraw gaps{};
+    for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
+      const PerDraw& weight = weights[block[sorted[i].second]];
+      const double width = sorted[i + 1].first - sorted[i].first;
+      for (std::size_t d = 0; d < kLanes; ++d) {
+        gaps[d] += weight[d];
+        sums[d] += std::abs(gaps[d]) * width;
       }
-      sums[d] += sum;
     }
   }
   return std::numbers::pi / 2 * *std::max_element(sums.begin(), sums.end()) / kDirections;
