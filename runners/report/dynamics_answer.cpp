@@ -181,9 +181,8 @@ std::string viscosity_cells(const Viscosity& v) {
   if (v.undamped && (v.numerical.high > 0 || v.numerical.low < 0))
     said = "<td class=\"warned\">no α to compare with</td>";
   else if (v.share > small_share)
-    said = fmt::format(
-        "<td class=\"warned\">▲ {} of α: {}</td>", share_text(v.share),
-        v.numerical.low < 0 && -v.numerical.low >= v.numerical.high ? "the scheme feeds energy" : "not ≪ α");
+    said = fmt::format("<td class=\"warned\">▲ {} of α{}</td>", share_text(v.share),
+                       v.numerical.low < 0 && -v.numerical.low >= v.numerical.high ? ", feeding energy" : "");
   else
     said = fmt::format("<td class=\"text\">{}≪ α</td>", v.share > 0 ? share_text(v.share) + ", " : "");
   return range_cell(v.physical) + range_cell(v.numerical) + said;
@@ -225,7 +224,7 @@ std::string regime_table(const CaseView& view, const Cases& cases) {
   if (any)
     caption += fmt::format(
         " α: stiffness viscosity of the scene; α_eq: what the scheme adds, fitted on the free decay of the first modes "
-        "(s). ▲: more than {} of α. {} of {} methods are so marked.",
+        "(s). ▲: more than {} of α, so not ≪ α: {} of {} methods.",
         share_text(small_share), not_small, known);
   return fmt::format(
       "<div class=\"scroll{}\"><table class=\"matrix\"><caption>{}</caption>\n<thead><tr><th "
