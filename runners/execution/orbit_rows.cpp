@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <ricochet/measure/zero_one_test.hpp>
+#include <span>
 
 #include "runners/execution/prepare_case.hpp"
 #include "runners/study/with_parameter.hpp"
@@ -77,6 +78,17 @@ std::vector<Json> value_row(const OrbitView& view, const std::string& start, int
   row.push_back(status);
   row.push_back(reason);
   return row;
+}
+
+// The impacts of one period of what repeats, of all periods kept otherwise.
+std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
+  const std::span<const ImpactPoint> all(view.orbit->impacts);
+  const std::vector<int>& counts = view.orbit->impact_counts;
+  const auto periods = static_cast<std::size_t>(view.recurrence.period);
+  if (periods == 0 || periods > counts.size()) return all;
+  const auto last =
+      static_cast<std::size_t>(std::accumulate(counts.end() - static_cast<std::ptrdiff_t>(periods), counts.end(), 0));
+  return all.last(std::min(last, all.size()));
 }
 
 DerivedTable changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
@@ -210,7 +222,7 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
     for (std::size_t i = 0; i < section.size(); ++i)
       add(points, {view.value, start, static_cast<double>(i), section[i].displacement, section[i].velocity,
                    section[i].opposite_displacement, section[i].opposite_velocity});
-    for (const ImpactPoint& impact : view.orbit->impacts)
+    for (const ImpactPoint& impact : impacts_shown(view))
       add(impacts, {view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed});
   }
   record.tables.push_back(std::move(values));

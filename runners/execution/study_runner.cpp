@@ -13,6 +13,7 @@
 #include "runners/execution/say.hpp"
 #include "runners/execution/stop_signal.hpp"
 #include "runners/execution/summary.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
@@ -87,8 +88,7 @@ int interrupted(const StudyRunner& runner, const Store& store, const std::filesy
 void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
                   const CaseRecord& record) {
   store.save_partial(record);
-  const std::set<std::string> none;
-  write_outputs(folder, with_tables(store.load()), runner.render, &none);
+  write_file(folder / "report.html", runner.render(with_tables(store.load())));
 }
 
 int run_in(const StudyRunner& runner, const Study& study, const RunOptions& options,
