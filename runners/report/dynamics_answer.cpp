@@ -13,7 +13,7 @@
 namespace ricochet::report {
 namespace {
 
-constexpr size_t most_sentences = 12;
+constexpr size_t most_sentences = 8;
 
 /// A numerical viscosity counts as small below this share of the physical one.
 constexpr double small_share = 0.01;
@@ -169,23 +169,22 @@ Viscosity viscosity_of(const CaseView& view, const CaseRecord& record) {
   return out;
 }
 
-std::string range_cell(const Interval& range) {
-  if (range.empty()) return "<td class=\"number absent\">–</td>";
+std::string range_text(const Interval& range) {
   const std::string low = number_text(range.low, 3), high = number_text(range.high, 3);
-  return fmt::format("<td class=\"number\">{}</td>", low == high ? low : low + " to " + high);
+  return low == high ? low : low + " to " + high;
 }
 
-std::string viscosity_cells(const Viscosity& v) {
-  if (!v.known) return "<td class=\"absent\">–</td><td class=\"absent\">–</td><td class=\"absent\">–</td>";
-  std::string said;
-  if (v.undamped && (v.numerical.high > 0 || v.numerical.low < 0))
-    said = "<td class=\"warned\">no α to compare with</td>";
-  else if (v.share > small_share)
-    said = fmt::format("<td class=\"warned\">▲ {} of α{}</td>", share_text(v.share),
-                       v.numerical.low < 0 && -v.numerical.low >= v.numerical.high ? ", feeding energy" : "");
-  else
-    said = fmt::format("<td class=\"text\">{}≪ α</td>", v.share > 0 ? share_text(v.share) + ", " : "");
-  return range_cell(v.physical) + range_cell(v.numerical) + said;
+/// α_eq with its share of α; below 1e-12 of it, nothing is told from round-off.
+std::string viscosity_cell(const Viscosity& v) {
+  if (!v.known) return "<td class=\"absent\">–</td>";
+  if (v.numerical.low == 0 && v.numerical.high == 0) return "<td class=\"text\">0</td>";
+  if (v.undamped || v.physical.empty())
+    return fmt::format("<td class=\"warned\">{}: no α to compare with</td>", range_text(v.numerical));
+  if (v.share < 1e-12) return "<td class=\"text\">0 to round-off</td>";
+  const std::string text = fmt::format("{}: {} of α", range_text(v.numerical), share_text(v.share));
+  if (v.share <= small_share) return "<td class=\"text\">" + text + "</td>";
+  const bool feeds = v.numerical.low < 0 && -v.numerical.low >= v.numerical.high;
+  return fmt::format("<td class=\"warned\">▲ {}{}</td>", text, feeds ? ", feeding energy" : "");
 }
 
 /// Methods × regimes, with the viscosity of each method.
@@ -197,10 +196,21 @@ std::string regime_table(const CaseView& view, const Cases& cases) {
       head += fmt::format(
           "<th scope=\"col\" class=\"number\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th>",
           regime_groups[group].colour, regime_groups[group].name);
+  std::vector<Viscosity> viscosities;
+  Interval physical = Interval::nothing();
   bool any = false;
   size_t not_small = 0, known = 0;
-  std::string rows;
   for (const CaseRecord* record : cases) {
+    viscosities.push_back(viscosity_of(view, *record));
+    const Viscosity& v = viscosities.back();
+    physical.include(v.physical);
+    any = any || v.known;
+    known += v.known;
+    not_small += v.share > small_share;
+  }
+  std::string rows;
+  for (size_t c = 0; c < cases.size(); ++c) {
+    const CaseRecord* record = cases[c];
     const auto counts = count_groups({record});
     size_t total = 0;
     for (const size_t count : counts) total += count;
@@ -212,26 +222,22 @@ std::string regime_table(const CaseView& view, const Cases& cases) {
                      : fmt::format("<td class=\"number\" title=\"{}\">{}</td>",
                                    share_text(static_cast<double>(counts[group]) / static_cast<double>(total)),
                                    counts[group]);
-    const Viscosity viscosity = viscosity_of(view, *record);
-    any = any || viscosity.known;
-    known += viscosity.known && viscosity.share > 0;
-    not_small += viscosity.share > small_share;
     const std::string label = view.label(*record);
-    rows += fmt::format("<tr><th scope=\"row\">{}{}</th>{}{}</tr>\n", escape(label.empty() ? "the one method" : label),
-                        is_partial(*record) ? " <em>(partial)</em>" : "", cells, viscosity_cells(viscosity));
+    rows +=
+        fmt::format("<tr><th scope=\"row\">{}{}</th>{}{}</tr>\n", escape(label.empty() ? "the one method" : label),
+                    is_partial(*record) ? " <em>(partial)</em>" : "", cells, any ? viscosity_cell(viscosities[c]) : "");
   }
   std::string caption = "Orbits (values × starts) by regime.";
   if (any)
     caption += fmt::format(
-        " α: stiffness viscosity of the scene; α_eq: what the scheme adds, fitted on the free decay of the first modes "
-        "(s). ▲: more than {} of α, so not ≪ α: {} of {} methods.",
-        share_text(small_share), not_small, known);
+        " α_eq: the stiffness viscosity (s) that the scheme adds to α = {} of the scene, fitted on the free decay of "
+        "the "
+        "first modes. ▲: more than {} of α, so not ≪ α: {} of {} methods.",
+        physical.empty() ? "0" : range_text(physical) + " s", share_text(small_share), not_small, known);
   return fmt::format(
       "<div class=\"scroll{}\"><table class=\"matrix\"><caption>{}</caption>\n<thead><tr><th "
-      "scope=\"col\">method</th>{}<th scope=\"col\" class=\"number\">α</th><th scope=\"col\" "
-      "class=\"number\">α_eq</th><th scope=\"col\">α_eq beside "
-      "α</th></tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      cases.size() > 24 ? " tall" : "", caption, head, rows);
+      "scope=\"col\">method</th>{}{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      cases.size() > 24 ? " tall" : "", caption, head, any ? "<th scope=\"col\">α_eq</th>" : "", rows);
 }
 
 }  // namespace
