@@ -22,6 +22,13 @@ po::options_description described(const Subcommand& command) {
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
+  if (has("parameter"))
+    add("parameter", po::value<double>()->value_name("VALUE"), "value of the study's parameter (required)");
+  if (has("start"))
+    add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv (required)");
+  if (has("periods"))
+    add("periods", po::value<int>()->value_name("N"), "forcing periods that are marched (default: 8)");
+  if (has("samples")) add("samples", po::value<int>()->value_name("N"), "samples per period (default: 200)");
   if (has("plugin"))
     add("plugin", po::value<std::vector<std::string>>()->value_name("FILE"),
         "also use this plugin library (repeatable)");
@@ -58,7 +65,8 @@ po::variables_map parse(const Subcommand& command, const po::options_description
     throw UsageError("ricochet " + command.name + " has no option " + name +
                      (nearest.empty() ? "" : "; did you mean " + nearest + "?") + see_help(command));
   } catch (const po::invalid_option_value& error) {
-    throw UsageError(std::string(error.what()) + "; expected a whole number" + see_help(command));
+    const char* wanted = error.get_option_name() == "--parameter" ? "; expected a number" : "; expected a whole number";
+    throw UsageError(error.what() + std::string(wanted) + see_help(command));
   } catch (const po::error& error) {
     throw UsageError(error.what() + see_help(command));
   }
@@ -72,6 +80,14 @@ std::optional<std::filesystem::path> path_of(const po::variables_map& values, co
   return text;
 }
 
+// 0 when it is not given.
+int count_of(const po::variables_map& values, const char* name, int most) {
+  if (!values.count(name)) return 0;
+  const int count = values[name].as<int>();
+  if (count < 1 || count > most) throw UsageError(fmt::format("--{} {} is outside [1, {}]", name, count, most));
+  return count;
+}
+
 }  // namespace
 
 Arguments parse_arguments(const Subcommand& command, const std::vector<std::string>& words) {
@@ -83,12 +99,12 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.out = path_of(values, "out");
   arguments.to = path_of(values, "to");
   arguments.fresh = values.count("fresh") > 0;
-  if (values.count("jobs")) {
-    arguments.jobs = values["jobs"].as<int>();
-    constexpr int most_jobs = 4096;
-    if (arguments.jobs < 1 || arguments.jobs > most_jobs)
-      throw UsageError(fmt::format("--jobs {} is outside [1, {}]", arguments.jobs, most_jobs));
-  }
+  constexpr int most_jobs = 4096, most_samples = 1000000000;
+  arguments.jobs = count_of(values, "jobs", most_jobs);
+  arguments.periods = count_of(values, "periods", most_samples);
+  arguments.samples = count_of(values, "samples", most_samples);
+  if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
+  if (values.count("start")) arguments.start = values["start"].as<std::string>();
   if (values.count("plugin"))
     for (const std::string& file : values["plugin"].as<std::vector<std::string>>())
       arguments.plugins.emplace_back(file);

@@ -28,6 +28,9 @@ struct Arguments {
   std::optional<std::filesystem::path> out, to;  ///< --out, --to
   int jobs = 0;                                  ///< --jobs; 0: all processors
   bool fresh = false;                            ///< --fresh
+  std::optional<double> parameter;               ///< --parameter
+  std::string start;                             ///< --start; "": none given
+  int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
   bool help = false;
 };
 
@@ -37,7 +40,7 @@ struct Subcommand {
   std::string usage;  ///< operands and options as the help shows them
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
-  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh
+  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, parameter, start, periods, samples
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 
@@ -57,6 +60,7 @@ int command_list(const Arguments& arguments, std::ostream& out);
 int command_describe(const Arguments& arguments, std::ostream& out);
 int command_report(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
+int command_point(const Arguments& arguments, std::ostream& out);
 int command_schema(const Arguments& arguments, std::ostream& out);
 int command_doctor(const Arguments& arguments, std::ostream& out);
 

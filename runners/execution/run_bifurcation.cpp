@@ -11,6 +11,7 @@
 #include <set>
 
 #include "runners/execution/orbit_bytes.hpp"
+#include "runners/execution/orbit_entries.hpp"
 #include "runners/execution/orbit_exponents.hpp"
 #include "runners/execution/orbit_portraits.hpp"
 #include "runners/execution/orbit_rows.hpp"
@@ -294,8 +295,7 @@ class BifurcationRun {
   void show_partial() {
     if (!desk_.shelf.show) return;
     const auto now = std::chrono::steady_clock::now();
-    if (std::chrono::duration<double>(now - shown_).count() < partial_interval) return;
-    shown_ = now;
+    if (std::chrono::duration<double>(now - shown_).count() < std::max(partial_interval, 20 * showing_)) return;
     CaseRecord partial = record_;
     std::vector<OrbitView> all = views();
     classify_all(all);
@@ -303,16 +303,22 @@ class BifurcationRun {
     partial.status = "done";
     partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
     desk_.shelf.show(partial);
+    shown_ = std::chrono::steady_clock::now();
+    showing_ = std::chrono::duration<double>(shown_ - now).count();
   }
 
   void classify_all(std::vector<OrbitView>& all) const {
     for (OrbitView& view : all) judge(view, section_);
   }
 
-  void write_tables(CaseRecord& record, const std::vector<OrbitView>& all) const {
+  std::vector<std::string> start_names() const {
     std::vector<std::string> names;
     for (const StartSpec& start : starts_) names.push_back(start.name);
-    add_orbit_tables(record, all, names, exponents(), section_);
+    return names;
+  }
+
+  void write_tables(CaseRecord& record, const std::vector<OrbitView>& all) const {
+    add_orbit_tables(record, all, start_names(), exponents(), section_);
   }
 
   int exponents() const { return case_.settings.value("exponents", 0); }
@@ -341,6 +347,7 @@ class BifurcationRun {
     classify_all(all);
     write_tables(record_, all);
     add_portraits(record_, scenes_, all, section_);
+    add_entries(record_, all, start_names());
     add_grazing();
     if (crowded_)
       record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
@@ -415,6 +422,7 @@ class BifurcationRun {
   MarchedOrbits saved_;
   CaseRecord record_;
   bool crowded_ = false;
+  double showing_ = 0;  // s that the last partial report took
   std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
 };
 

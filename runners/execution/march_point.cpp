@@ -1,0 +1,84 @@
+#include "runners/execution/march_point.hpp"
+
+#include <algorithm>
+
+#include "runners/execution/forced_scenes.hpp"
+#include "runners/execution/orbit_rows.hpp"
+#include "runners/study/with_parameter.hpp"
+
+namespace ricochet {
+namespace {
+
+// The scenes of a case, added as its run did until the first one that can be marched: that one chose the operator.
+class PointScenes {
+ public:
+  PointScenes(const StudyCase& study_case, const Registry& registry)
+      : case_(study_case),
+        pointer_(study_case.settings.at("parameter").at("pointer").get<std::string>()),
+        starts_(starts_of(study_case.settings)),
+        scenes_(study_case, registry) {
+    const auto needs = [&](bool state) {
+      return std::any_of(starts_.begin(), starts_.end(),
+                         [&](const StartSpec& start) { return (start.kind == StartSpec::state) == state; });
+    };
+    for (const double value : parameter_values(study_case.settings))
+      for (const bool state : {false, true})
+        if (needs(state) && scenes_.groups() == 0) add(value, state);
+  }
+
+  int add(double value, const std::string& start) {
+    for (const StartSpec& one : starts_)
+      if (one.name == start) return add(value, one.kind == StartSpec::state);
+    throw InputError("", "the study has no start \"" + start + "\"");
+  }
+  const ForcedScenes& scenes() const { return scenes_; }
+
+ private:
+  int add(double value, bool state) {
+    return scenes_.add([&] {
+      const StudyCase one = with_parameter(case_, pointer_, value);
+      return state ? one : at_rest(one);
+    });
+  }
+
+  const StudyCase& case_;
+  std::string pointer_;
+  std::vector<StartSpec> starts_;
+  ForcedScenes scenes_;
+};
+
+}  // namespace
+
+void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
+                 const std::function<void(const PointSample&)>& use) {
+  PointScenes made(study_case, registry);
+  const ForcedScene& scene = made.scenes()[made.add(task.parameter, task.start)];
+  if (!scene.refusal.empty()) throw InputError("", scene.refusal);
+  const SectionPlan plan = section_plan(study_case, made.scenes());
+  Marcher marcher(made.scenes().program(scene.group, {scene.lane}));
+  const int whole = plan.steps_per_period, origin = plan.strobe + 1, samples = std::min(task.samples, whole);
+  const double h = marcher.program().h;
+  marcher.set_clock(origin);
+  marcher.set_lane(0, scene.lane, task.entry);
+  double before = 0, at = marcher.tip(0);
+  for (int period = 0; period < task.periods; ++period) {
+    int taken = 0;  // of this period
+    // The clock of the march is turned back once per period, as in the run.
+    for (int step_of_period = 1; step_of_period <= whole; ++step_of_period) {
+      marcher.march(1);
+      const double after = marcher.tip(0);
+      // `at` stands step_of_period after the strobe; a sample for each k with step_of_period = ⌈k·whole/samples⌉.
+      if (static_cast<long long>(step_of_period) * samples >= static_cast<long long>(taken + 1) * whole) {
+        ++taken;
+        const long long step = static_cast<long long>(period) * whole + step_of_period;
+        if (step > 1)
+          use({static_cast<double>(step) * h, at, (after - before) / (2 * h), step_of_period == whole ? period : -1});
+      }
+      before = at;
+      at = after;
+    }
+    marcher.set_clock(origin);
+  }
+}
+
+}  // namespace ricochet
