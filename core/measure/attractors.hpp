@@ -30,8 +30,6 @@ struct LinkRule {
 constexpr LinkRule kSameRun{0.01, 1.5};
 /// Cases against each other: the errors of step, mesh and contact move a section.
 constexpr LinkRule kAcrossCases{0.1, 2};
-/// Successive values of the parameter: the attractor itself moves.
-constexpr LinkRule kAlongParameter{0.3, 2};
 
 /// Distance over threshold: linked where it is at most 1; infinite for different kinds.
 double relative_distance(const SettledSection& a, const SettledSection& b, const LinkRule& rule);

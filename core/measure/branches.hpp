@@ -1,40 +1,54 @@
 #pragma once
-#include <map>
 #include <ricochet/measure/attractors.hpp>
 #include <vector>
 
 /// \file
-/// Attractors along the parameter: identities that last.
+/// Attractors along the parameter, first within a case, then over cases: identities that last.
+///
+/// Within a case an attractor moves little from one value of the parameter to the next, which tells it from the others;
+/// between cases it may be displaced by the errors of both at every value, which many values together tell from being
+/// another one. So branches are followed case by case, and matched as wholes.
 namespace ricochet {
 
-/// One attractor at one value: the cases that show it, each with its section.
-struct AttractorGroup {
-  int kind = 0;
-  std::map<int, SettledSection> sections;  ///< by case
-};
+/// Successive values of the parameter, and branches of cases against each other: a third of the spread.
+constexpr LinkRule kAlongParameter{0.35, 2};
 
-/// Follows groups along rising values of the parameter. A group continues a branch of its kind whose last sections are
-/// near its own: the median over the cases that both have of relative_distance() with kAlongParameter is at most 1;
-/// where they share no case, the least over the first cases of each. Every branch continues in one group at most, the
-/// nearest pairs first; a branch that has been away for some values counts as further (by half its distance per value,
-/// up to four), but may come back. What continues no branch is born.
+/// Follows the attractors of one case along rising values of the parameter. A section continues the branch of its kind
+/// whose last section is near: relative_distance() with kAlongParameter is at most 1, the nearest pairs first, each
+/// branch in one section at most. A branch that has been away for some values counts as further (by half its distance
+/// per value, up to four), but may come back. What continues no branch is born.
 class Branches {
  public:
   explicit Branches(const LinkRule& rule = kAlongParameter) : rule_(rule) {}
-  /// Identities (from 0, in the order of birth) of the groups at the next value.
-  std::vector<int> add(const std::vector<AttractorGroup>& groups);
+  /// Branches (from 0, in the order of birth) of the attractors at the next value.
+  std::vector<int> add(const std::vector<SettledSection>& attractors);
   int count() const { return static_cast<int>(branches_.size()); }
 
  private:
   struct Branch {
-    AttractorGroup last;  ///< newest section of each case
-    int seen = 0;         ///< value at which it was last met
+    SettledSection last;
+    int seen = 0;  ///< value at which it was last met
   };
-  double distance(const Branch& branch, const AttractorGroup& group) const;
 
   LinkRule rule_;
   std::vector<Branch> branches_;
   int values_ = 0;
 };
+
+/// A branch of one case, with the values of the parameter (indices, ascending) at which it was met.
+struct CaseBranch {
+  int owner = 0;
+  std::vector<int> values;
+};
+
+/// Two branches of different cases, with their relative distances where both were met.
+struct BranchPair {
+  int a = 0, b = 0;  ///< indices
+  std::vector<double> distances;
+};
+
+/// Identity of each branch over all cases, from 0 in the order met: branches whose median distance is at most 1 become
+/// one, the nearest first, unless that would join two attractors that one case shows at one value.
+std::vector<int> match_branches(const std::vector<CaseBranch>& branches, const std::vector<BranchPair>& pairs);
 
 }  // namespace ricochet

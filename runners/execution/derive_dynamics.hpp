@@ -22,13 +22,17 @@
 /// attractors    attractor, label, cases (how many have it), from, to (values of the parameter), class, period,
 ///               symmetric, fraction, fraction_low, fraction_high (of the starts, where it exists, 95 % after Wilson),
 ///               presence ("time.beta 0.25: 3 of 3, 0.5: 0 of 3"), sentence.
-///               label: "common to all" | "depends on AXIS" | "vanishes under refinement" | "not compared"
+///               label: "common to all" | "depends on AXIS" | "depends on several choices" | "vanishes under
+///               refinement" | "not compared"
 /// distances     reference_case, parameter, start, wasserstein, hausdorff, null_wasserstein, null_hausdorff, ratio
 ///               (wasserstein / null_wasserstein), same_class, formula ("exact" | "sliced")
 /// shifts        reference_case, start, from, to (classes), kind, reference_value, value, shift, low, high, found
+///               A change of the same kind, classes and start, the nearest within a tenth of the values' range; changes
+///               from or to "undecided" are left out
 /// agreement     case, other_case, compared (values × starts), same_class, share (same_class / compared),
 ///               same_attractor, share_attractor: one row per ordered pair, also of a case with itself
-/// verdicts      from, to, verdict ("robust" | "depends" | "undecided"), choice (an axis, or ""), sentence. Intervals
+/// verdicts      from, to, verdict ("robust" | "depends" | "undecided"), choice (an axis, "several choices", or ""),
+/// sentence. Intervals
 ///               touch: they end half way between two values.
 ///
 /// Of kind `basins`: cells (the cases' rows, `attractor` filled in), attractors (from and to null),

@@ -97,6 +97,84 @@ void add_distances(const Diagram& diagram, const Sections& sections, int value, 
   }
 }
 
+/// Branches of every case while the values go by, and how near those of different cases are to each other.
+class Following {
+ public:
+  explicit Following(std::size_t cases) : along_(cases), first_(cases) {}
+
+  /// The attractors of all cases at one value; the runs keep the branch until finish().
+  void add(Diagram& diagram, const std::vector<OwnAttractor>& own, int value) {
+    std::vector<int> branch(own.size(), -1);
+    for (std::size_t first = 0; first < own.size();) {
+      std::size_t last = first;
+      std::vector<SettledSection> sections;
+      for (; last < own.size() && own[last].owner == own[first].owner; ++last) sections.push_back(own[last].section);
+      const std::size_t owner = own[first].owner;
+      const std::vector<int> labels = along_[owner].add(sections);
+      for (std::size_t k = first; k < last; ++k) branch[k] = place(owner, labels[k - first], value);
+      first = last;
+    }
+    for (std::size_t a = 0; a < own.size(); ++a)
+      for (std::size_t b = a + 1; b < own.size(); ++b)
+        if (own[a].owner != own[b].owner && own[a].section.kind == own[b].section.kind) {
+          std::vector<double>& known = met_[{branch[a], branch[b]}];
+          // A dozen values tell; of long branches every eighth one is looked at as well.
+          if (known.size() >= kTelling && value % kSparse != 0) continue;
+          known.push_back(relative_distance(own[a].section, own[b].section, kAlongParameter));
+        }
+    for (std::size_t k = 0; k < own.size(); ++k)
+      for (const int s : own[k].starts) run_of(diagram, own[k].owner, value, s).attractor = branch[k] + 1;
+  }
+
+  /// Turns branches into identities, numbered along the parameter.
+  void finish(Diagram& diagram) const {
+    std::vector<BranchPair> pairs;
+    for (const auto& [pair, distances] : met_) pairs.push_back({pair.first, pair.second, distances});
+    const std::vector<int> identity = match_branches(branches_, pairs);
+    std::vector<std::pair<int, int>> order;  // first value, identity
+    for (std::size_t k = 0; k < identity.size(); ++k) {
+      const auto one = static_cast<std::size_t>(identity[k]);
+      if (one == order.size()) order.emplace_back(branches_[k].values.front(), identity[k]);
+      order[one].first = std::min(order[one].first, branches_[k].values.front());
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<int> number(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      number[static_cast<std::size_t>(order[k].second)] = static_cast<int>(k);
+    for (CaseRuns& owner : diagram.cases)
+      for (Run& run : owner.runs)
+        if (run.attractor > 0)
+          run.attractor = number[static_cast<std::size_t>(identity[static_cast<std::size_t>(run.attractor) - 1])] + 1;
+    diagram.attractors = static_cast<int>(order.size());
+  }
+
+ private:
+  static constexpr std::size_t kTelling = 12;
+  static constexpr int kSparse = 8;
+
+  static Run& run_of(Diagram& diagram, std::size_t c, int value, int start) {
+    CaseRuns& owner = diagram.cases[c];
+    const int run = owner.at[static_cast<std::size_t>(value) * diagram.starts.size() + static_cast<std::size_t>(start)];
+    return owner.runs[static_cast<std::size_t>(run)];
+  }
+
+  int place(std::size_t owner, int label, int value) {
+    std::vector<int>& places = first_[owner];
+    if (static_cast<std::size_t>(label) == places.size()) {
+      places.push_back(static_cast<int>(branches_.size()));
+      branches_.push_back({static_cast<int>(owner), {}});
+    }
+    const int branch = places[static_cast<std::size_t>(label)];
+    branches_[static_cast<std::size_t>(branch)].values.push_back(value);
+    return branch;
+  }
+
+  std::vector<Branches> along_;
+  std::vector<std::vector<int>> first_;  ///< case → its branch → index into branches_
+  std::vector<CaseBranch> branches_;
+  std::map<std::pair<int, int>, std::vector<double>> met_;
+};
+
 /// Runs of one attractor, and all decided runs beside them.
 struct Extent {
   int kind = -1, first = -1, last = -1;
@@ -135,6 +213,7 @@ bool decides(const Diagram& diagram, std::size_t c, int value) {
 
 Presence presence_of(const Diagram& diagram, const Extent& extent, int attractor) {
   Presence out;
+  std::vector<double> shares;
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
     int told = 0, shown = 0;
     for (const int value : extent.values)
@@ -144,8 +223,10 @@ Presence presence_of(const Diagram& diagram, const Extent& extent, int attractor
       }
     if (told == 0) continue;
     out.cases.push_back(c);
-    out.present.push_back(shown >= kHalf * told);
+    shares.push_back(static_cast<double>(shown) / told);
   }
+  const double most = shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
+  for (const double share : shares) out.present.push_back(share > 0 && share >= kHalf * most);
   return out;
 }
 
@@ -186,29 +267,13 @@ DerivedTable find_attractors(Diagram& diagram) {
                                            {"reference_case", "parameter", "start", "wasserstein", "hausdorff",
                                             "null_wasserstein", "null_hausdorff", "ratio", "same_class", "formula"});
   const auto reference = reference_case(diagram);
-  Branches branches;
+  Following following(diagram.cases.size());
   for (int value = 0; value < static_cast<int>(diagram.values.size()); ++value) {
     const Sections sections = sections_at(diagram, value);
     if (reference) add_distances(diagram, sections, value, *reference, distances);
-    std::vector<OwnAttractor> own = own_attractors(diagram, sections, value);
-    std::vector<OwnedSection> members;
-    for (const OwnAttractor& one : own) members.push_back({static_cast<int>(one.owner), &one.section});
-    const std::vector<int> labels = match_owners(members);
-    std::vector<AttractorGroup> groups;
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const auto place = static_cast<std::size_t>(labels[k]);
-      if (place == groups.size()) groups.push_back({own[k].section.kind, {}});
-      groups[place].sections[members[k].owner] = std::move(own[k].section);
-    }
-    const std::vector<int> identities = branches.add(groups);
-    for (std::size_t k = 0; k < own.size(); ++k)
-      for (const int s : own[k].starts) {
-        CaseRuns& owner = diagram.cases[own[k].owner];
-        const int run = owner.at[static_cast<std::size_t>(value) * diagram.starts.size() + static_cast<std::size_t>(s)];
-        owner.runs[static_cast<std::size_t>(run)].attractor = identities[static_cast<std::size_t>(labels[k])] + 1;
-      }
+    following.add(diagram, own_attractors(diagram, sections, value), value);
   }
-  diagram.attractors = branches.count();
+  following.finish(diagram);
   return distances;
 }
 

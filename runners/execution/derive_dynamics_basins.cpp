@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <numeric>
+#include <ricochet/measure/branches.hpp>
 #include <ricochet/measure/uncertainty_exponent.hpp>
 #include <set>
 

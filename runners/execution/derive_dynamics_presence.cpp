@@ -123,8 +123,9 @@ PresenceLabel label_presence(const Presence& presence, const std::vector<ChoiceA
   if (vanishes(presence, axes))
     return {"vanishes under refinement", text,
             fmt::format("vanishes under refinement: {} show it, none of them the finest of its kind ({}).", all, text)};
-  if (choice.name.empty())
-    return {"depends on several choices", text, fmt::format("shows in {}, and no one choice tells which.", all)};
+  if (choice.share < kNamed)
+    return {"depends on several choices", text,
+            fmt::format("shows in {}, and no one choice tells which (the best of them: {}).", all, text)};
   return {"depends on " + choice.name, text,
           fmt::format("depends on {}, which tells {} of its presence in {}: {}.", choice.name, percent(choice.share),
                       all, levels)};

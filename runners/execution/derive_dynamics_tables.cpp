@@ -6,6 +6,14 @@
 namespace ricochet::dynamics {
 namespace {
 
+/// A change moves by less than this share of the values' range; further away there is another one.
+constexpr double kReach = 0.1;
+
+/// Whether a class is none: what comes before or after it is no change of the motion.
+bool open(const std::string& regime) {
+  return regime == "undecided" || regime == "failed";
+}
+
 /// One located change of a case.
 struct Change {
   std::string start, from, to, kind;
@@ -28,15 +36,16 @@ std::vector<Change> changes_of(const CaseRecord& record) {
   };
   for (std::size_t r = 0; r < table->rows.size(); ++r) {
     const auto value = number(r, "value");
-    if (!value) continue;
+    if (!value || open(word(r, "from")) || open(word(r, "to"))) continue;
     out.push_back({word(r, "start"), word(r, "from"), word(r, "to"), word(r, "kind"), *value,
                    number(r, "low").value_or(*value), number(r, "high").value_or(*value)});
   }
   return out;
 }
 
-/// Index in `here` of the change that each of `reference` became, −1 where none is left: the nearest pairs first.
-std::vector<int> nearest_changes(const std::vector<Change>& reference, const std::vector<Change>& here) {
+/// Index in `here` of the change that each of `reference` became, −1 where none is left within `reach`: the nearest
+/// pairs first.
+std::vector<int> nearest_changes(const std::vector<Change>& reference, const std::vector<Change>& here, double reach) {
   struct Pair {
     double distance;
     std::size_t one, other;
@@ -44,7 +53,8 @@ std::vector<int> nearest_changes(const std::vector<Change>& reference, const std
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < reference.size(); ++i)
     for (std::size_t j = 0; j < here.size(); ++j)
-      if (reference[i].like(here[j])) pairs.push_back({std::abs(reference[i].value - here[j].value), i, j});
+      if (reference[i].like(here[j]) && std::abs(reference[i].value - here[j].value) <= reach)
+        pairs.push_back({std::abs(reference[i].value - here[j].value), i, j});
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
   std::vector<int> out(reference.size(), -1);
   std::vector<char> taken(here.size(), 0);
@@ -91,11 +101,12 @@ DerivedTable shifts_table(const Diagram& diagram) {
   if (!reference) return table;
   const CaseRecord& standard = *diagram.cases[*reference].record;
   const std::vector<Change> expected = changes_of(standard);
+  const double reach = kReach * (diagram.values.back() - diagram.values.front());
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
     const CaseRuns& owner = diagram.cases[c];
     if (c == *reference || !owner.any_decided) continue;
     const std::vector<Change> here = changes_of(*owner.record);
-    const std::vector<int> match = nearest_changes(expected, here);
+    const std::vector<int> match = nearest_changes(expected, here, reach);
     std::vector<char> used(here.size(), 0);
     const auto add = [&](const Change& change, const Change* standing, const Change* found) {
       Row row = axes_row(*diagram.results, *owner.record);

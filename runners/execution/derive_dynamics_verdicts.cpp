@@ -11,6 +11,7 @@ namespace ricochet::dynamics {
 namespace {
 
 constexpr double kSmallViscosity = 0.01, kSpread = 0.8;
+constexpr const char* kSeveral = "several choices";
 constexpr std::size_t kMostSets = 3, kMostLevels = 6;
 
 /// What the cases say at one value.
@@ -129,10 +130,10 @@ class Verdicts {
     }
     const DecidingChoice choice = deciding_choice(labels, axes);
     opinion.verdict = "depends";
-    opinion.choice = choice.name;
+    opinion.choice = choice.share < kNamed ? kSeveral : choice.name;
     opinion.share = choice.share;
     opinion.second = choice.second;
-    opinion.axes = choice.axes;
+    if (choice.share >= kNamed) opinion.axes = choice.axes;
   }
 
   /// "periodic 1 (attractor 3) and chaotic (attractor 5)".
@@ -268,8 +269,8 @@ class Verdicts {
       same_classes = same_classes && opinion.same_classes;
     }
     std::string out;
-    if (stretch.front().choice.empty()) {
-      out = fmt::format("{} {} differ, and no choice tells them apart: {}.", where, count_of(cases.size(), "case"),
+    if (stretch.front().axes.empty()) {
+      out = fmt::format("{} {} differ, and no one choice tells half of it: {}.", where, count_of(cases.size(), "case"),
                         sets(stretch, cases));
     } else {
       std::vector<std::pair<std::string, std::set<std::size_t>>> levels;
