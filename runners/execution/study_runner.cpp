@@ -76,11 +76,14 @@ std::set<std::string> find_missing(const StudyRunner& runner, const Study& study
 
 int interrupted(const StudyRunner& runner, const Store& store, const std::filesystem::path& folder) {
   const StudyResults results = store.load();
+  const auto under_way =
+      std::count_if(results.cases.begin(), results.cases.end(), [](const CaseRecord& one) { return one.partial; });
   say(runner.messages,
       fmt::format(
-          "interrupted: {} of {} cases are finished and kept in {}. Run the same command again to go on; \"ricochet "
+          "interrupted: {} of {} cases are finished{} and kept in {}. Run the same command again to go on; \"ricochet "
           "report {}\" shows what is there\n",
-          results.cases.size(), results.expected_cases, folder.string(), folder.string()));
+          results.cases.size() - static_cast<std::size_t>(under_way), results.expected_cases,
+          under_way > 0 ? fmt::format(", {} under way,", under_way) : "", folder.string(), folder.string()));
   return kInterrupted;
 }
 

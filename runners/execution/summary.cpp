@@ -74,13 +74,15 @@ std::string done_text(const CaseRecord& record) {
 }
 
 int count(const StudyResults& results, const char* status) {
-  return static_cast<int>(std::count_if(results.cases.begin(), results.cases.end(),
-                                        [&](const CaseRecord& record) { return record.status == status; }));
+  return static_cast<int>(std::count_if(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
+    return !record.partial && record.status == status;
+  }));
 }
 
 }  // namespace
 
 std::string outcome_text(const CaseRecord& record) {
+  if (record.partial) return record.reason;
   if (record.status == "done") return done_text(record);
   return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
 }
@@ -123,6 +125,9 @@ std::string totals_text(const StudyResults& results) {
   std::vector<std::string> parts;
   for (const char* status : {"done", "refused", "diverged", "failed"})
     if (const int number = count(results, status)) parts.push_back(fmt::format("{} {}", number, status));
+  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(),
+                                        [](const CaseRecord& record) { return record.partial; }))
+    parts.push_back(fmt::format("{} under way", number));
   const std::size_t cases = results.cases.size();
   std::string text = fmt::format("{} case{}", cases, cases == 1 ? "" : "s");
   if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
