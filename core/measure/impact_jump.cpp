@@ -12,17 +12,15 @@ namespace {
 // An impact is over within this many steps of contact: restitution over three levels takes two.
 constexpr int longest_impact = 3;
 
-Eigen::VectorXd column_of(const double* block, int rows, int width, int column) {
-  return Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>(block + column, rows, Eigen::InnerStride<>(width));
-}
-
 // The last three displacements, newest first.
 struct Past {
   std::array<Eigen::VectorXd, 3> q;
   int known = 0;
-  void add(Eigen::VectorXd latest) {
+  // One column of a block; allocates the first time only.
+  void add(const double* block, int rows, int width, int column) {
     std::rotate(q.begin(), q.begin() + 2, q.end());
-    q[0] = std::move(latest);
+    q[0].resize(rows);
+    for (int i = 0; i < rows; ++i) q[0][i] = block[static_cast<std::ptrdiff_t>(i) * width + column];
     known = std::min(known + 1, 3);
   }
   // Velocity and acceleration about the middle of the three, and what they give `ago` seconds before the newest.
@@ -149,9 +147,9 @@ void ImpactJump::step_done(Marcher& marcher) {
   for (std::size_t index = 0; index < lanes_.size(); ++index) {
     Lane& lane = *lanes_[index];
     const int number = static_cast<int>(index);
-    lane.orbit.add(column_of(marcher.slot(0), rows, width, number));
+    lane.orbit.add(marcher.slot(0), rows, width, number);
     for (std::size_t k = 0; k < lane.columns.size(); ++k)
-      lane.columns[k].add(column_of(marcher.slot(0), rows, width, marcher.tangent_lane(number, static_cast<int>(k))));
+      lane.columns[k].add(marcher.slot(0), rows, width, marcher.tangent_lane(number, static_cast<int>(k)));
     if (lane.contact) {
       ++lane.steps;
       lane.free_steps = 0;
