@@ -25,8 +25,9 @@ std::vector<int> Branches::add(const std::vector<SettledSection>& attractors) {
   for (std::size_t b = 0; b < branches_.size(); ++b)
     for (std::size_t k = 0; k < attractors.size(); ++k) {
       if (branches_[b].last.kind != attractors[k].kind) continue;
+      const int away = values_ - branches_[b].seen - 1;
+      if (away > kLongestAbsence) continue;
       const double near = relative_distance(branches_[b].last, attractors[k], rule_);
-      const int away = std::min(values_ - branches_[b].seen - 1, kLongestAbsence);
       if (near <= 1) pairs.push_back({near * (1 + 0.5 * away), b, k});
     }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });

@@ -15,8 +15,8 @@ constexpr LinkRule kAlongParameter{0.35, 2};
 
 /// Follows the attractors of one case along rising values of the parameter. A section continues the branch of its kind
 /// whose last section is near: relative_distance() with kAlongParameter is at most 1, the nearest pairs first, each
-/// branch in one section at most. A branch that has been away for some values counts as further (by half its distance
-/// per value, up to four), but may come back. What continues no branch is born.
+/// branch in one section at most. A branch that has been away for up to four values may come back; it counts as
+/// further, by half its distance per value. What continues no branch is born.
 class Branches {
  public:
   explicit Branches(const LinkRule& rule = kAlongParameter) : rule_(rule) {}

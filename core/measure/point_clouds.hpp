@@ -23,8 +23,9 @@
 ///
 /// *Null*: a run of a non-periodic motion is at a distance from itself, because it is finite. The run is cut into 10
 /// blocks of successive points; 5 of them against the other 5, drawn 19 times (the first against the second half comes
-/// first), give distances of which the largest is the null: another run of the same motion exceeds it once in 20. Each
-/// half holds as many points as the clouds that are compared.
+/// first), give distances of which the largest is the null: W to another run of the same motion exceeds it once in 20
+/// (the Hausdorff distance once in five: it hangs on outliers, which all draws of a run share). Each half holds as many
+/// points as the clouds that are compared.
 namespace ricochet {
 
 using CloudPoint = std::array<double, 2>;

@@ -31,6 +31,11 @@ struct Stretch {
   const Opinion& front() const { return opinions.front(); }
 };
 
+/// Half way between two values, without the digits of round-off.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.12g}", value));
+}
+
 /// A case that failed at every value says nothing of any of them.
 bool counts(const CaseRuns& owner) {
   return owner.any_decided;
@@ -81,7 +86,7 @@ class Verdicts {
       const double first = value(stretches[k].opinions.front()), last = value(stretches[k].opinions.back());
       const double from = k == 0 ? first : (value(stretches[k - 1].opinions.back()) + first) / 2;
       const double to = k + 1 == stretches.size() ? last : (last + value(stretches[k + 1].opinions.front())) / 2;
-      out.rows.push_back({from, to, stretches[k].front().verdict, stretches[k].front().choice,
+      out.rows.push_back({rounded(from), rounded(to), stretches[k].front().verdict, stretches[k].front().choice,
                           sentence(stretches[k]) + (k == 0 ? left_out() : "")});
     }
     return out;

@@ -537,7 +537,7 @@ TEST_CASE("basins of two attractors: shares, differences and a smooth boundary")
 }
 
 TEST_CASE("forty cases of five hundred values and three starts derive in seconds") {
-  // A tenth of that here, all chaotic, which is the dearest.
+  // A twenty-fifth of that here, all chaotic, which is the dearest.
   std::vector<Method> methods;
   for (int k = 0; k < 8; ++k)
     methods.push_back(method(k, 2000, 20, [=](double a, const std::string& start) {
@@ -547,6 +547,6 @@ TEST_CASE("forty cases of five hundred values and three starts derive in seconds
   const auto begin = std::chrono::steady_clock::now();
   derive_tables(results);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  WARN("2400 chaotic sections: " << seconds << " s");
-  CHECK(seconds < 5);  // a fortieth of a second per hundred sections, five times over for a busy machine
+  INFO("2400 chaotic sections: " << seconds << " s");
+  CHECK(seconds < 5);  // 0.25 s on a machine that does nothing else
 }
