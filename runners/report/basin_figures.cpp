@@ -44,6 +44,11 @@ class BasinImages {
       chart.height = 420;
       chart.views.push_back(labels_view(grid));
       if (compares) chart.views.push_back(difference_view(grid));
+      if (grid.filled > 0)
+        chart.notes.push_back(
+            fmt::format("{} of {} cells take the end of a marched one of their basin: only boundaries "
+                        "were marched cell by cell.",
+                        grid.filled, grid.cells.size()));
       for (const auto& [reason, count] : grid.reasons)
         chart.notes.push_back(fmt::format("{} {}{}", status_mark("failed"),
                                           count_text(count, "cell failed", "cells failed"),

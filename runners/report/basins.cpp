@@ -23,6 +23,7 @@ struct Cell {
   double x, y;
   Rank rank;
   std::string reason;
+  bool filled = false;
 };
 
 Rank rank_of(const TableRows& rows, size_t row) {
@@ -49,7 +50,9 @@ std::vector<Cell> cells_of(const StudyResults& results) {
         owner = found->second;
       }
       const auto x = rows.number(row, "x"), y = rows.number(row, "y");
-      if (x && y) out.push_back({owner, *x, *y, rank_of(rows, row), rows.text(row, "reason")});
+      if (x && y)
+        out.push_back(
+            {owner, *x, *y, rank_of(rows, row), rows.text(row, "reason"), !rows.flag(row, "marched").value_or(true)});
     }
   };
   for (const DerivedTable& table : results.derived)
@@ -120,12 +123,13 @@ Basins basins_of(const StudyResults& results) {
   for (const CaseRecord& record : results.cases)
     if (with_cells.contains(&record)) {
       place[&record] = out.grids.size();
-      out.grids.push_back({&record, std::vector<std::uint8_t>(xs.size() * ys.size(), BasinGrid::absent), {}});
+      out.grids.push_back({&record, std::vector<std::uint8_t>(xs.size() * ys.size(), BasinGrid::absent), 0, {}});
     }
   for (const Cell& cell : cells) {
     BasinGrid& grid = out.grids[place.at(cell.record)];
     const std::uint8_t label = index.at(cell.rank);
     grid.cells[at(out.ys, cell.y) * xs.size() + at(out.xs, cell.x)] = label;
+    grid.filled += cell.filled && cell.rank.second != regime_groups[failed_group].name;
     if (cell.rank.second == regime_groups[failed_group].name) ++grid.reasons[cell.reason];
   }
   const auto axes = results.study.find("axes");

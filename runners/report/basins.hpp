@@ -19,6 +19,7 @@ struct BasinGrid {
   static constexpr std::uint8_t absent = 255;
   const CaseRecord* record = nullptr;
   std::vector<std::uint8_t> cells;
+  size_t filled = 0;                      ///< cells that take the end of a marched one of their basin
   std::map<std::string, size_t> reasons;  ///< of cells that failed: how many
 };
 

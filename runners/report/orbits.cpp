@@ -34,6 +34,11 @@ std::optional<double> TableRows::number(size_t row, std::string_view column) con
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+std::optional<bool> TableRows::flag(size_t row, std::string_view column) const {
+  const auto* cell = at(row, column);
+  return cell && cell->is_boolean() ? std::optional(cell->get<bool>()) : std::nullopt;
+}
+
 const DerivedTable* case_table(const CaseRecord& record, std::string_view name) {
   for (const DerivedTable& table : record.tables)
     if (table.name == name) return &table;

@@ -101,6 +101,8 @@ class TableRows {
   std::string text(size_t row, std::string_view column) const;
   /// Nothing for what is no finite number.
   std::optional<double> number(size_t row, std::string_view column) const;
+  /// Nothing for what is no truth value.
+  std::optional<bool> flag(size_t row, std::string_view column) const;
 
  private:
   const nlohmann::ordered_json* at(size_t row, std::string_view column) const;

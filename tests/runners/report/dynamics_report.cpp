@@ -372,6 +372,27 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(basins_of(turned).labels[0].name == "period 1");
 }
 
+TEST_CASE("cells that were not marched themselves are said", "[report]") {
+  StudyResults results = synthetic::basins(20);
+  DerivedTable& cells = results.derived[0];
+  cells.columns.push_back("marched");
+  for (size_t row = 0; row < cells.rows.size(); ++row) cells.rows[row].push_back(row % 4 == 0);
+  CHECK(basins_of(results).grids[0].filled == 285);  // three quarters of 20 × 19
+  CurveData curves(1000);
+  const CaseView view(results);
+  const Figure figure = basin_figures(view, curves).front();
+  CHECK_THAT(figure.charts[0].notes.at(0), Contains("285 of 380 cells take the end of a marched one"));
+}
+
+TEST_CASE("cases that are still being worked on are said to be", "[report]") {
+  StudyResults results = synthetic::dynamics();
+  CHECK_THAT(render_page(results, "/* charts */", "6"), !Contains("still being worked on.</strong>"));
+  results.cases[1].partial = true;
+  const std::string page = render_page(results, "/* charts */", "6");
+  CHECK_THAT(page, Contains("<strong>One case is still being worked on.</strong>"));
+  CHECK_THAT(page, Contains("<em>(partial)</em>") && Contains("beta 0.25 (partial)"));
+}
+
 TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") {
   StudyResults results = synthetic::dynamics();
   const std::string attack = "</script><script>alert(1)</script><!-- \"'&\xff";
