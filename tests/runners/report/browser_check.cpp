@@ -104,7 +104,7 @@ TEST_CASE("a hundred thousand samples per curve are drawn", "[report][browser]")
   require_everything_works(check_in_browser("long", page, count_charts(results)), results);
 }
 
-TEST_CASE("a diagram of 2e5 points is drawn, and a click on a point opens its orbit", "[report][browser]") {
+TEST_CASE("a diagram of 265200 stored points is drawn, and a click on a point opens its orbit", "[report][browser]") {
   if (without_browser()) return;
   const std::string charts = library();
   REQUIRE(!charts.empty());
