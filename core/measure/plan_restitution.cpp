@@ -25,9 +25,10 @@ std::optional<double> plan_restitution(const StepPlan& plan, double h) {
       const double S = stage.matrix.M;
       for (std::size_t j = 0; j < stage.history.size(); ++j) b += stage.history[j].M * x[j];
       if (S != 0) z = b / S;
-      if (stage.impact && S != 0) {
+      const double reach = stage.impact && S != 0 ? stage.impact->value.z / S : 0.0;
+      if (reach > 0) {
         measured = true;
-        const double y = combine(stage.impact->value, x, z), reach = stage.impact->value.z / S;
+        const double y = combine(stage.impact->value, x, z);
         double lower = 0;
         bool closed = true;
         if (const auto& gate = stage.impact->gate) {
@@ -35,13 +36,14 @@ std::optional<double> plan_restitution(const StepPlan& plan, double h) {
           closed = combine(gate->predictor, x, 0) <= 0;
           lower = approach > 0 ? -approach : -gate->restitution * approach;
         }
-        if (closed && y < lower && reach > 0) z += (lower - y) / reach / S;
+        if (closed && y < lower) z += (lower - y) / reach / S;
       }
       for (std::size_t j = 0; j < x.size(); ++j) next[j] = combine(stage.update[j], x, z);
       x = next;
     }
   };
   step(plan.start);
+  measured = false;  // the start may see what the steps do not
   for (int n = 0; n < 12; ++n) step(plan.stages);
   if (!measured) return std::nullopt;
   // The rebound over one more step, whatever the scheme keeps as its velocity.
