@@ -79,13 +79,16 @@ DecidingChoice deciding_choice(const std::vector<int>& labels, const std::vector
     best = by([](const Rank& r) { return r.share; });
     reached = std::max(0.0, ranks[best].corrected);
   }
+  // A parameter that only says which method it belongs to gives way to the method.
+  for (const std::size_t a : varying)
+    if (axes[best].name.starts_with(axes[a].name + ".") && ranks[a].share >= ranks[best].share - kEqual) best = a;
   out = {axes[best].name, ranks[best].share, 0, {best}};
   if (reached < kEnough)
     for (std::size_t i = 0; i < varying.size(); ++i)
       for (std::size_t j = i + 1; j < varying.size(); ++j) {
         const ChoiceAxis &a = axes[varying[i]], &b = axes[varying[j]];
         const Rank pair = rank(labels, both(a.levels, b.levels));
-        if (pair.corrected < reached + kGain) continue;
+        if (2 * pair.levels > labels.size() || pair.corrected < reached + kGain) continue;
         reached = pair.corrected;
         out = {a.name + " × " + b.name, pair.share, 0, {varying[i], varying[j]}};
       }

@@ -124,5 +124,14 @@ TEST_CASE("the deciding choice is the axis behind the labels, not one that names
   CHECK(two.share == Approx(1));
   CHECK(deciding_choice(by_a, {each}).name == "each");
   CHECK(deciding_choice(by_a, {same}).name.empty());
+  // A parameter that only one of three methods has, and the method itself.
+  ChoiceAxis mass{"mass", {}}, rotation{"mass.rotation", {}};
+  std::vector<int> lumped;
+  for (int k = 0; k < 12; ++k) {
+    mass.levels.push_back(k % 3 == 0 ? "lumped" : std::to_string(k % 3));
+    rotation.levels.push_back(k % 3 == 0 ? "scaled" : "");
+    lumped.push_back(k % 3 == 0);
+  }
+  CHECK(deciding_choice(lumped, {mass, rotation}).name == "mass");
   CHECK(deciding_choice(std::vector<int>(12, 3), {a, b}).name.empty());
 }
