@@ -159,10 +159,9 @@ class BasinsRun {
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
-      const bool marched = sources[cell] == cell;
       cells.rows.push_back({x, y, regime_name(end.regime), end.period > 0 ? Json(end.period) : Json(nullptr), nullptr,
-                            marched, row_of[sources[cell]], end.status, end.reason});
-      for (std::size_t i = 0; marched && i < end.section.size(); ++i) {
+                            sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
+      for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
         std::size_t column = 0;
         for (const double value : {static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement,
