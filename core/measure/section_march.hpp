@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/recurrence.hpp>
@@ -43,7 +44,7 @@ struct SectionPoint {
 /// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s).
 struct ImpactPoint {
   double phase = 0;
-  int side = 0;
+  std::int64_t side = 0;  ///< as wide as the others: no padding, the bytes of equal impacts are equal
   double speed = 0;
 };
 
