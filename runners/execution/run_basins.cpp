@@ -95,6 +95,7 @@ class BasinsRun {
     lane_periods_ += scheduler.lane_periods();
     over_budget_ = scheduler.over_budget();
     for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!over_budget_ && !scheduler.finished(static_cast<int>(k))) throw Interrupted{};
       if (scheduler.finished(static_cast<int>(k)))
         ends[places[k]] = cell_end(scheduler.orbit(static_cast<int>(k)), section_);
       else
