@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "runners/execution/derive.hpp"
@@ -90,8 +91,11 @@ int interrupted(const StudyRunner& runner, const Store& store, const std::filesy
 /// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
 void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
                   const CaseRecord& record) {
+  // Cases on several threads share the folder: one page at a time, and none waits for another's.
+  static std::mutex page;
   store.save_partial(record);
-  write_file(folder / "report.html", runner.render(with_tables(store.load())));
+  const std::unique_lock lock(page, std::try_to_lock);
+  if (lock) write_file(folder / "report.html", runner.render(with_tables(store.load())));
 }
 
 int run_in(const StudyRunner& runner, const Study& study, const RunOptions& options,
