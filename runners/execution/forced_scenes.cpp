@@ -36,6 +36,14 @@ bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
          same_load(a, b);
 }
 
+// A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.
+std::shared_ptr<const SemiDiscrete> with_own_load(const std::shared_ptr<const SemiDiscrete>& problem) {
+  if (!problem->load || problem->load->absent()) return problem;
+  auto own = std::make_shared<SemiDiscrete>(*problem);
+  own->load = std::make_shared<const DistributedLoad>(*problem->load);
+  return own;
+}
+
 // Parameters of the law that need a law of their own: all but those that may differ between lanes.
 std::map<std::string, ParameterValue> shared_parameters(const Parameters& all, const PluginManual& manual) {
   std::map<std::string, ParameterValue> shared = all.values();
@@ -157,7 +165,7 @@ Program ForcedScenes::program(int group, std::vector<LaneSpec> lanes, int tangen
   options.kind = one.kind;
   options.moving_support = one.problem->support.pulsation != 0;
   options.tangents = tangents;
-  auto compiled = compile(one.problem, one.plan, one.h,
+  auto compiled = compile(with_own_load(one.problem), one.plan, one.h,
                           registry_.contact(one.contact.name)->make(one.contact.parameters), std::move(lanes), options);
   if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
   return std::move(std::get<Program>(compiled));
