@@ -156,6 +156,29 @@ TEST_CASE("run: never more cases at once than --jobs") {
   CHECK(most <= 3);
 }
 
+TEST_CASE("run: cases on several threads show what they have so far, and none fails another") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  MotionShelf shelf;
+  run.runner.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
+  run.runner.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+    for (int k = 0; k < 10; ++k) {
+      CaseRecord partial = fake_result(one);
+      partial.id = one.id;
+      partial.axes = one.axes;
+      shelf.show(partial);
+    }
+    return fake_result(one);
+  };
+  REQUIRE(run(fake_study(12), {scratch / "out", 4, false}) == 0);
+  const StudyResults results = read_store(scratch / "out");
+  REQUIRE(results.cases.size() == 12);
+  for (const CaseRecord& record : results.cases) {
+    CHECK(record.status == "done");
+    CHECK_FALSE(record.partial);
+  }
+}
+
 TEST_CASE("run: a folder without write permission") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
