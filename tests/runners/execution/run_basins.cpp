@@ -19,18 +19,18 @@ Json grid_study(int columns, int rows, bool refine) {
   Json study = Json::parse(R"({
     "name": "grid", "kind": "basins",
     "scene": {
-      "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.05,
+      "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.3,
                     "force": {"amplitude": 1, "pulsation": 2.6}},
-      "stops": {"upper": 0.25, "at": "tip"},
+      "stops": {"upper": 0.2, "at": "tip"},
       "initial": {"displacement": 0, "velocity": 0}
     },
     "methods": {"mass": "consistent", "contact": "signorini",
-                "time": {"name": "newmark-dumont-paoli", "restitution": 0.8}},
+                "time": {"name": "newmark-dumont-paoli", "restitution": 0.3}},
     "steps_per_period": 64,
     "transient": {"periods": 60, "at_most": 160}, "keep": 32
   })");
   study["axes"] =
-      Json::array({{{"pointer", "/scene/initial/displacement"}, {"from", -4}, {"to", 0.2}, {"count", columns}},
+      Json::array({{{"pointer", "/scene/initial/displacement"}, {"from", -4}, {"to", 0.16}, {"count", columns}},
                    {{"pointer", "/scene/initial/velocity"}, {"from", -4}, {"to", 4}, {"count", rows}}});
   study["refine"] = refine;
   return study;
@@ -79,7 +79,7 @@ TEST_CASE("Every cell of a grid has its row and its section") {
              source = cells(record, "source"), period = cells(record, "period"), status = cells(record, "status");
   REQUIRE(x.size() == 20);
   CHECK(x[0] == -4.0);
-  CHECK(x[4] == 0.2);
+  CHECK(x[4] == 0.16);
   CHECK(y[0] == -4.0);
   CHECK(y[19] == 4.0);
   std::map<double, int> points;
@@ -94,13 +94,13 @@ TEST_CASE("Every cell of a grid has its row and its section") {
 }
 
 TEST_CASE("Boundary refinement finds what the whole grid holds, for less") {
-  const CaseRecord whole = run(grid_study(25, 25, false)), refined = run(grid_study(25, 25, true));
+  const CaseRecord whole = run(grid_study(21, 21, false)), refined = run(grid_study(21, 21, true));
   const auto regime = cells(whole, "class"), found = cells(refined, "class"), marched = cells(refined, "marched"),
              period = cells(whole, "period"), repeats = cells(refined, "period"), source = cells(refined, "source");
   const auto marched_count = std::count(marched.begin(), marched.end(), Json(true));
-  CHECK(marched_count < 625);
-  CHECK(std::count(marched.begin(), marched.end(), Json(false)) == 625 - marched_count);
-  CHECK(std::count(regime.begin(), regime.end(), regime.front()) < 625);  // there is something to find
+  CHECK(marched_count < 441 / 2);
+  CHECK(std::count(marched.begin(), marched.end(), Json(false)) == 441 - marched_count);
+  CHECK(std::count(regime.begin(), regime.end(), regime.front()) < 441);  // there is something to find
   int wrong = 0;
   for (std::size_t cell = 0; cell < regime.size(); ++cell) {
     const bool same = regime[cell] == found[cell] && period[cell] == repeats[cell];
@@ -108,15 +108,15 @@ TEST_CASE("Boundary refinement finds what the whole grid holds, for less") {
     CHECK(marched[source[cell].get<std::size_t>()] == true);
     wrong += !same;
   }
-  // Tongues thinner than the coarse grid, which no coarse cell meets.
-  CHECK(wrong <= 12);
-  CHECK_THAT(refined.notes.back(), Contains(std::to_string(marched_count) + " of 625 cells were marched"));
+  // Tongues thinner than the coarse grid, which no coarse cell meets: one cell in a hundred.
+  CHECK(wrong <= 4);
+  CHECK_THAT(refined.notes.back(), Contains(std::to_string(marched_count) + " of 441 cells were marched"));
 }
 
 TEST_CASE("Scenes shared by columns and rows are those of each cell alone") {
   // The stop as second axis shares nothing: its orbits at the stop of the scene are those of the initial states.
   Json alone = grid_study(5, 2, false);
-  alone["axes"][1] = {{"pointer", "/scene/stops/upper"}, {"from", 0.25}, {"to", 0.4}, {"count", 2}};
+  alone["axes"][1] = {{"pointer", "/scene/stops/upper"}, {"from", 0.2}, {"to", 0.4}, {"count", 2}};
   Json shared = grid_study(5, 2, false);
   shared["axes"][1] = {{"pointer", "/scene/initial/velocity"}, {"from", 0}, {"to", 1}, {"count", 2}};
   Json turned = shared;
@@ -150,7 +150,7 @@ TEST_CASE("Cells behind a stop are refused one by one") {
 TEST_CASE("Threads and interruptions do not change the bits of basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());
-  CHECK((bits(opened.run({{}, "key", 3})) == wanted));
+  for (int run = 0; run < 3; ++run) CHECK((bits(opened.run({{}, "key", 2})) == wanted));
 
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
