@@ -44,12 +44,9 @@ const ricochetDynamics = (function () {
     exponents(reference, one) { return makers.column(reference, one, "exponent_" + reference.index); },
     twins(reference, one) { return makers.column(reference, one, "exponent_twin"); },
     whiskers(reference, one) {
-      const name = "exponent_" + reference.index, rows = [];
-      for (const o of chosen(reference, one)) {
-        const low = cell(one, name + "_low", o), high = cell(one, name + "_high", o), x = one.columns.parameter[o];
-        if (finite(low) && finite(high)) rows.push([x, low], [x, high], [x, "-"]);
-      }
-      return { rows };
+      const name = "exponent_" + reference.index;
+      const list = chosen(reference, one).filter((o) => finite(cell(one, name + "_low", o)) && finite(cell(one, name + "_high", o)));
+      return { ends: Float64Array.from(list.flatMap((o) => [one.columns.parameter[o], one.columns[name + "_low"][o], one.columns[name + "_high"][o]])) };
     },
     marks(reference, one) {
       const rows = [], orbits = [];
@@ -96,28 +93,40 @@ const ricochetDynamics = (function () {
     if (reference.sweep === "zero") return { rows: [[option.xAxis[0].min, 0], [option.xAxis[0].max, 0]] };
     return makers[reference.sweep](reference, orbitsOf(reference.case));
   }
-  // Completes the series that refer to orbits; `view.sources` then says which orbit each item is.
+  // Completes the series that refer to orbits. Points and whiskers are drawn by hand, all of a panel in one picture: the library is told of them
+  // no more, as many series of it are slow. `view.sources` then says what is drawn of which orbit, `view.bySeries` the same by the library's series.
   function dress(view, option, hidden) {
-    view.sources = option.series.map((series) => {
+    const kept = [], grids = new Map();
+    view.sources = [];
+    view.bySeries = [];
+    for (const series of option.series) {
       if (series.symbol === "triangle-down") Object.assign(series, { symbol: "triangle", symbolRotate: 180 });
       const reference = series.data;
-      if (!reference || typeof reference.sweep !== "string") return null;
+      if (!reference || typeof reference.sweep !== "string") { kept.push(series); view.bySeries.push(null); continue; }
       const key = JSON.stringify(reference);
       if (!made.has(key)) made.set(key, make(reference, option));
-      const built = made.get(key), source = { reference, orbits: built.orbits || null, ids: built.ids || null, values: built.values || null, rows: built.rows || null, canvas: built.canvas || null };
-      if (!built.values) { series.data = built.rows; return source; }
-      // Points are drawn by hand, all of a panel in one picture; their series keeps its name and colour for the legend.
-      Object.assign(source, { colour: series.color, glyph: glyphOf(series, reference, built.values.length / 2), z: series.z || 2, grid: series.xAxisIndex || 0, axis: series.yAxisIndex || 0, tags: series.tags || [] });
-      Object.assign(series, { type: "scatter", silent: true, data: [] });
-      return source;
-    });
-    const grids = new Map();
-    view.sources.forEach((source) => { if (source && source.glyph) grids.set(source.grid, source.axis); });
-    for (const [grid, axis] of grids) {
-      option.series.push({ type: "custom", name: "points of panel " + grid, xAxisIndex: grid, yAxisIndex: axis, silent: true, clip: true, progressive: 0, z: 3, renderItem: drawPoints(view, option, hidden, grid), encode: { x: 0, y: 1 },
-        data: [[option.xAxis[grid].min, 0]] });
-      view.sources.push(null);
+      const built = made.get(key), grid = series.xAxisIndex || 0, axis = series.yAxisIndex || 0;
+      const source = Object.assign({ reference, grid, axis, tags: series.tags || [], z: series.z || 2, colour: series.color }, built);
+      view.sources.push(source);
+      if (built.values) {
+        source.glyph = glyphOf(series, reference, built.values.length / 2);
+        if (source.glyph.shape === "cross") source.colour = series.itemStyle.borderColor;
+      } else if (built.ends) {
+        source.glyph = { shape: "whisker", size: 1 };
+        source.colour = series.lineStyle.color;
+      } else {
+        kept.push(Object.assign(series, { data: built.rows }));
+        view.bySeries.push(source);
+        continue;
+      }
+      grids.set(grid, axis);
     }
+    for (const [grid, axis] of grids) {
+      kept.push({ type: "custom", name: "points of panel " + grid, xAxisIndex: grid, yAxisIndex: axis, silent: true, clip: true, progressive: 0, z: 3, renderItem: drawPoints(view, option, hidden, grid), encode: { x: 0, y: 1 },
+        data: [[option.xAxis[grid].min, 0]] });
+      view.bySeries.push(null);
+    }
+    option.series = kept;
   }
 
   // ---- points, pixel by pixel ---------------------------------------------------------------------------------------
@@ -127,8 +136,14 @@ const ricochetDynamics = (function () {
     if (reference.sweep === "points") return count > 2500 ? { shape: "dot", size: count > 40000 ? 1.5 : 2 } : { shape, size: count < 400 ? 6 : 5 };
     return { shape, size: series.symbolSize || 4 };
   }
-  // Coverage of the shape, 0 to 255, in device pixels around its centre.
+  // Coverage of the shape, 0 to 255, in device pixels around its centre. Kept: pixels are slow to read back.
+  const masks = new Map();
   function maskOf(glyph, ratio) {
+    const key = glyph.shape + glyph.size + "/" + ratio;
+    if (!masks.has(key)) masks.set(key, makeMask(glyph, ratio));
+    return masks.get(key);
+  }
+  function makeMask(glyph, ratio) {
     const size = Math.max(1, Math.round(glyph.size * ratio));
     if (glyph.shape === "dot") return { size, alpha: new Uint8Array(size * size).fill(255) };
     const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size }), c = canvas.getContext("2d"), h = size / 2;
@@ -144,6 +159,14 @@ const ricochetDynamics = (function () {
     for (let i = 0; i < alpha.length; ++i) alpha[i] = data[4 * i + 3];
     return { size, alpha };
   }
+  function drawWhiskers(source, words, wide, tall, across, up) {
+    const [r, g, b] = [1, 3, 5].map((k) => parseInt(source.colour.slice(k, k + 2), 16)), ink = (255 << 24) | (b << 16) | (g << 8) | r;
+    for (let i = 0; i < source.ends.length; i += 3) {
+      const u = Math.floor(across(source.ends[i])), from = Math.max(0, Math.floor(up(source.ends[i + 2]))), to = Math.min(tall - 1, Math.floor(up(source.ends[i + 1])));
+      if (u < 0 || u >= wide) continue;
+      for (let v = from; v <= to; ++v) words[v * wide + u] = ink;
+    }
+  }
   const drawPoints = (view, option, hidden, grid) => (params, api) => {
     const frame = params.coordSys, ratio = api.getDevicePixelRatio(), wide = Math.round(frame.width * ratio), tall = Math.round(frame.height * ratio);
     if (wide < 1 || tall < 1) return null;
@@ -154,6 +177,7 @@ const ricochetDynamics = (function () {
     const picture = context.createImageData(wide, tall), bytes = picture.data, words = new Uint32Array(bytes.buffer);
     const drawn = view.sources.filter((s) => s && s.glyph && s.grid === grid && !s.tags.some((tag) => hidden.has(tag))).sort((a, b) => a.z - b.z);
     for (const source of drawn) {
+      if (source.ends) { drawWhiskers(source, words, wide, tall, (v) => left + (bend(v) - low) * perX, (v) => zero + v * perY); continue; }
       const mask = maskOf(source.glyph, ratio), size = mask.size, alpha = mask.alpha, half = size / 2;
       const [r, g, b] = [1, 3, 5].map((k) => parseInt(source.colour.slice(k, k + 2), 16)), values = source.values;
       if (source.glyph.shape === "dot") {
@@ -197,7 +221,7 @@ const ricochetDynamics = (function () {
 
   const drawImage = (view) => (params, api) => {
     const low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(3)]);
-    return { type: "image", style: { image: view.sources[params.seriesIndex].canvas, x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
+    return { type: "image", style: { image: view.bySeries[params.seriesIndex].canvas, x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
   };
 
   // ---- words --------------------------------------------------------------------------------------------------------
@@ -218,7 +242,7 @@ const ricochetDynamics = (function () {
       const p = Array.isArray(given) ? given[0] : given;
       if (!p || p.value === undefined || p.value === null) return "";
       if (p.data && p.data.text) return "<div>" + page.escapeText(view.x[0]) + " = " + page.number(p.value[0], 8) + '</div><div class="tip-row">' + page.escapeText(p.seriesName) + '</div><div class="tip-text">' + page.escapeText(p.data.text) + "</div>";
-      const source = view.sources && view.sources[p.seriesIndex], o = source && source.orbits ? source.orbits[p.dataIndex] : undefined;
+      const source = view.bySeries && view.bySeries[p.seriesIndex], o = source && source.orbits ? source.orbits[p.dataIndex] : undefined;
       const head = (x) => "<div>" + page.escapeText(view.x[0]) + " = " + page.number(x, 9) + page.escapeText(unitText(view.x)) + "</div>";
       if (o === undefined) return head(p.value[0]) + line(p.seriesName, page.number(p.value[1], 8));
       const id = source.ids ? source.ids[p.dataIndex] : source.reference.case;
@@ -248,7 +272,7 @@ const ricochetDynamics = (function () {
 
   function cellTooltip(view) {
     return (given) => {
-      const p = Array.isArray(given) ? given[0] : given, source = view.sources && p && view.sources[p.seriesIndex];
+      const p = Array.isArray(given) ? given[0] : given, source = view.bySeries && p && view.bySeries[p.seriesIndex];
       const mouse = view.mouse, reference = source && source.reference;
       if (!reference || !mouse) return p && p.value ? page.escapeText(view.x[0]) + " = " + page.number(p.value[0], 6) : "";
       const at = mouse.chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, mouse.at), b = reference.bounds;
@@ -266,10 +290,9 @@ const ricochetDynamics = (function () {
     const grids = [].concat(option.grid), grid = grids.findIndex((g, k) => chart.containPixel({ gridIndex: k }, at));
     if (grid < 0) return null;
     let best = null, nearest = pointsOnly ? 7 : 14;
-    option.series.forEach((series, s) => {
-      const source = view.sources[s];
-      if (!source || !source.orbits || (series.xAxisIndex || 0) !== grid || (series.tags || []).some((tag) => hidden.has(tag))) return;
-      const axes = { xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 };
+    view.sources.forEach((source) => {
+      if (!source.orbits || source.grid !== grid || source.tags.some((tag) => hidden.has(tag))) return;
+      const axes = { xAxisIndex: source.grid, yAxisIndex: source.axis };
       if (source.reference.sweep === "cells") {
         if (pointsOnly) return;
         const value = chart.convertFromPixel(axes, at), k = source.rows.findIndex((r) => r[0] <= value[0] && value[0] <= r[1] && r[2] === Math.round(value[1]));

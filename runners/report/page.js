@@ -150,14 +150,18 @@
     }
     redraw() { this.slots.forEach((slot) => { if (slot.chart && this.visible(slot)) { slot.chart.resize(); this.draw(slot); } }); }
     drawAll() { this.slots.forEach((slot) => slot.chart || this.draw(slot)); }
+    byHand(slot) {
+      const view = this.viewOf(slot);
+      return Boolean(view.sources && view.sources.some((source) => source.glyph));
+    }
     hover(slot, at, event) {
       const view = this.viewOf(slot);
       view.mouse = { chart: slot.chart, at };
-      if (event && view.sources && view.sources.some((source) => source && source.glyph)) ricochetDynamics.hover(slot.chart, view, slot.drawn, this.hidden, at, [event.clientX, event.clientY]);
+      if (event && this.byHand(slot)) ricochetDynamics.hover(slot.chart, view, slot.drawn, this.hidden, at, [event.clientX, event.clientY]);
     }
     pick(slot, at) {
       const view = this.viewOf(slot);
-      if (!view.sources || !view.sources.some(Boolean)) return;
+      if (!view.sources || !view.sources.length) return;
       const found = ricochetDynamics.pick(slot.chart, view, slot.drawn, this.hidden, at);
       if (found) ricochetDynamics.open(found.id, found.orbit);
     }
@@ -197,6 +201,8 @@
       button.setAttribute("aria-pressed", String(shown));
       this.slots.forEach((slot) => {
         if (!slot.chart || !slot.drawn) return;
+        // Points know nothing of the library's legend: they are drawn again.
+        if (this.byHand(slot)) { if (this.visible(slot)) this.draw(slot); return; }
         const before = slot.drawn.legend.selected, now = this.selected(slot.drawn.series);
         for (const one of Object.keys(now))
           if (now[one] !== before[one]) slot.chart.dispatchAction({ type: now[one] ? "legendSelect" : "legendUnSelect", name: one });
@@ -216,7 +222,7 @@
       Object.assign(option.legend, { show: true, type: "plain", left: 12, top: 32, itemWidth: 34, textStyle: { fontSize: 11 } });
       option.series.forEach((s) => { if (s.showSymbol === false) s.symbol = "none"; });   // the legend shows symbols even where the curve has none
       let names = Array.from(new Set(option.series.map((s) => s.name))).filter((name) => name !== "stops");
-      const tagged = new Set(option.series.flatMap((s) => s.tags || []));
+      const tagged = new Set(option.series.concat(this.viewOf(slot).sources || []).flatMap((s) => s.tags || []));
       if (tagged.size) {   // one entry per meaning instead of one per series
         const entries = this.entries().filter((entry) => tagged.has(entry.name) && !this.hidden.has(entry.name));
         names = entries.map((entry) => entry.name);
@@ -370,8 +376,18 @@
       if (legend) {
         legend.click();
         const name = legend.dataset.name, named = (one) => one.name === name || (one.tags || []).includes(name);
-        report.hidden = figure.slots.every((s) => !s.chart || s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
+        report.hidden = figure.slots.every((s) => !s.chart || !figure.visible(s) || s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
         legend.click();
+      }
+      if (first && figure.byHand(first)) {   // without any entry of the legend nothing coloured is left, and with all of them everything is back
+        const full = coloured(first), hidden = Array.from(figure.hidden), redraw = () => { figure.draw(first); first.chart.getZr().flush(); };
+        all(".legend button", figure.section).forEach((b) => figure.hidden.add(b.dataset.name));
+        redraw();
+        report.hidden = report.hidden && coloured(first) < full / 10;
+        figure.hidden.clear();
+        hidden.forEach((name) => figure.hidden.add(name));
+        redraw();
+        report.hidden = report.hidden && coloured(first) === full;
       }
       if (figure.description.linked && first && last) {
         const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low;
@@ -391,7 +407,7 @@
         const value = sample && (Array.isArray(sample.data[0]) ? sample.data[0] : sample.data[0].value || [sample.data[0], sample.data[1]]);
         report.tooltip = sample ? option.tooltip.formatter([{ value, seriesName: sample.name, marker: "", data: {} }]) : "";
       }
-      const view = first && figure.viewOf(first), points = view && view.sources && view.sources.findIndex((s) => s && s.values && s.reference.sweep === "points" && s.values.length);
+      const view = first && figure.viewOf(first), points = view && view.sources && view.sources.findIndex((s) => s.values && s.reference.sweep === "points" && s.values.length);
       if (points !== undefined && points !== null && points >= 0) report.panel = checkPanel(figure, first, view, points);
       result.figures.push(report);
     }
