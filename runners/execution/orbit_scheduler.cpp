@@ -157,6 +157,7 @@ void OrbitScheduler::work(Shared& shared, int worker) {
       shared.resumed.pop_front();
     }
     std::vector<int> taken;
+    shared.snapshots[static_cast<std::size_t>(worker)] = orbits;  // resumed ones are not lost before their first period
     if (orbits.empty()) {
       const int fair = (static_cast<int>(shared.ready.size()) + options_.workers - 1) / options_.workers;
       taken = take(shared, -1, std::clamp(fair, 1, options_.lanes));
@@ -245,6 +246,7 @@ void OrbitScheduler::work(Shared& shared, int worker) {
           for (const auto& snapshot : shared.snapshots)
             for (const Orbit& orbit : snapshot)
               if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(orbit);
+          marched.running.insert(marched.running.end(), shared.resumed.begin(), shared.resumed.end());
           (*shared.checkpoint)(marched);
         }
         narrow = running > 0 && 2 * running <= block->places();
