@@ -17,8 +17,8 @@ namespace {
 
 constexpr const char* ink = "#222222";
 constexpr const char* faint = "#9a9a9a";
-constexpr std::array method_colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                       "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31"};
+constexpr std::array method_colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
+                                       "#7B4FA0", "#8C6D31", "#44AA99", "#882255", "#333333", "#999933"};
 constexpr size_t most_lanes = 24;         ///< rows of a band of regimes
 constexpr size_t most_start_charts = 48;  ///< charts of the view by start
 
@@ -92,6 +92,9 @@ class Diagram {
           add(figure, {name + start_kinds[kind].name, {cases_[c]}, kind, false}, frames[c], view);
         }
     }
+    if (cases_.size() > method_colours.size())
+      figure.caption += fmt::format(" Overlaid, colours repeat after {} methods: the legend shows any of them alone.",
+                                    method_colours.size());
     add_legend(figure);
     return figure;
   }

@@ -79,8 +79,9 @@ std::vector<size_t> share_out(const std::vector<size_t>& wants, size_t total) {
 struct Section {
   const CaseRecord* record = nullptr;
   const std::vector<double>*u = nullptr, *v = nullptr;
-  std::vector<Rows> rows;  ///< by orbit
-  size_t stored = 0, count = 0;
+  std::vector<Rows> rows;     ///< by orbit
+  std::vector<char> repeats;  ///< by orbit: its points are few, and each of them is a branch of the diagram
+  size_t stored = 0, count = 0, cloud = 0;
 };
 
 std::optional<Section> section_of(const CaseRecord& record) {
@@ -101,12 +102,14 @@ std::optional<Section> section_of(const CaseRecord& record) {
     Rows& rows = out.rows[o];
     out.stored += rows.size();
     std::erase_if(rows, [&](std::uint32_t i) { return !std::isfinite((*out.u)[i]) || !std::isfinite((*out.v)[i]); });
-    if (regime_group(orbits[o]) <= 6) {
+    out.repeats.push_back(regime_group(orbits[o]) <= 6);
+    if (out.repeats.back()) {
       std::set<std::pair<long long, long long>> seen;
       std::erase_if(
           rows, [&](std::uint32_t i) { return !seen.emplace(cell((*out.u)[i], us), cell((*out.v)[i], vs)).second; });
     }
     out.count += rows.size();
+    if (!out.repeats.back()) out.cloud += rows.size();
   }
   return out;
 }
@@ -191,23 +194,23 @@ std::string put_points(const CaseView& view, CurveData& curves, const PageBudget
   std::vector<size_t> wants;
   size_t stored = 0, apart = 0, drawn = 0;
   for (const Section& section : sections) {
-    wants.push_back(section.count);
+    wants.push_back(section.cloud);
     stored += section.stored;
     apart += section.count;
   }
-  const std::vector<size_t> shares = share_out(wants, budget.points);
+  // Branches are never thinned: a missing one would be a lie. What they leave of the budget goes to the clouds.
+  size_t branches = apart;
+  for (const size_t cloud : wants) branches -= cloud;
+  const std::vector<size_t> shares = share_out(wants, budget.points - std::min(branches, budget.points));
   for (size_t s = 0; s < sections.size(); ++s) {
     const Section& section = sections[s];
     std::vector<std::uint32_t> orbit;
     std::vector<double> u, v;
-    const double share = section.count > 0 ? static_cast<double>(shares[s]) / static_cast<double>(section.count) : 0;
+    const double share = section.cloud > 0 ? static_cast<double>(shares[s]) / static_cast<double>(section.cloud) : 1;
     for (size_t o = 0; o < section.rows.size(); ++o) {
       const Rows& all = section.rows[o];
-      const size_t keep =
-          share >= 1
-              ? all.size()
-              : std::min(all.size(),
-                         std::max<size_t>(1, static_cast<size_t>(std::ceil(share * static_cast<double>(all.size())))));
+      const auto even = static_cast<size_t>(std::ceil(share * static_cast<double>(all.size())));
+      const size_t keep = section.repeats[o] ? all.size() : std::min(all.size(), std::max<size_t>(1, even));
       for (const std::uint32_t i : spread(all, keep)) {
         orbit.push_back(static_cast<std::uint32_t>(o));
         u.push_back((*section.u)[i]);
@@ -226,7 +229,7 @@ std::string put_points(const CaseView& view, CurveData& curves, const PageBudget
     out += fmt::format("; {} repeat one of their own periodic orbit to 1/{} of the frame", stored - apart,
                        static_cast<int>(cells_across));
   if (drawn < apart)
-    out += fmt::format("; {} more are left out evenly, of every orbit the same share, so that the page stays quick",
+    out += fmt::format("; {} more are left out of the clouds, evenly of each orbit, so that the page stays quick",
                        apart - drawn);
   return out + ". All are in points.csv.";
 }

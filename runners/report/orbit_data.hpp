@@ -15,7 +15,8 @@ struct PageBudget {
 /// Writes the section points of all cases into the page, as blocks ID/points/orbit, …/u and …/v of equal length: the
 /// row in the case's `values`, tip displacement (m) and tip velocity (m/s). Of orbits that repeat (periodic, no
 /// contact), points that coincide to 1/4000 of the case's extent in both are written once; where the budget does not
-/// hold the rest, each orbit keeps an even choice. Returns a sentence on what was left out, "" when nothing was.
+/// hold the rest, each of the other orbits keeps an even choice. Returns a sentence on what was left out, "" when
+/// nothing was.
 std::string put_points(const CaseView& view, CurveData& curves, const PageBudget& budget = {});
 
 /// The same for stored portraits: ID/portrait/orbit, …/t (s), …/u and …/v. Where the budget does not hold them all,

@@ -148,7 +148,7 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
   budget.points = 3000;
   budget.portraits = 2000;
   const CaseView view(results);
-  CHECK_THAT(put_points(view, curves, budget), Contains("left out evenly"));
+  CHECK_THAT(put_points(view, curves, budget), Contains("left out of the clouds"));
   size_t written = 0, orbits_with = 0, orbits_drawn = 0;
   for (const CaseRecord& record : results.cases) {
     const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
@@ -157,6 +157,17 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
     for (const Orbit& one : orbits_of(record)) orbits_with += one.done();
   }
   CHECK(orbits_drawn == orbits_with);
+  // Of orbits that repeat every branch is still there.
+  CurveData whole(1000);
+  put_points(view, whole);
+  for (const CaseRecord& record : results.cases) {
+    const std::vector<Orbit> orbits = orbits_of(record);
+    std::map<std::uint16_t, size_t> all, some;
+    for (const auto o : numbers_of<std::uint16_t>(whole, record.id + "/points/orbit:u16")) ++all[o];
+    for (const auto o : numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16")) ++some[o];
+    for (const auto& [o, count] : all)
+      if (regime_group(orbits[o]) <= 6) CHECK(some[o] == count);
+  }
   // Shares are rounded upwards, by less than one point per orbit.
   CHECK(written <= budget.points + orbits_with);
   CHECK(written >= budget.points / 2);
