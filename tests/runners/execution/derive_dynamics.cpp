@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -536,17 +535,19 @@ TEST_CASE("basins of two attractors: shares, differences and a smooth boundary")
     }
 }
 
-TEST_CASE("forty cases of five hundred values and three starts derive in seconds") {
-  // A twenty-fifth of that here, all chaotic, which is the dearest.
+TEST_CASE("every one of many chaotic sections belongs to an attractor") {
+  // All chaotic is the dearest: 2400 sections take about 0.3 s of a free core.
   std::vector<Method> methods;
   for (int k = 0; k < 8; ++k)
     methods.push_back(method(k, 2000, 20, [=](double a, const std::string& start) {
       return chaos(k + a * 1300 + static_cast<double>(start.size()));
     }));
   StudyResults results = study(methods, range(0.07, 0.09, 100), {"rest", "up", "state"}, 300);
-  const auto begin = std::chrono::steady_clock::now();
   derive_tables(results);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  INFO("2400 chaotic sections: " << seconds << " s");
-  CHECK(seconds < 5);  // 0.25 s on a machine that does nothing else
+  const auto values = std::find_if(results.derived.begin(), results.derived.end(),
+                                   [](const DerivedTable& table) { return table.name == "values"; });
+  REQUIRE(values != results.derived.end());
+  CHECK(values->rows.size() == 2400);
+  const auto column = std::find(values->columns.begin(), values->columns.end(), "attractor") - values->columns.begin();
+  for (const auto& row : values->rows) CHECK(row[static_cast<std::size_t>(column)].is_number());
 }
