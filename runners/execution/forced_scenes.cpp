@@ -106,6 +106,13 @@ int ForcedScenes::add(const std::function<StudyCase()>& variant) {
   return number;
 }
 
+int ForcedScenes::add(const std::string& pointer, double value, bool own_state) {
+  return add([&] {
+    const StudyCase one = with_parameter(case_, pointer, value);
+    return own_state ? one : at_rest(one);
+  });
+}
+
 int ForcedScenes::group_of(std::unique_ptr<Group> candidate) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const Group& known = *groups_[g];

@@ -29,6 +29,8 @@ class ForcedScenes {
 
   /// Prepares one more scene; its number is the count before. Refusals and bad values are kept, not thrown.
   int add(const std::function<StudyCase()>& variant);
+  /// The case with one parameter changed, in its own initial state or at rest in the laboratory frame.
+  int add(const std::string& pointer, double value, bool own_state);
 
   const ForcedScene& operator[](int scene) const { return scenes_[static_cast<std::size_t>(scene)]; }
   int count() const { return static_cast<int>(scenes_.size()); }

@@ -13,35 +13,22 @@ namespace {
 class PointScenes {
  public:
   PointScenes(const StudyCase& study_case, const Registry& registry)
-      : case_(study_case),
-        pointer_(study_case.settings.at("parameter").at("pointer").get<std::string>()),
+      : pointer_(study_case.settings.at("parameter").at("pointer").get<std::string>()),
         starts_(starts_of(study_case.settings)),
         scenes_(study_case, registry) {
-    const auto needs = [&](bool state) {
-      return std::any_of(starts_.begin(), starts_.end(),
-                         [&](const StartSpec& start) { return (start.kind == StartSpec::state) == state; });
-    };
     for (const double value : parameter_values(study_case.settings))
       for (const bool state : {false, true})
-        if (needs(state) && scenes_.groups() == 0) add(value, state);
+        if (any_start(starts_, state) && scenes_.groups() == 0) scenes_.add(pointer_, value, state);
   }
 
   int add(double value, const std::string& start) {
     for (const StartSpec& one : starts_)
-      if (one.name == start) return add(value, one.kind == StartSpec::state);
+      if (one.name == start) return scenes_.add(pointer_, value, one.own_state());
     throw InputError("", "the study has no start \"" + start + "\"");
   }
   const ForcedScenes& scenes() const { return scenes_; }
 
  private:
-  int add(double value, bool state) {
-    return scenes_.add([&] {
-      const StudyCase one = with_parameter(case_, pointer_, value);
-      return state ? one : at_rest(one);
-    });
-  }
-
-  const StudyCase& case_;
   std::string pointer_;
   std::vector<StartSpec> starts_;
   ForcedScenes scenes_;

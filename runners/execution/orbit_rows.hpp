@@ -23,7 +23,7 @@ struct OrbitView {
   std::size_t start = 0;  ///< which of the case's starts
   std::string refusal;    ///< why there is no orbit
   const Orbit* orbit = nullptr;
-  int group = -1, scene = -1;
+  int group = -1;
   std::string marginal;  ///< what the stability analysis says of roots that are the scheme's
   std::optional<EquivalentViscosity> viscosity;
   OrbitExponents exponents;

@@ -98,7 +98,7 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
   record.notes = prepared.notes;
   if (prepared.program) {
     record.operator_name = operator_name(prepared.program->kind);
-    record.left_out = left_out_pairs(*prepared.program);
+    record.left_out = left_out_pairs(prepared.program->left_out);
   } else {
     record.status = "refused";
     record.reason = prepared.refusal;
@@ -119,9 +119,9 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
   record.steps = status.step;
 }
 
-std::vector<std::pair<std::string, std::string>> left_out_pairs(const Program& program) {
+std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items) {
   std::vector<std::pair<std::string, std::string>> pairs;
-  for (const LeftOut& item : program.left_out) pairs.emplace_back(item.item, item.reason);
+  for (const LeftOut& item : items) pairs.emplace_back(item.item, item.reason);
   return pairs;
 }
 

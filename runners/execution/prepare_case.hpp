@@ -36,8 +36,8 @@ std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Regis
 std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Registry& registry);
 
-/// Item and reason of everything that the program does without.
-std::vector<std::pair<std::string, std::string>> left_out_pairs(const Program& program);
+/// Item and reason of everything that a program does without.
+std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items);
 
 /// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from
 /// start to end.

@@ -3,20 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "runners/execution/cell_ends.hpp"
 #include "runners/execution/cell_scenes.hpp"
 #include "runners/execution/grid_refinement.hpp"
 #include "runners/execution/orbit_checkpoints.hpp"
+#include "runners/execution/partial_pace.hpp"
 #include "runners/execution/prepare_case.hpp"
 
 namespace ricochet {
 namespace {
 
 constexpr std::size_t largest_batch = 4096;  // cells whose orbits are in memory at one time
-constexpr double partial_interval = 20;      // s
 
 bool refines(const StudyCase& study_case) {
   const Json& wanted = study_case.settings.at("refine");
@@ -126,7 +125,7 @@ class BasinsRun {
     section_ = section_plan(case_, scenes);
     labels_ = EndLabels(section_);
     record_.operator_name = scenes.operator_chosen();
-    for (const LeftOut& item : scenes.left_out(0)) record_.left_out.emplace_back(item.item, item.reason);
+    record_.left_out = left_out_pairs(scenes.left_out(0));
     record_.notes = scenes.notes(0);
   }
 
@@ -175,17 +174,14 @@ class BasinsRun {
   }
 
   void show_partial() {
-    if (!desk_.shelf.show) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (std::chrono::duration<double>(now - shown_).count() < partial_interval) return;
-    shown_ = now;
+    if (!desk_.shelf.show || !pace_.due()) return;
     CaseRecord partial = record_;
     write_tables(partial, false);
     partial.status = "done";
     std::size_t known = 0;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) known += refinement_.marched(cell);
     partial.reason = fmt::format("under way: {} cells marched", known);
-    desk_.shelf.show(partial);
+    pace_.take([&] { desk_.shelf.show(partial); });
   }
 
   void finish() {
@@ -239,7 +235,7 @@ class BasinsRun {
   long long lane_periods_ = 0;
   int batches_ = 0;
   bool described_ = false, over_budget_ = false;
-  std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+  PartialPace pace_;
 };
 
 }  // namespace
@@ -259,7 +255,7 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   if (!possible) return out;
   out.refusal.clear();
   out.operator_name = scenes.scenes().operator_chosen();
-  for (const LeftOut& item : scenes.scenes().left_out(0)) out.left_out.emplace_back(item.item, item.reason);
+  out.left_out = left_out_pairs(scenes.scenes().left_out(0));
   out.notes = scenes.scenes().notes(0);
   const bool refine = refines(study_case);
   const std::size_t coarse = GridRefinement::coarse_cells(columns, rows, refine);

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <map>
 #include <mutex>
-#include <numbers>
 #include <ricochet/measure/linear_response.hpp>
 #include <set>
 
-#include "runners/execution/orbit_bytes.hpp"
+#include "runners/execution/orbit_checkpoints.hpp"
 #include "runners/execution/orbit_entries.hpp"
 #include "runners/execution/orbit_exponents.hpp"
 #include "runners/execution/orbit_portraits.hpp"
 #include "runners/execution/orbit_rows.hpp"
+#include "runners/execution/partial_pace.hpp"
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/random_states.hpp"
 #include "runners/study/with_parameter.hpp"
@@ -24,65 +24,43 @@ namespace {
 
 constexpr int most_refinements = 40;       // halvings
 constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
-constexpr double partial_interval = 20;    // s
 
-/// What an interrupted case had marched: finished orbits in parts that are written once, those on their way anew.
-class Checkpoints {
+/// Batches of exponents that a killed run had measured, read when they are asked for and forgotten at the end.
+class ExponentCheckpoints {
  public:
-  explicit Checkpoints(const CaseDesk& desk) : desk_(desk) {}
-  MarchedOrbits find() {
-    MarchedOrbits all;
-    if (!desk_.shelf.find) return all;
-    for (std::string bytes = desk_.shelf.find(part(parts_)); !bytes.empty(); bytes = desk_.shelf.find(part(parts_))) {
-      MarchedOrbits some = marched_orbits(bytes);
-      std::move(some.finished.begin(), some.finished.end(), std::back_inserter(all.finished));
-      ++parts_;
-    }
-    if (const std::string bytes = desk_.shelf.find(part(-1)); !bytes.empty())
-      all.running = marched_orbits(bytes).running;
-    return all;
-  }
-  void save(const MarchedOrbits& marched) {
-    if (!desk_.shelf.keep) return;
-    if (!marched.finished.empty()) desk_.shelf.keep(part(parts_++), to_bytes({marched.finished, {}}));
-    desk_.shelf.keep(part(-1), to_bytes({{}, marched.running}));
-  }
-  /// Lets batches of exponents be kept as well.
+  explicit ExponentCheckpoints(const CaseDesk& desk) : desk_(desk) {}
   void serve(ExponentTask& task) {
     if (!desk_.shelf.find || !desk_.shelf.keep) return;
-    const auto key = [this](std::size_t batch) { return fmt::format("exponents/{}/{}", desk_.key, batch); };
-    task.find = [this, key](std::size_t batch) { return desk_.shelf.find(key(batch)); };
-    task.keep = [this, key](std::size_t batch, const std::string& bytes) {
-      desk_.shelf.keep(key(batch), bytes);
-      const std::lock_guard guard(mutex_);
-      batches_.insert(key(batch));
+    task.find = [this](std::size_t batch) {
+      const std::string bytes = desk_.shelf.find(key(batch));
+      if (!bytes.empty()) note(batch);
+      return bytes;
     };
-    for (std::size_t batch = 0; batch < task.orbits.size(); ++batch)
-      if (!task.find(batch).empty()) batches_.insert(key(batch));
+    task.keep = [this](std::size_t batch, const std::string& bytes) {
+      desk_.shelf.keep(key(batch), bytes);
+      note(batch);
+    };
   }
   void forget() {
-    if (!desk_.shelf.keep) return;
-    for (const std::string& batch : batches_) desk_.shelf.keep(batch, "");
-    for (int i = 0; i < parts_; ++i) desk_.shelf.keep(part(i), "");
-    desk_.shelf.keep(part(-1), "");
+    for (const std::size_t batch : kept_) desk_.shelf.keep(key(batch), "");
   }
 
  private:
-  std::string part(int number) const {
-    return fmt::format("orbits/{}/{}", desk_.key, number < 0 ? "now" : std::to_string(number));
+  std::string key(std::size_t batch) const { return fmt::format("exponents/{}/{}", desk_.key, batch); }
+  void note(std::size_t batch) {
+    const std::lock_guard guard(mutex_);
+    kept_.insert(batch);
   }
   const CaseDesk& desk_;
-  int parts_ = 0;
   std::mutex mutex_;
-  std::set<std::string> batches_;
+  std::set<std::size_t> kept_;
 };
 
 // What the march does without; tangents belong to the exponents, where these are asked for.
 std::vector<std::pair<std::string, std::string>> left_out_of(const ForcedScenes& scenes, const StudyCase& study_case) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (const LeftOut& item : scenes.left_out(0))
-    if (item.item != "tangent columns" || study_case.settings.value("exponents", 0) == 0)
-      pairs.emplace_back(item.item, item.reason);
+  auto pairs = left_out_pairs(scenes.left_out(0));
+  if (study_case.settings.value("exponents", 0) > 0)
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == "tangent columns"; });
   return pairs;
 }
 
@@ -114,7 +92,8 @@ class BifurcationRun {
     options.budget = budget_of(case_);
     OrbitScheduler scheduler(scenes_, options);
     scheduler_ = &scheduler;
-    Checkpoints checkpoints(desk_);
+    OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
+    ExponentCheckpoints batches(desk_);
     saved_ = checkpoints.find();
     const auto keep = [&](const MarchedOrbits& marched) {
       checkpoints.save(marched);
@@ -125,8 +104,9 @@ class BifurcationRun {
     scheduler.run(stop_, keep);
     refine(keep);
     record_.run_seconds = scheduler.seconds();
-    finish(checkpoints);
+    finish(batches);
     checkpoints.forget();
+    batches.forget();
     return std::move(record_);
   }
 
@@ -141,19 +121,14 @@ class BifurcationRun {
   void add_value(double value) {
     Value one;
     one.value = value;
-    const auto variant = [&] { return with_parameter(case_, pointer_, value); };
-    const auto needs = [&](bool state) {
-      return std::any_of(starts_.begin(), starts_.end(),
-                         [&](const StartSpec& start) { return (start.kind == StartSpec::state) == state; });
-    };
-    if (needs(false)) one.rest = scenes_.add([&] { return at_rest(variant()); });
-    if (needs(true)) one.state = scenes_.add(variant);
+    if (any_start(starts_, false)) one.rest = scenes_.add(pointer_, value, false);
+    if (any_start(starts_, true)) one.state = scenes_.add(pointer_, value, true);
     one.tasks.assign(starts_.size(), -1);
     known_.push_back(std::move(one));
   }
 
   int scene_of(const Value& value, const StartSpec& start) const {
-    return start.kind == StartSpec::state ? value.state : value.rest;
+    return start.own_state() ? value.state : value.rest;
   }
 
   OrbitTask task_at(const Value& value, const StartSpec& start) const {
@@ -292,7 +267,6 @@ class BifurcationRun {
           if (!scheduler_->finished(task)) continue;
           view.orbit = &scheduler_->orbit(task);
           view.group = scenes_[scene].group;
-          view.scene = scene;
           view.marginal = marginal_[static_cast<std::size_t>(view.group)].sentence;
           view.viscosity = viscosity_[static_cast<std::size_t>(view.group)];
         }
@@ -302,18 +276,14 @@ class BifurcationRun {
   }
 
   void show_partial() {
-    if (!desk_.shelf.show) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (std::chrono::duration<double>(now - shown_).count() < std::max(partial_interval, 20 * showing_)) return;
+    if (!desk_.shelf.show || !pace_.due()) return;
     CaseRecord partial = record_;
     std::vector<OrbitView> all = views();
     classify_all(all);
     write_tables(partial, all);
     partial.status = "done";
     partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
-    desk_.shelf.show(partial);
-    shown_ = std::chrono::steady_clock::now();
-    showing_ = std::chrono::duration<double>(shown_ - now).count();
+    pace_.take([&] { desk_.shelf.show(partial); });
   }
 
   void classify_all(std::vector<OrbitView>& all) const {
@@ -332,7 +302,7 @@ class BifurcationRun {
 
   int exponents() const { return case_.settings.value("exponents", 0); }
 
-  void finish(Checkpoints& checkpoints) {
+  void finish(ExponentCheckpoints& batches) {
     std::vector<OrbitView> all = views();
     ExponentTask task;
     std::vector<std::size_t> places;
@@ -346,7 +316,7 @@ class BifurcationRun {
       for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
       task.count = exponents();
       task.workers = desk_.workers;
-      checkpoints.serve(task);
+      batches.serve(task);
       double seconds = 0;
       const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
       record_.run_seconds += seconds;
@@ -383,13 +353,17 @@ class BifurcationRun {
 
   // Where the periodic motion without contact first touches a stop, from the scheme's own linear response.
   void add_grazing() {
+    ForcedScenes probes(case_, registry_);
+    std::map<int, std::optional<LinearResponse>> responses;  // per group: it does not depend on amplitude and stops
     const auto excess = [&](double value) -> std::optional<double> {
-      ForcedScenes one(case_, registry_);
-      const int scene = one.add([&] { return at_rest(with_parameter(case_, pointer_, value)); });
-      if (!one[scene].refusal.empty() || one.problem(0).points() == 0) return std::nullopt;
-      const auto response = linear_response(one.problem(0), one.plan(0), one.step(0));
-      if (!response) return std::nullopt;
-      return overlap(*response, one[scene].lane);
+      const ForcedScene& scene = probes[probes.add(pointer_, value, false)];
+      if (!scene.refusal.empty() || probes.problem(scene.group).points() == 0) return std::nullopt;
+      const auto [known, added] = responses.try_emplace(scene.group);
+      if (added)
+        known->second =
+            linear_response(probes.problem(scene.group), probes.plan(scene.group), probes.step(scene.group));
+      if (!known->second) return std::nullopt;
+      return overlap(*known->second, scene.lane);
     };
     std::optional<double> before;
     double low = 0;
@@ -431,8 +405,7 @@ class BifurcationRun {
   MarchedOrbits saved_;
   CaseRecord record_;
   bool crowded_ = false;
-  double showing_ = 0;  // s that the last partial report took
-  std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+  PartialPace pace_;
 };
 
 }  // namespace
@@ -445,7 +418,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   ForcedScenes scenes(study_case, registry);
   int representative = -1;
   for (const double value : values) {
-    const int scene = scenes.add([&] { return at_rest(with_parameter(study_case, pointer, value)); });
+    const int scene = scenes.add(pointer, value, false);
     if (scenes[scene].refusal.empty()) {
       representative = scene;
       break;

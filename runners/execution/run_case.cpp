@@ -90,7 +90,7 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.notes = prepared.notes;
   if (!prepared.program) return plan;
   plan.operator_name = operator_name(prepared.program->kind);
-  plan.left_out = left_out_pairs(*prepared.program);
+  plan.left_out = left_out_pairs(prepared.program->left_out);
   plan.predicted_seconds =
       prepared.program->predicted_setup_seconds +
       static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + audit_seconds_per_step);

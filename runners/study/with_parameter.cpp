@@ -207,6 +207,11 @@ std::vector<StartSpec> starts_of(const Json& settings) {
   return starts;
 }
 
+bool any_start(const std::vector<StartSpec>& starts, bool own_state) {
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const StartSpec& start) { return start.own_state() == own_state; });
+}
+
 std::vector<GridAxis> grid_axes(const Json& settings) {
   std::vector<GridAxis> axes;
   for (const Json& axis : settings.at("axes"))

@@ -49,9 +49,13 @@ struct StartSpec {
   int index = 0;           ///< of a random state, from 1; else 0
   std::uint64_t seed = 0;  ///< of the random states; else 0
   std::string name;        ///< as in the tables: "rest", "state", "up", "down", "random-1", …
+  /// From the scene's own initial state; every other start is at rest in the laboratory frame, or random from there.
+  bool own_state() const { return kind == state; }
 };
 /// The starts in the order of the study, random ones one by one.
 std::vector<StartSpec> starts_of(const Json& settings);
+/// Whether some start is of that sort.
+bool any_start(const std::vector<StartSpec>& starts, bool own_state);
 
 /// One axis of a grid of basins.
 struct GridAxis {
