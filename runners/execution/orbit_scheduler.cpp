@@ -38,7 +38,8 @@ struct OrbitScheduler::Shared {
   std::vector<Orbit> fresh;                   // finished since the last checkpoint
   std::vector<std::vector<Orbit>> snapshots;  // per worker, what is on its way
   Clock::time_point last = Clock::now();
-  long long wanted = 0;  // snapshots asked for so far
+  long long wanted = 0;          // snapshots asked for so far
+  std::vector<long long> shown;  // and given, per worker
   double spent = 0;
 };
 
@@ -68,6 +69,12 @@ void OrbitScheduler::restore(MarchedOrbits marched) {
     orbit.lane = tasks_[number].lane;
     waiting_.push_back(std::move(orbit));
   }
+}
+
+// Whether a task goes on from the end of another; one that stopped in its own first period left none.
+bool OrbitScheduler::follows(int number) const {
+  const int after = task(number).after;
+  return after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty();
 }
 
 // An orbit whose start is another's end.
@@ -141,120 +148,131 @@ std::vector<int> OrbitScheduler::take(Shared& shared, int group, int most) {
   return taken;
 }
 
+// Orbits of these tasks, ready to march; those from an initial state march their first period here, unlocked.
+std::vector<Orbit> OrbitScheduler::admit(Shared& shared, std::unique_lock<std::mutex>& lock,
+                                         const std::vector<int>& numbers) {
+  std::vector<Orbit> orbits;
+  std::vector<int> first;
+  for (const int number : numbers)
+    if (follows(number))
+      orbits.push_back(begin(number));
+    else
+      first.push_back(number);
+  if (first.empty()) return orbits;
+  lock.unlock();
+  std::vector<Orbit> started = start(first);
+  lock.lock();
+  for (Orbit& orbit : started) {
+    if (orbit.stage == Orbit::Stage::stopped) {
+      orbit.now = {};
+      finish(shared, std::move(orbit));
+    } else {
+      orbits.push_back(std::move(orbit));
+    }
+  }
+  return orbits;
+}
+
+// What a worker marches next, all of one group: orbits that an interrupted run had on their way, else new ones. Empty
+// when there is nothing for now.
+std::vector<Orbit> OrbitScheduler::next_batch(Shared& shared, int worker, std::unique_lock<std::mutex>& lock) {
+  std::vector<Orbit> orbits;
+  const auto group_of = [&](int number) { return scenes_[task(number).scene].group; };
+  while (!shared.resumed.empty() && static_cast<int>(orbits.size()) < options_.lanes) {
+    if (!orbits.empty() && group_of(shared.resumed.front().task) != group_of(orbits.front().task)) break;
+    orbits.push_back(std::move(shared.resumed.front()));
+    shared.resumed.pop_front();
+  }
+  shared.snapshots[static_cast<std::size_t>(worker)] = orbits;  // resumed ones are not lost before their first period
+  if (!orbits.empty()) return orbits;
+  const int fair = (static_cast<int>(shared.ready.size()) + options_.workers - 1) / options_.workers;
+  const std::vector<int> taken = take(shared, -1, std::clamp(fair, 1, options_.lanes));
+  if (taken.empty()) {
+    shared.changed.wait(lock);
+    return orbits;
+  }
+  return admit(shared, lock, taken);
+}
+
+// Everything new since the last call, and what is on its way.
+MarchedOrbits OrbitScheduler::take_stock(Shared& shared) const {
+  MarchedOrbits marched;
+  marched.finished = std::move(shared.fresh);
+  shared.fresh.clear();
+  for (const auto& snapshot : shared.snapshots)
+    for (const Orbit& orbit : snapshot)
+      if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(orbit);
+  marched.running.insert(marched.running.end(), shared.resumed.begin(), shared.resumed.end());
+  return marched;
+}
+
+// Between two periods of a block: stops everyone where that is asked for, and saves what is due.
+void OrbitScheduler::look_around(Shared& shared, int worker, const SectionMarch& block) {
+  std::vector<Orbit>& snapshot = shared.snapshots[static_cast<std::size_t>(worker)];
+  long long& shown = shared.shown[static_cast<std::size_t>(worker)];
+  const bool spent = shared.spent > options_.budget;
+  const bool due = since(shared.last) > options_.interval;
+  if (due) ++shared.wanted;
+  if (shared.wanted != shown) snapshot = block.running();
+  shown = shared.wanted;
+  over_budget_ = over_budget_ || spent;
+  shared.ended = shared.ended || spent || *shared.stop;
+  if (!due) return;
+  shared.last = Clock::now();
+  (*shared.checkpoint)(take_stock(shared));
+}
+
+// Marches a block of these orbits, and of others that take the places of those that end, until all have ended or the
+// block is more than half empty: what is left is returned, for a narrower one.
+std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, int worker, std::unique_lock<std::mutex>& lock,
+                                               std::vector<Orbit> orbits, double& counted) {
+  const int group = scenes_[task(orbits.front().task).scene].group;
+  int running = static_cast<int>(orbits.size());
+  lock.unlock();
+  const std::vector<LaneSpec> places(static_cast<std::size_t>(lane_width(running)), orbits.front().lane);
+  SectionMarch block(scenes_.program(group, places), options_.section);
+  for (int i = 0; i < running; ++i) block.load(i, std::move(orbits[static_cast<std::size_t>(i)]));
+  lock.lock();
+  while (running > 0 && !shared.ended) {
+    lock.unlock();
+    std::vector<Orbit> ended = block.period();
+    const double now = thread_seconds();
+    lock.lock();
+    shared.spent += now - counted;
+    counted = now;
+    lane_periods_ += running;
+    running -= static_cast<int>(ended.size());
+    for (Orbit& orbit : ended) {
+      if (orbit.stage == Orbit::Stage::stopped) {
+        // What it began with, for a follower; nothing where that was its own initial state.
+        orbit.now = follows(orbit.task) ? begin(orbit.task).now : LaneState{};
+        orbit.entry = {};
+      }
+      finish(shared, std::move(orbit));
+    }
+    if (running < block.places() && !shared.ready.empty()) {
+      std::vector<Orbit> more = admit(shared, lock, take(shared, group, block.places() - running));
+      for (int i = 0; i < block.places() && !more.empty(); ++i) {
+        if (!block.idle(i)) continue;
+        block.load(i, std::move(more.back()));
+        more.pop_back();
+        ++running;
+      }
+    }
+    look_around(shared, worker, block);
+    if (2 * running <= block.places()) break;
+  }
+  std::vector<Orbit> left = block.running();
+  shared.snapshots[static_cast<std::size_t>(worker)] = left;
+  return left;
+}
+
 void OrbitScheduler::work(Shared& shared, int worker) {
-  const double began = thread_seconds();
-  double counted = began;
-  long long shown = 0;  // snapshots given
+  double counted = thread_seconds();
   std::unique_lock lock(shared.mutex);
   while (shared.open > 0 && !shared.ended) {
-    std::vector<Orbit> orbits;
-    int group = -1;
-    while (!shared.resumed.empty() && static_cast<int>(orbits.size()) < options_.lanes) {
-      const int its_group = scenes_[task(shared.resumed.front().task).scene].group;
-      if (group >= 0 && its_group != group) break;
-      group = its_group;
-      orbits.push_back(std::move(shared.resumed.front()));
-      shared.resumed.pop_front();
-    }
-    std::vector<int> taken;
-    shared.snapshots[static_cast<std::size_t>(worker)] = orbits;  // resumed ones are not lost before their first period
-    if (orbits.empty()) {
-      const int fair = (static_cast<int>(shared.ready.size()) + options_.workers - 1) / options_.workers;
-      taken = take(shared, -1, std::clamp(fair, 1, options_.lanes));
-      if (taken.empty()) {
-        shared.changed.wait(lock);
-        continue;
-      }
-      group = scenes_[task(taken.front()).scene].group;
-    }
-    std::optional<SectionMarch> block;
-    const auto admit = [&](const std::vector<int>& numbers) {
-      std::vector<int> first;
-      for (const int number : numbers)
-        if (const int after = task(number).after;
-            after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty())
-          orbits.push_back(begin(number));
-        else
-          first.push_back(number);
-      if (first.empty()) return;
-      lock.unlock();
-      std::vector<Orbit> started = start(first);
-      lock.lock();
-      for (Orbit& orbit : started) {
-        if (orbit.stage == Orbit::Stage::stopped) {
-          orbit.now = {};
-          finish(shared, std::move(orbit));
-        } else {
-          orbits.push_back(std::move(orbit));
-        }
-      }
-    };
-    admit(taken);
-    while (!orbits.empty() && !shared.ended) {
-      const LaneSpec place = orbits.front().lane;
-      lock.unlock();
-      const int width = lane_width(static_cast<int>(orbits.size()));
-      block.emplace(scenes_.program(group, std::vector<LaneSpec>(static_cast<std::size_t>(width), place)),
-                    options_.section);
-      for (std::size_t i = 0; i < orbits.size(); ++i) block->load(static_cast<int>(i), std::move(orbits[i]));
-      orbits.clear();
-      lock.lock();
-      int running = 0;
-      for (int i = 0; i < block->places(); ++i) running += !block->idle(i);
-      bool narrow = false;
-      while (running > 0 && !narrow && !shared.ended) {
-        lock.unlock();
-        std::vector<Orbit> ended = block->period();
-        const double now = thread_seconds();
-        lock.lock();
-        shared.spent += now - counted;
-        counted = now;
-        lane_periods_ += running;
-        running -= static_cast<int>(ended.size());
-        for (Orbit& orbit : ended) {
-          if (orbit.stage == Orbit::Stage::stopped) {
-            // What it began with, for a follower; nothing where that was its own initial state.
-            const int after = task(orbit.task).after;
-            const bool follows = after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty();
-            orbit.now = follows ? begin(orbit.task).now : LaneState{};
-            orbit.entry = {};
-          }
-          finish(shared, std::move(orbit));
-        }
-        if (running < block->places() && !shared.ready.empty()) {
-          admit(take(shared, group, block->places() - running));
-          for (int i = 0; i < block->places() && !orbits.empty(); ++i) {
-            if (!block->idle(i)) continue;
-            block->load(i, std::move(orbits.back()));
-            orbits.pop_back();
-            ++running;
-          }
-        }
-        const bool stopping = *shared.stop || shared.spent > options_.budget;
-        if (since(shared.last) > options_.interval) ++shared.wanted;
-        if (shared.wanted != shown) shared.snapshots[static_cast<std::size_t>(worker)] = block->running();
-        shown = shared.wanted;
-        if (stopping) {
-          over_budget_ = over_budget_ || shared.spent > options_.budget;
-          shared.ended = true;
-        }
-        if (since(shared.last) > options_.interval) {
-          shared.last = Clock::now();
-          MarchedOrbits marched;
-          marched.finished = std::move(shared.fresh);
-          shared.fresh.clear();
-          for (const auto& snapshot : shared.snapshots)
-            for (const Orbit& orbit : snapshot)
-              if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(orbit);
-          marched.running.insert(marched.running.end(), shared.resumed.begin(), shared.resumed.end());
-          (*shared.checkpoint)(marched);
-        }
-        narrow = running > 0 && 2 * running <= block->places();
-      }
-      if (shared.ended && running > 0) shared.snapshots[static_cast<std::size_t>(worker)] = block->running();
-      if (narrow && !shared.ended) orbits = block->running();
-      if (!shared.ended) shared.snapshots[static_cast<std::size_t>(worker)].clear();
-    }
+    std::vector<Orbit> orbits = next_batch(shared, worker, lock);
+    while (!orbits.empty() && !shared.ended) orbits = march_block(shared, worker, lock, std::move(orbits), counted);
   }
 }
 
@@ -263,6 +281,7 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
   shared.stop = &stop;
   shared.checkpoint = &checkpoint;
   shared.snapshots.resize(static_cast<std::size_t>(options_.workers));
+  shared.shown.resize(static_cast<std::size_t>(options_.workers));
   std::vector<bool> on_its_way(tasks_.size(), false);
   for (Orbit& orbit : waiting_) {
     on_its_way[static_cast<std::size_t>(orbit.task)] = true;
@@ -306,13 +325,7 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
     group.wait();
   });
   if (shared.failure) std::rethrow_exception(shared.failure);
-  MarchedOrbits marched;
-  marched.finished = std::move(shared.fresh);
-  for (auto& snapshot : shared.snapshots)
-    for (Orbit& orbit : snapshot)
-      if (!done_[static_cast<std::size_t>(orbit.task)]) marched.running.push_back(std::move(orbit));
-  for (Orbit& orbit : shared.resumed) marched.running.push_back(std::move(orbit));
-  checkpoint(marched);
+  checkpoint(take_stock(shared));
   if (stop) throw Interrupted{};
 }
 

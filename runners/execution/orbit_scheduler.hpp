@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 #include "runners/execution/forced_scenes.hpp"
@@ -60,6 +61,13 @@ class OrbitScheduler {
   struct Shared;
   void work(Shared& shared, int worker);
   std::vector<int> take(Shared& shared, int group, int most);
+  std::vector<Orbit> admit(Shared& shared, std::unique_lock<std::mutex>& lock, const std::vector<int>& numbers);
+  std::vector<Orbit> next_batch(Shared& shared, int worker, std::unique_lock<std::mutex>& lock);
+  std::vector<Orbit> march_block(Shared& shared, int worker, std::unique_lock<std::mutex>& lock,
+                                 std::vector<Orbit> orbits, double& counted);
+  void look_around(Shared& shared, int worker, const SectionMarch& block);
+  MarchedOrbits take_stock(Shared& shared) const;
+  bool follows(int number) const;
   void finish(Shared& shared, Orbit orbit);
   Orbit begin(int number) const;
   std::vector<Orbit> start(const std::vector<int>& numbers);

@@ -441,6 +441,22 @@ class Diagram {
     });
   }
 
+  /// Cells of one colour in a band under the diagram; `data` gives their ends along x and their row.
+  static Json band_series(const std::string& name, const char* tag, const char* colour, size_t grid, size_t axis,
+                          Json data) {
+    return {{"type", "custom"},
+            {"name", name},
+            {"tags", Json::array({tag})},
+            {"xAxisIndex", grid},
+            {"yAxisIndex", axis},
+            {"renderItem", "@cell"},
+            {"encode", {{"x", {0, 1}}, {"y", 2}}},
+            {"clip", true},
+            {"progressive", 0},
+            {"itemStyle", {{"color", colour}}},
+            {"data", std::move(data)}};
+  }
+
   void draw_regimes(const std::vector<Lane>& rows, size_t grid, size_t axis, Json& series) const {
     Json list = Json::array();
     std::set<size_t> present;
@@ -450,17 +466,9 @@ class Diagram {
         if (has_.contains({lane.record->id, group, start_kind(lane.start)})) present.insert(group);
     }
     for (const size_t group : present)
-      series.push_back({{"type", "custom"},
-                        {"name", std::string("regime ") + regime_groups[group].name},
-                        {"tags", {regime_groups[group].name}},
-                        {"xAxisIndex", grid},
-                        {"yAxisIndex", axis},
-                        {"renderItem", "@cell"},
-                        {"encode", {{"x", {0, 1}}, {"y", 2}}},
-                        {"clip", true},
-                        {"progressive", 0},
-                        {"itemStyle", {{"color", regime_groups[group].colour}}},
-                        {"data", {{"sweep", "cells"}, {"lanes", list}, {"group", group}}}});
+      series.push_back(band_series(std::string("regime ") + regime_groups[group].name, regime_groups[group].name,
+                                   regime_groups[group].colour, grid, axis,
+                                   {{"sweep", "cells"}, {"lanes", list}, {"group", group}}));
   }
 
   static void draw_verdicts(const std::vector<VerdictRow>& rows, size_t grid, size_t axis, Json& series) {
@@ -469,17 +477,7 @@ class Diagram {
       for (const VerdictRow& row : rows)
         if (row.verdict == verdict.word) data.push_back({{"value", {row.from, row.to, 0}}, {"text", row.text}});
       if (data.empty()) continue;
-      series.push_back({{"type", "custom"},
-                        {"name", verdict.word},
-                        {"tags", Json::array({verdict.word})},
-                        {"xAxisIndex", grid},
-                        {"yAxisIndex", axis},
-                        {"renderItem", "@cell"},
-                        {"encode", {{"x", {0, 1}}, {"y", 2}}},
-                        {"clip", true},
-                        {"progressive", 0},
-                        {"itemStyle", {{"color", verdict.colour}}},
-                        {"data", std::move(data)}});
+      series.push_back(band_series(verdict.word, verdict.word, verdict.colour, grid, axis, std::move(data)));
     }
   }
 
