@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/engine/energy_scale.hpp>
 #include <ricochet/engine/marcher_state.hpp>
 #include <utility>
 
@@ -19,65 +19,6 @@ constexpr long long check_interval = 16;
 
 // Energy beyond this multiple of the scene's own scale counts as divergence.
 constexpr double divergence_factor = 1e9;
-
-double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
-  if (load.size() == 0 || load.isZero(0)) return 0;
-  QuasiDefinite spd;
-  spd.A = stiffness;
-  BandLdlt ldlt;
-  if (ldlt.factorise(spd)) return 0;
-  Block x(ldlt.rows(), 1, ldlt.half_width());
-  BandStep step;
-  step.solve_rows = ldlt.rows();
-  step.solve_width = ldlt.half_width();
-  step.factor = ldlt.factor();
-  step.z = x.data();
-  Eigen::VectorXd rhs = load;
-  step.b = rhs.data();
-  lane_kernels(1).band_step(step);
-  double energy = 0;
-  for (int i = 0; i < load.size(); ++i) energy += 0.5 * load[i] * x.data()[i];
-  return energy;
-}
-
-// The largest energy that the scene's data mention: initial state, static response to the loads, rest on a stop, clamp
-// speed.
-double energy_scale(const Program& program) {
-  const SemiDiscrete& problem = *program.problem;
-  const QuadraticForm mass = QuadraticForm::of(problem.inertia), stiffness(problem.stiffness);
-  double scale = 0;
-  for (const LaneSpec& lane : program.lanes) {
-    scale = std::max(scale, 0.5 * (stiffness(lane.position.data()) + mass(lane.velocity.data())));
-    const double push = lane.amplitude * problem.support.pulsation * problem.support.pulsation;
-    scale = std::max(scale, push * push * static_energy(problem.stiffness, problem.support_shape));
-    const double speed = lane.amplitude * problem.support.pulsation;
-    scale = std::max(scale, 0.5 * speed * speed * problem.support_shape.lpNorm<1>());
-    for (int i = 0; i < problem.points(); ++i) {
-      const double reach = std::min(std::abs(lane.lower[i]), std::abs(lane.upper[i]));
-      if (!std::isfinite(reach)) continue;
-      const Eigen::VectorXd row = problem.contact.row(i).transpose();
-      const double compliance = 2 * static_energy(problem.stiffness, row);
-      if (compliance > 0) scale = std::max(scale, 0.5 * reach * reach / compliance);
-    }
-  }
-  return scale;
-}
-
-// The largest static energy of the distributed load at evenly spaced times up to t; infinite where nothing holds the
-// structure back, so that no energy is too large.
-double load_scale(const Program& program, double t) {
-  const SemiDiscrete& problem = *program.problem;
-  if (!program.load) return 0;
-  Eigen::VectorXd load = Eigen::VectorXd::Ones(problem.dofs());
-  if (static_energy(problem.stiffness, load) == 0) return infinity;
-  constexpr int looks = 64;
-  double scale = 0;
-  for (int k = 0; k <= (program.load_constant || t == 0 ? 0 : looks); ++k) {
-    problem.load->assemble(t * k / looks, load.data());
-    if (load.allFinite()) scale = std::max(scale, static_energy(problem.stiffness, load));
-  }
-  return scale;
-}
 
 }  // namespace
 
@@ -113,6 +54,9 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     lower_.fill(-infinity);
     upper_.fill(infinity);
   }
+  energy_scale_ = std::make_unique<EnergyScale>(problem);
+  lane_bounds_.resize(program_.lanes.size());
+  if (program_.load) load_bound_ = divergence_factor * energy_scale_->of_load(0, program_.load_constant);
   for (int lane = 0; lane < lanes(); ++lane) {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
     const Eigen::VectorXd q = model.to_model(spec.position), v = model.to_model(spec.velocity);
@@ -121,9 +65,6 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
         blocks_[j].at(i, lane) = program_.plan.initial[j][0] * q[i] + program_.plan.initial[j][1] * v[i];
     place_lane(lane);
   }
-  energy_bound_ = divergence_factor * std::max(energy_scale(program_), load_scale(program_, 0));
-  const bool later = program_.load && !program_.load_constant;
-  if (energy_bound_ == 0 && !later) energy_bound_ = infinity;
   if (program_.load) {
     load_window_ = std::make_unique<LoadWindow>();
     for (auto& entry : load_window_->entries) entry.value.resize(static_cast<std::size_t>(rows));
@@ -484,14 +425,19 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   }
 }
 
-bool Marcher::beyond_bound(double energy) {
-  if (!(energy > energy_bound_)) return false;
+double Marcher::energy_bound(int lane) const {
+  const double bound = std::max(lane_bounds_[static_cast<std::size_t>(lane)], load_bound_);
+  return bound == 0 ? infinity : bound;
+}
+
+bool Marcher::beyond_bound(int lane, double energy) {
   // A load that depends on time may have grown since the start.
-  if (program_.load && !program_.load_constant && time() > bound_known_until_) {
-    bound_known_until_ = 2 * time();
-    energy_bound_ = std::max(energy_bound_, divergence_factor * load_scale(program_, bound_known_until_));
+  const bool looks = program_.load && !program_.load_constant && time() > load_known_until_;
+  if (looks && energy > std::max(lane_bounds_[static_cast<std::size_t>(lane)], load_bound_)) {
+    load_known_until_ = 2 * time();
+    load_bound_ = std::max(load_bound_, divergence_factor * energy_scale_->of_load(load_known_until_, false));
   }
-  return energy > energy_bound_;
+  return energy > energy_bound(lane);
 }
 
 void Marcher::check_lanes() {
@@ -511,9 +457,9 @@ void Marcher::check_lanes() {
       for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
     if (!finite)
       freeze(lane, fmt::format("the state is not finite (lanes are checked every {} steps)", check_interval));
-    else if (beyond_bound(energy))
+    else if (beyond_bound(lane, energy))
       freeze(lane, fmt::format("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", energy,
-                               energy_bound_, divergence_factor));
+                               energy_bound(lane), divergence_factor));
   }
 }
 
@@ -549,9 +495,10 @@ void Marcher::freeze(int lane, const std::string& cause) {
   }
 }
 
-// What a lane's spec says of its surroundings: clamp and stops.
+// What a lane's spec says of its surroundings: clamp and stops, and the energies to expect.
 void Marcher::place_lane(int lane) {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  lane_bounds_[static_cast<std::size_t>(lane)] = divergence_factor * energy_scale_->of_lane(spec);
   amplitude_.at(0, lane) = spec.amplitude;
   cos_phase_.at(0, lane) = std::cos(spec.phase);
   sin_phase_.at(0, lane) = std::sin(spec.phase);

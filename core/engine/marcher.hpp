@@ -8,6 +8,8 @@
 
 namespace ricochet {
 
+class EnergyScale;
+
 /// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
 struct LaneStatus {
   bool running = true;
@@ -113,10 +115,10 @@ class Marcher {
 
   /// Stops a lane now, with its cause (used by audits that see more than the loop does).
   void freeze(int lane, const std::string& cause);
-  /// Energy (J) above which a lane counts as diverged; stated with the cause.
-  double energy_bound() const { return energy_bound_; }
+  /// Energy (J) above which a lane counts as diverged; its own, whoever marches beside it; stated with the cause.
+  double energy_bound(int lane) const;
   /// Whether an energy is beyond it; looks again at a load that depends on time before it says so.
-  bool beyond_bound(double energy);
+  bool beyond_bound(int lane, double energy);
 
  private:
   class StageDelassus;
@@ -162,7 +164,9 @@ class Marcher {
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
   long long step_ = 0;
-  double energy_bound_ = 0, bound_known_until_ = 0;
+  std::unique_ptr<EnergyScale> energy_scale_;
+  std::vector<double> lane_bounds_;
+  double load_bound_ = 0, load_known_until_ = 0;
   double sine_ = 0, cosine_ = 1;
 };
 

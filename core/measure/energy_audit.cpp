@@ -193,9 +193,9 @@ void EnergyAudit::step_done(Marcher& marcher) {
     const double energy = sample.common();
     if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
       marcher.freeze(lane, "the energy is not finite");
-    else if (marcher.beyond_bound(energy))
+    else if (marcher.beyond_bound(lane, energy))
       marcher.freeze(lane,
-                     fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound()));
+                     fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound(lane)));
   }
 }
 

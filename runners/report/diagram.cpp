@@ -198,6 +198,11 @@ class Diagram {
       drawn.notes.push_back(fmt::format("Over all cases, {} below {} 1/s, outside the panel.",
                                         count_text(static_cast<size_t>(below_), "exponent lies", "exponents lie"),
                                         number_text(frame_.low)));
+    if (const size_t rows = lanes(panel).size(); rows > most_lanes)
+      drawn.notes.push_back(
+          fmt::format("{} starts and methods are too many for a band of regimes here: it stands in the "
+                      "views with fewer.",
+                      rows));
     if (frame.own) drawn.notes.push_back("Own vertical scale: its points reach far beyond those of the other charts.");
     chart.views.push_back(std::move(drawn));
     for (const CaseRecord* record : panel.cases)

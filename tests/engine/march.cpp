@@ -77,6 +77,38 @@ TEST_CASE("a lane that diverges is frozen with step, time and cause, and the oth
   CHECK(beam.tip(0) == 0.0);  // nothing that is not finite is left behind
 }
 
+TEST_CASE("the energy beyond which a lane has diverged is its own, whoever marches beside it") {
+  Methods methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}};
+  SceneSpec scene = working_set();
+  scene.support.amplitude = 0.02;
+  const auto with_amplitudes = [&](std::vector<double> amplitudes, double gap) {
+    return marcher(scene, 5, methods, 1e-4, {}, [=](const LaneSpec& lane) {
+      std::vector<LaneSpec> lanes(amplitudes.size(), lane);
+      for (std::size_t k = 0; k < lanes.size(); ++k) {
+        lanes[k].position.setZero();
+        lanes[k].velocity.setZero();
+        lanes[k].amplitude = amplitudes[k];
+        lanes[k].lower.setConstant(-gap);
+        lanes[k].upper.setConstant(gap);
+      }
+      return lanes;
+    });
+  };
+  const double far = std::numeric_limits<double>::infinity();
+  Marcher quiet = with_amplitudes({0.001}, far), loud = with_amplitudes({0.1}, far);
+  Marcher both = with_amplitudes({0.001, 0.1}, far), near = with_amplitudes({0.001}, 1.0);
+  CHECK(both.energy_bound(0) == quiet.energy_bound(0));
+  CHECK(both.energy_bound(1) == loud.energy_bound(0));
+  // Static energies are quadratic in the amplitude; one ulp for each of the three products.
+  CHECK(loud.energy_bound(0) == Approx(1e4 * quiet.energy_bound(0)).epsilon(1e-15));
+  CHECK(near.energy_bound(0) > quiet.energy_bound(0));
+  // A lane that takes another's place brings its own.
+  both.start();
+  quiet.start();
+  both.set_lane(1, quiet.program().lanes[0], quiet.lane_state(0));
+  CHECK(both.energy_bound(1) == quiet.energy_bound(0));
+}
+
 TEST_CASE("central differences hold below the step limit of the consistent mass and fail above") {
   Methods methods{{"consistent"}, {"none"}, {"newmark-dumont-paoli", {{"beta", 0.0}}}};
   const double length = 1.501 / 20;
@@ -98,7 +130,7 @@ TEST_CASE("an observed run stops at the step where its energy passes the bound")
   beam.start(&audit);
   beam.march(5000, &audit);
   CHECK_FALSE(beam.status(0).running);
-  CHECK(audit.energy(0).common() > beam.energy_bound());
+  CHECK(audit.energy(0).common() > beam.energy_bound(0));
   CHECK(std::isfinite(audit.totals(0).last.common()));
 }
 

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/engine/energy_scale.hpp>
+
+namespace ricochet {
+namespace {
+
+// ½ fᵀ K⁻¹ f; 0 without a force or where K has no factor.
+double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
+  if (load.size() == 0 || load.isZero(0)) return 0;
+  QuasiDefinite spd;
+  spd.A = stiffness;
+  BandLdlt ldlt;
+  if (ldlt.factorise(spd)) return 0;
+  Block x(ldlt.rows(), 1, ldlt.half_width());
+  BandStep step;
+  step.solve_rows = ldlt.rows();
+  step.solve_width = ldlt.half_width();
+  step.factor = ldlt.factor();
+  step.z = x.data();
+  Eigen::VectorXd rhs = load;
+  step.b = rhs.data();
+  lane_kernels(1).band_step(step);
+  double energy = 0;
+  for (int i = 0; i < load.size(); ++i) energy += 0.5 * load[i] * x.data()[i];
+  return energy;
+}
+
+}  // namespace
+
+EnergyScale::EnergyScale(const SemiDiscrete& problem)
+    : problem_(&problem), mass_(QuadraticForm::of(problem.inertia)), stiffness_(problem.stiffness) {
+  support_energy_ = static_energy(problem.stiffness, problem.support_shape);
+  support_mass_ = problem.support_shape.lpNorm<1>();
+  for (int i = 0; i < problem.points(); ++i) {
+    const double compliance = 2 * static_energy(problem.stiffness, problem.contact.row(i).transpose());
+    stop_energy_.push_back(compliance > 0 ? 0.5 / compliance : 0);
+  }
+}
+
+double EnergyScale::of_lane(const LaneSpec& lane) const {
+  double scale = 0.5 * (stiffness_(lane.position.data()) + mass_(lane.velocity.data()));
+  const double speed = lane.amplitude * problem_->support.pulsation;
+  const double push = speed * problem_->support.pulsation;
+  scale = std::max({scale, push * push * support_energy_, 0.5 * speed * speed * support_mass_});
+  for (int i = 0; i < problem_->points(); ++i) {
+    const double reach = std::min(std::abs(lane.lower[i]), std::abs(lane.upper[i]));
+    if (std::isfinite(reach)) scale = std::max(scale, reach * reach * stop_energy_[static_cast<std::size_t>(i)]);
+  }
+  return scale;
+}
+
+double EnergyScale::of_load(double t, bool constant) const {
+  if (!problem_->load) return 0;
+  Eigen::VectorXd load = Eigen::VectorXd::Ones(problem_->dofs());
+  if (static_energy(problem_->stiffness, load) == 0) return std::numeric_limits<double>::infinity();
+  constexpr int looks = 64;
+  double scale = 0;
+  for (int k = 0; k <= (constant || t == 0 ? 0 : looks); ++k) {
+    problem_->load->assemble(t * k / looks, load.data());
+    if (load.allFinite()) scale = std::max(scale, static_energy(problem_->stiffness, load));
+  }
+  return scale;
+}
+
+}  // namespace ricochet
