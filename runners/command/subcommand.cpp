@@ -23,9 +23,10 @@ po::options_description described(const Subcommand& command) {
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
-    add("parameter", po::value<double>()->value_name("VALUE"), "value of the study's parameter (required)");
-  if (has("start"))
-    add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv (required)");
+    add("parameter", po::value<double>()->value_name("VALUE"), "value of a bifurcation study's parameter");
+  if (has("start")) add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv");
+  if (has("cell"))
+    add("cell", po::value<std::string>()->value_name("X,Y"), "cell of a study of basins, as in cells.csv");
   if (has("periods"))
     add("periods", po::value<int>()->value_name("N"), "forcing periods that are marched (default: 8)");
   if (has("samples")) add("samples", po::value<int>()->value_name("N"), "samples per period (default: 200)");
@@ -105,6 +106,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.samples = count_of(values, "samples", most_samples);
   if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
   if (values.count("start")) arguments.start = values["start"].as<std::string>();
+  if (values.count("cell")) arguments.cell = values["cell"].as<std::string>();
   if (values.count("plugin"))
     for (const std::string& file : values["plugin"].as<std::vector<std::string>>())
       arguments.plugins.emplace_back(file);

@@ -30,6 +30,7 @@ struct Arguments {
   bool fresh = false;                            ///< --fresh
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
+  std::string cell;                              ///< --cell; "": none given
   int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
   bool help = false;
 };
@@ -40,7 +41,7 @@ struct Subcommand {
   std::string usage;  ///< operands and options as the help shows them
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
-  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, parameter, start, periods, samples
+  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, parameter, start, cell, periods, samples
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "runners/execution/forced_scenes.hpp"
+#include "runners/execution/cell_scenes.hpp"
 #include "runners/execution/orbit_rows.hpp"
+#include "runners/execution/orbit_scheduler.hpp"
 #include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
@@ -34,21 +35,16 @@ class PointScenes {
   ForcedScenes scenes_;
 };
 
-}  // namespace
-
-void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
-                 const std::function<void(const PointSample&)>& use) {
-  PointScenes made(study_case, registry);
-  const ForcedScene& scene = made.scenes()[made.add(task.parameter, task.start)];
-  if (!scene.refusal.empty()) throw InputError("", scene.refusal);
-  const SectionPlan plan = section_plan(study_case, made.scenes());
-  Marcher marcher(made.scenes().program(scene.group, {scene.lane}));
-  const int whole = plan.steps_per_period, origin = plan.strobe + 1, samples = std::min(task.samples, whole);
+// Marches a lane on from one step after a strobe, sample by sample.
+void march_on(Program program, const LaneSpec& lane, const LaneState& entry, const SectionPlan& plan, SampleCount count,
+              const std::function<void(const PointSample&)>& use) {
+  Marcher marcher(std::move(program));
+  const int whole = plan.steps_per_period, origin = plan.strobe + 1, samples = std::min(count.samples, whole);
   const double h = marcher.program().h;
   marcher.set_clock(origin);
-  marcher.set_lane(0, scene.lane, task.entry);
+  marcher.set_lane(0, lane, entry);
   double before = 0, at = marcher.tip(0);
-  for (int period = 0; period < task.periods; ++period) {
+  for (int period = 0; period < count.periods; ++period) {
     int taken = 0;  // of this period
     // The clock of the march is turned back once per period, as in the run.
     for (int step_of_period = 1; step_of_period <= whole; ++step_of_period) {
@@ -66,6 +62,38 @@ void march_point(const StudyCase& study_case, const Registry& registry, const Po
     }
     marcher.set_clock(origin);
   }
+}
+
+}  // namespace
+
+void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
+                 const std::function<void(const PointSample&)>& use) {
+  PointScenes made(study_case, registry);
+  const ForcedScene& scene = made.scenes()[made.add(task.parameter, task.start)];
+  if (!scene.refusal.empty()) throw InputError("", scene.refusal);
+  march_on(made.scenes().program(scene.group, {scene.lane}), scene.lane, task.entry,
+           section_plan(study_case, made.scenes()), task.count, use);
+}
+
+CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
+                   const std::function<void(const PointSample&)>& use) {
+  CellScenes made(study_case, registry);
+  made.begin();
+  CellScenes::Prepared prepared = made.prepare(cell.column, cell.row);
+  if (!prepared.refusal.empty()) return refused_end(prepared.refusal);
+  const ForcedScenes& scenes = made.scenes();
+  ScheduleOptions options;
+  options.section = section_plan(study_case, scenes);
+  OrbitScheduler scheduler(scenes, options);
+  const int number = scheduler.add(std::move(prepared.task));
+  const std::atomic<bool> stop = false;
+  scheduler.run(stop, [](const MarchedOrbits&) {});
+  const Orbit& orbit = scheduler.orbit(number);
+  const CellEnd end = cell_end(orbit, options.section);
+  if (end.status == "done")
+    march_on(scenes.program(scenes[scheduler.task(number).scene].group, {orbit.lane}), orbit.lane, orbit.entry,
+             options.section, count, use);
+  return end;
 }
 
 }  // namespace ricochet

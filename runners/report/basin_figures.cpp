@@ -26,6 +26,14 @@ class BasinImages {
  public:
   BasinImages(const CaseView& view, const Basins& basins, CurveData& curves) : view_(view), basins_(basins) {
     for (const BasinGrid& grid : basins.grids) curves.put(grid.record->id + "/cells", "u8", grid.cells);
+    Json labels = Json::array(), grids = Json::array();
+    for (const BasinLabel& label : basins.labels) labels.push_back({label.name, label.colour});
+    for (const BasinGrid& grid : basins.grids) grids.push_back({grid.record->id, name(grid)});
+    cells_ = {{"study", view.results().study.value("name", "")},
+              {"xs", basins.xs},
+              {"ys", basins.ys},
+              {"labels", std::move(labels)},
+              {"grids", std::move(grids)}};
   }
 
   Figure make() const {
@@ -37,7 +45,7 @@ class BasinImages {
         fmt::format("{} × {} cells: the attractor that each ends in.", basins_.xs.size(), basins_.ys.size());
     if (compares)
       figure.caption += fmt::format(" Difference: cells that end elsewhere than with {}.", name(basins_.grids.front()));
-    figure.caption += " White: not known yet.";
+    figure.caption += " White: not known yet. Click a cell for the command that marches it.";
     for (const BasinGrid& grid : basins_.grids) {
       Chart chart;
       chart.title = name(grid) + (is_partial(*grid.record) ? " (partial)" : "");
@@ -84,6 +92,7 @@ class BasinImages {
     }
     out.option = base_option(std::move(across), std::move(up), false, true);
     out.option["tooltip"]["formatter"] = "@cell-tooltip";
+    out.option["cells"] = cells_;
     return out;
   }
 
@@ -108,12 +117,10 @@ class BasinImages {
 
   ChartView labels_view(const BasinGrid& grid) const {
     ChartView out = frame();
-    Json names = Json::array();
-    for (const BasinLabel& label : basins_.labels) names.push_back(label.name);
     for (size_t k = 0; k < basins_.labels.size(); ++k)
       if (std::find(grid.cells.begin(), grid.cells.end(), k) != grid.cells.end())
-        out.option["series"].push_back(image(basins_.labels[k].name, basins_.labels[k].colour,
-                                             {{"case", grid.record->id}, {"label", k}, {"names", names}}));
+        out.option["series"].push_back(
+            image(basins_.labels[k].name, basins_.labels[k].colour, {{"case", grid.record->id}, {"label", k}}));
     return out;
   }
 
@@ -124,21 +131,16 @@ class BasinImages {
     const auto decided = [&](std::uint8_t cell) { return cell != BasinGrid::absent && basins_.labels[cell].decided; };
     for (size_t i = 0; i < grid.cells.size(); ++i)
       ++counts[!decided(grid.cells[i]) || !decided(first.cells[i]) ? 2 : grid.cells[i] == first.cells[i] ? 1 : 0];
-    Json undecided = Json::array(), names = Json::array();
-    for (size_t k = 0; k < basins_.labels.size(); ++k) {
-      names.push_back(basins_.labels[k].name);
+    Json undecided = Json::array();
+    for (size_t k = 0; k < basins_.labels.size(); ++k)
       if (!basins_.labels[k].decided) undecided.push_back(k);
-    }
     const std::pair<const char*, const char*> kinds[] = {
         {"differs", differs_colour}, {"the same", same_colour}, {"not decided", unknown_colour}};
     for (int k = 0; k < 3; ++k)
       if (counts[k] > 0)
-        out.option["series"].push_back(image(kinds[k].first, kinds[k].second,
-                                             {{"case", grid.record->id},
-                                              {"other", first.record->id},
-                                              {"differs", k},
-                                              {"undecided", undecided},
-                                              {"names", names}}));
+        out.option["series"].push_back(
+            image(kinds[k].first, kinds[k].second,
+                  {{"case", grid.record->id}, {"other", first.record->id}, {"differs", k}, {"undecided", undecided}}));
     const size_t both = counts[0] + counts[1];
     if (&grid == &first)
       out.notes.push_back("This is what the others are compared with.");
@@ -151,6 +153,7 @@ class BasinImages {
 
   const CaseView& view_;
   const Basins& basins_;
+  Json cells_;  // what a cell is, for tooltips and clicks: axes, labels, cases
 };
 
 }  // namespace

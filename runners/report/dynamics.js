@@ -99,6 +99,7 @@ const ricochetDynamics = (function () {
     const kept = [], grids = new Map();
     view.sources = [];
     view.bySeries = [];
+    delete option.cells;  // ours, not the library's
     for (const series of option.series) {
       if (series.symbol === "triangle-down") Object.assign(series, { symbol: "triangle", symbolRotate: 180 });
       const reference = series.data;
@@ -270,18 +271,28 @@ const ricochetDynamics = (function () {
   }
   function leave() { if (tip) tip.remove(); tip = null; }
 
+  // The cell of a grid of basins at a place of its image.
+  function cellAt(view, chart, at) {
+    const about = view.option.cells, image = about && view.sources.find((source) => source.reference.sweep === "image");
+    if (!image) return null;
+    const place = chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, at), b = image.reference.bounds, columns = about.xs.length, rows = about.ys.length;
+    const column = Math.floor((place[0] - b[0]) / (b[1] - b[0]) * columns), row = Math.floor((place[1] - b[2]) / (b[3] - b[2]) * rows);
+    return column < 0 || row < 0 || column >= columns || row >= rows ? null : { id: image.reference.case, column, row };
+  }
+  // What it ends in: name and colour.
+  function endOf(about, id, place) {
+    return about.labels[block(id, "cells")[place.row * about.xs.length + place.column]] || ["not known yet", "#fff"];
+  }
+  const cellWords = (view, place) => [view.x[0] + " = " + view.option.cells.xs[place.column] + unitText(view.x), view.y[0] + " = " + view.option.cells.ys[place.row] + unitText(view.y)];
   function cellTooltip(view) {
     return (given) => {
       const p = Array.isArray(given) ? given[0] : given, source = view.bySeries && p && view.bySeries[p.seriesIndex];
       const mouse = view.mouse, reference = source && source.reference;
       if (!reference || !mouse) return p && p.value ? page.escapeText(view.x[0]) + " = " + page.number(p.value[0], 6) : "";
-      const at = mouse.chart.convertFromPixel({ xAxisIndex: 0, yAxisIndex: 0 }, mouse.at), b = reference.bounds;
-      const column = Math.floor((at[0] - b[0]) / (b[1] - b[0]) * reference.columns), row = Math.floor((at[1] - b[2]) / (b[3] - b[2]) * reference.rows);
-      if (column < 0 || row < 0 || column >= reference.columns || row >= reference.rows) return "";
-      const ends = (id) => { const k = block(id, "cells")[row * reference.columns + column]; return k === 255 ? "not known yet" : reference.names[k]; };
-      const middle = (k, low, high, count) => low + (k + 0.5) * (high - low) / count;
-      return "<div>" + page.escapeText(view.x[0]) + " = " + page.number(middle(column, b[0], b[1], reference.columns), 6) + "<br>" + page.escapeText(view.y[0]) + " = " + page.number(middle(row, b[2], b[3], reference.rows), 6) + "</div>" +
-        '<div class="tip-row">' + page.escapeText(ends(reference.case)) + "</div>" + (reference.other && reference.other !== reference.case ? '<div class="fine">the other: ' + page.escapeText(ends(reference.other)) + "</div>" : "");
+      const place = cellAt(view, mouse.chart, mouse.at), about = view.option.cells;
+      if (!place) return "";
+      return "<div>" + cellWords(view, place).map(page.escapeText).join("<br>") + "</div>" + '<div class="tip-row">' + page.escapeText(endOf(about, reference.case, place)[0]) + "</div>" +
+        (reference.other && reference.other !== reference.case ? '<div class="fine">the other: ' + page.escapeText(endOf(about, reference.other, place)[0]) + "</div>" : "") + '<div class="fine">click: its command</div>';
     };
   }
 
@@ -289,6 +300,7 @@ const ricochetDynamics = (function () {
   function pick(chart, view, option, hidden, at, pointsOnly) {
     const grids = [].concat(option.grid), grid = grids.findIndex((g, k) => chart.containPixel({ gridIndex: k }, at));
     if (grid < 0) return null;
+    if (view.option.cells) return cellAt(view, chart, at);
     let best = null, nearest = pointsOnly ? 7 : 14;
     view.sources.forEach((source) => {
       if (!source.orbits || source.grid !== grid || source.tags.some((tag) => hidden.has(tag))) return;
@@ -319,14 +331,14 @@ const ricochetDynamics = (function () {
 
   // ---- the side panel -----------------------------------------------------------------------------------------------
   let panel = null, charts = [], shown = null;
-  function folder() {
-    if (location.protocol !== "file:") return "results/" + data.study;
+  function folder(study) {
+    if (location.protocol !== "file:") return "results/" + study;
     return decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/";
   }
   const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
   function command(id, o) {
     const one = orbitsOf(id);
-    return "ricochet point " + quoted(folder()) + " " + quoted(id) + " --parameter " + one.columns.parameter[o] + " --start " + quoted(String(cell(one, "start", o)));
+    return "ricochet point " + quoted(folder(data.study)) + " " + quoted(id) + " --parameter " + one.columns.parameter[o] + " --start " + quoted(String(cell(one, "start", o)));
   }
   function slice(id, table, names, o) {
     const orbit = block(id, table + "/orbit"), out = [];
@@ -368,29 +380,40 @@ const ricochetDynamics = (function () {
       dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true), series });
     charts.push(chart);
   }
-  function open(id, o) {
+  // An empty panel under a title; `keys` stand beside it.
+  function openPanel(label, colour, words, keys) {
     close();
-    const one = orbitsOf(id), colour = data.groups[one.group[o]][1];
-    shown = { id, orbit: o };
     panel = element("aside", "orbit");
-    panel.setAttribute("aria-label", "The chosen orbit");
+    panel.setAttribute("aria-label", label);
     panel.tabIndex = -1;
-    const head = element("div", "orbit-head"), title = element("h3", "", data.parameter[0] + " = " + one.columns.parameter[o] + unitText(data.parameter));
-    const swatch = element("span", "swatch");
+    const head = element("div", "orbit-head"), title = element("h3", "", words), swatch = element("span", "swatch"), beside = element("span", "orbit-keys");
     swatch.style.background = colour;
     title.prepend(swatch);
-    head.appendChild(title);
-    const keys = element("span", "orbit-keys");
-    for (const [text, label, step] of [["‹", "previous value", -1], ["›", "next value", 1]]) {
+    for (const key of keys) beside.appendChild(key);
+    beside.appendChild(button("×", "close", close));
+    head.append(title, beside);
+    panel.appendChild(head);
+    document.body.appendChild(panel);
+  }
+  function show(view, found) { found.column === undefined ? open(found.id, found.orbit) : openCell(view, found); }
+  function openCell(view, place) {
+    const about = view.option.cells, own = endOf(about, place.id, place), words = cellWords(view, place);
+    openPanel("The chosen cell", own[1], words[0] + ", " + words[1], []);
+    shown = place;
+    for (const [id, name] of about.grids) {
+      panel.appendChild(element("p", "fine", name + ": " + endOf(about, id, place)[0] + (id === place.id ? ". The same cell again:" : "")));
+      if (id === place.id) panel.appendChild(element("pre", "", "ricochet point " + quoted(folder(about.study)) + " " + quoted(id) + " --cell=" + about.xs[place.column] + "," + about.ys[place.row]));
+    }
+  }
+  function open(id, o) {
+    const one = orbitsOf(id), colour = data.groups[one.group[o]][1];
+    openPanel("The chosen orbit", colour, data.parameter[0] + " = " + one.columns.parameter[o] + unitText(data.parameter), [["‹", "previous value", -1], ["›", "next value", 1]].map(([text, label, step]) => {
       const next = neighbour(id, o, step), b = button(text, label, () => { open(id, next); panel.focus(); });
       b.disabled = next === undefined;
-      keys.appendChild(b);
-    }
-    keys.appendChild(button("×", "close", close));
-    head.appendChild(keys);
-    panel.appendChild(head);
+      return b;
+    }));
+    shown = { id, orbit: o };
     panel.appendChild(element("p", "fine", (one.label ? one.label + " · " : "") + "start " + cell(one, "start", o) + " · " + regime(one, o) + (one.partial ? " · partial: this case is still being worked on" : "")));
-    document.body.appendChild(panel);
     const motion = slice(id, "portrait", ["u", "v", "t"], o), section = slice(id, "points", ["u", "v"], o);
     const line = { type: "line", symbol: "none", color: colour, lineStyle: { color: colour, width: 1.3 } }, dots = { type: "scatter", symbolSize: 5, z: 3, color: "#111", itemStyle: { color: "#111" }, data: section };
     if (motion.length || section.length) plot("tip displacement (m)", "tip velocity (m/s)", (motion.length ? [Object.assign({ data: motion.map((r) => [r[0], r[1]]) }, line)] : []).concat(section.length ? [dots] : []), true);
@@ -411,5 +434,5 @@ const ricochetDynamics = (function () {
   }
   document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
 
-  return { start, dress, hover, leave, tooltip, drawCell, drawImage, cellTooltip, pick, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
+  return { start, dress, hover, leave, tooltip, drawCell, drawImage, cellTooltip, pick, show, open, close, panel: () => panel, shown: () => shown, command, cases: () => (data ? data.cases : null) };
 })();

@@ -163,7 +163,7 @@
       const view = this.viewOf(slot);
       if (!view.sources || !view.sources.length) return;
       const found = ricochetDynamics.pick(slot.chart, view, slot.drawn, this.hidden, at);
-      if (found) ricochetDynamics.open(found.id, found.orbit);
+      if (found) ricochetDynamics.show(view, found);
     }
     applying(action) { this.busy = true; try { action(); } finally { this.busy = false; } }
     follow(from, event) {
@@ -360,6 +360,16 @@
     out.closed = !ricochetDynamics.panel();
     return out;
   }
+  // A click in an image of basins opens the cell that lies there.
+  function checkCell(figure, slot, view) {
+    const about = view.option.cells, column = about.xs.length >> 1, row = about.ys.length >> 2;
+    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [about.xs[column], about.ys[row]]));
+    const panel = ricochetDynamics.panel(), shown = ricochetDynamics.shown();
+    const out = { opened: Boolean(panel), cell: shown ? shown.column === column && shown.row === row : false, command: panel ? panel.querySelector("pre").textContent : "", lines: panel ? all("p", panel).length : 0,
+      wanted: about.xs[column] + "," + about.ys[row] };
+    if (location.hash !== "#selfcheck-panel") ricochetDynamics.close();
+    return out;
+  }
   function selfcheck() {
     const result = { figures: [], table: null, errors };
     for (const figure of figures) {
@@ -409,6 +419,7 @@
       }
       const view = first && figure.viewOf(first), points = view && view.sources && view.sources.findIndex((s) => s.values && s.reference.sweep === "points" && s.values.length);
       if (points !== undefined && points !== null && points >= 0) report.panel = checkPanel(figure, first, view, points);
+      if (view && view.option.cells) report.cell = checkCell(figure, first, view);
       result.figures.push(report);
     }
     const table = document.getElementById("cases");

@@ -1,6 +1,7 @@
 // `ricochet point`: an orbit of a stored diagram, asked for from a shell.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -82,6 +83,7 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
       {"there " + id + " --start down", "expected --parameter VALUE and --start NAME"},
       {"there " + id + " --parameter one --start down", "expected a number"},
       {"there " + id + " --parameter 0.2 --start down --samples 0", "outside [1, "},
+      {"there " + id + " --cell 0.2,1", "kind bifurcation; expected --parameter VALUE"},
   };
   for (const auto& [words, part] : wrong) {
     INFO(words);
@@ -91,4 +93,63 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
     CHECK_THAT(refused.err, Contains(part));
   }
   CHECK(say(here, "point nowhere " + id + " --parameter 0.2 --start down").code == 5);
+}
+
+TEST_CASE("A cell of a grid is marched as its run did, or the nearest cells are told") {
+  const ScratchFolder here;
+  std::ofstream(here / "grid.json") << R"({
+    "name": "grid", "kind": "basins",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.3,
+                            "force": {"amplitude": 1, "pulsation": 2.6}},
+              "stops": {"upper": 0.2, "at": "tip"}, "initial": {"displacement": 0, "velocity": 0}},
+    "methods": {"mass": "consistent", "contact": "signorini",
+                "time": {"name": "newmark-dumont-paoli", "restitution": 0.3}},
+    "axes": [{"pointer": "/scene/initial/displacement", "from": -1, "to": 0.1, "count": 12},
+             {"pointer": "/scene/initial/velocity", "from": -1, "to": 1, "count": 9}],
+    "steps_per_period": 64, "transient": {"periods": 60, "at_most": 160}, "keep": 32, "refine": true
+  })";
+  const Said run = say(here, "run grid.json --out there --jobs 1");
+  INFO(run.out << run.err);
+  REQUIRE(run.code == 0);
+  std::ifstream cells(here / "there" / "cells.csv");
+  std::string line;
+  std::getline(cells, line);
+  int x = 0, marched = 0;
+  for (int i = 0; i < 40; ++i) {
+    if (field(line, i) == "x" && x == 0) x = i;
+    if (field(line, i) == "marched" && marched == 0) marched = i;
+  }
+  std::string id;
+  int compared = 0, filled = 0;
+  while (std::getline(cells, line)) {
+    id = field(line, 0);
+    const bool alone = field(line, marched) == "true";
+    if ((alone ? compared : filled) == 3) continue;
+    const Said point = say(here, "point there " + id + " --cell=" + field(line, x) + "," + field(line, x + 1) +
+                                     " --periods 2 --samples 16");
+    INFO(line << "\n" << point.err);
+    CHECK(point.code == 0);
+    CHECK(std::count(point.out.begin(), point.out.end(), '\n') == 33);
+    const std::string period = field(line, x + 3);
+    CHECK_THAT(point.err, Contains(field(line, x + 2) + " " + period));
+    CHECK_THAT(point.err,
+               Contains(alone ? period + " of " + period + " strobes as stored" : "the run filled this cell"));
+    ++(alone ? compared : filled);
+  }
+  CHECK(compared == 3);
+  CHECK(filled == 3);
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"there " + id + " --cell=0.05,0", "/scene/initial/displacement 0.05; the nearest values are"},
+      {"there " + id + " --cell 0.1", "expected two numbers X,Y"},
+      {"there " + id + " --cell 0.1,zero", "expected two numbers X,Y"},
+      {"there " + id, "kind basins; expected --cell X,Y"},
+      {"there " + id + " --parameter 0.2 --start down", "kind basins; expected --cell X,Y"},
+  };
+  for (const auto& [words, part] : wrong) {
+    INFO(words);
+    const Said refused = say(here, "point " + words);
+    CHECK(refused.code == 2);
+    CHECK(refused.out.empty());
+    CHECK_THAT(refused.err, Contains(part));
+  }
 }

@@ -51,7 +51,7 @@ TEST_CASE("A point is marched with the bits of its diagram") {
         if (points.columns[0][i] == value && points.columns[1][i] == static_cast<double>(s)) rows.push_back(i);
       REQUIRE(rows.size() == 16);
       long long strobes = 0, samples = 0;
-      march_point(one, registry, {value, starts[s], *entry, 16, 7}, [&](const PointSample& sample) {
+      march_point(one, registry, {value, starts[s], *entry, {16, 7}}, [&](const PointSample& sample) {
         ++samples;
         if (sample.strobe < 0) return;
         CHECK(sample.strobe == strobes);

@@ -130,13 +130,20 @@ TEST_CASE("a diagram of 265200 stored points is drawn, and a click on a point op
   }
 }
 
-TEST_CASE("images of basins are drawn, their difference too", "[report][browser]") {
+TEST_CASE("images of basins are drawn, their difference too, and a click opens a cell", "[report][browser]") {
   if (without_browser()) return;
   const std::string charts = library();
   REQUIRE(!charts.empty());
   const StudyResults results = synthetic::basins();
-  require_everything_works(check_in_browser("basins", report::render_page(results, charts, "6"), count_charts(results)),
-                           results);
+  const auto said = check_in_browser("basins", report::render_page(results, charts, "6"), count_charts(results));
+  require_everything_works(said, results);
+  const auto& cell = said.at("figures").at(0).at("cell");
+  CHECK(cell.at("opened") == true);
+  CHECK(cell.at("cell") == true);
+  CHECK(cell.at("lines") == 2);  // one per case
+  const std::string command = cell.at("command");
+  CHECK(command.find("ricochet point ") == 0);
+  CHECK(command.find(" --cell=" + cell.at("wanted").get<std::string>()) != std::string::npos);
 }
 
 TEST_CASE("the tables alone work in a browser", "[report][browser]") {
