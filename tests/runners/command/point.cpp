@@ -34,6 +34,17 @@ std::string field(const std::string& line, int number) {
   return one;
 }
 
+/// Words after `ricochet point` that are wrong, and a part of what is said of them.
+void check_refused(const ScratchFolder& here, const std::vector<std::pair<std::string, std::string>>& wrong) {
+  for (const auto& [words, part] : wrong) {
+    INFO(words);
+    const Said refused = say(here, "point " + words);
+    CHECK(refused.code == 2);
+    CHECK(refused.out.empty());
+    CHECK_THAT(refused.err, Contains(part));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("A point of a diagram is printed as it was stored, or the nearest names are told") {
@@ -85,13 +96,7 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
       {"there " + id + " --parameter 0.2 --start down --samples 0", "outside [1, "},
       {"there " + id + " --cell 0.2,1", "kind bifurcation; expected --parameter VALUE"},
   };
-  for (const auto& [words, part] : wrong) {
-    INFO(words);
-    const Said refused = say(here, "point " + words);
-    CHECK(refused.code == 2);
-    CHECK(refused.out.empty());
-    CHECK_THAT(refused.err, Contains(part));
-  }
+  check_refused(here, wrong);
   CHECK(say(here, "point nowhere " + id + " --parameter 0.2 --start down").code == 5);
 }
 
@@ -145,11 +150,5 @@ TEST_CASE("A cell of a grid is marched as its run did, or the nearest cells are 
       {"there " + id, "kind basins; expected --cell X,Y"},
       {"there " + id + " --parameter 0.2 --start down", "kind basins; expected --cell X,Y"},
   };
-  for (const auto& [words, part] : wrong) {
-    INFO(words);
-    const Said refused = say(here, "point " + words);
-    CHECK(refused.code == 2);
-    CHECK(refused.out.empty());
-    CHECK_THAT(refused.err, Contains(part));
-  }
+  check_refused(here, wrong);
 }
