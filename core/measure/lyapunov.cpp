@@ -90,7 +90,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
     found[lane].rates.resize(static_cast<std::size_t>(count));
   }
   ImpactJump jump(marcher);
-  StepObserver* observer = jump.needed() ? &jump : nullptr;
+  StepObserver* observer = count > 0 && jump.needed() ? &jump : nullptr;
   for (int n = -plan.discard; n < plan.periods && marcher.any_running(); ++n) {
     marcher.march(plan.steps_per_period - 1, observer);
     std::vector<std::vector<LaneState>> before(states.size());
@@ -105,6 +105,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
         found[lane].cause = status.cause;
         continue;
       }
+      if (plan.keep_orbit) found[lane].orbit.push_back(marcher.lane_state(static_cast<int>(lane)));
       fetch(static_cast<int>(lane));
       if (plan.without_sawtooth)
         for (std::size_t k = 0; k < columns[lane].size(); ++k) {
@@ -122,7 +123,8 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
   return found;
 }
 
-std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states, const LyapunovPlan& plan,
+std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states,
+                                      const std::vector<LyapunovRates>& orbits, const LyapunovPlan& plan,
                                       double offset) {
   Marcher marcher(std::move(program));
   const int origin = plan.strobe + 1;
@@ -134,12 +136,10 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
   const auto place_twin = [&](std::size_t i, std::vector<LaneState>& direction, const LaneState& orbit) {
     LaneState twin = orbit;
     add(twin, offset, direction.front());
-    const int lane = static_cast<int>(2 * i) + 1;
-    marcher.set_lane(lane, LaneSpec(marcher.program().lanes[static_cast<std::size_t>(lane)]), twin);
+    marcher.set_lane(static_cast<int>(i), LaneSpec(marcher.program().lanes[i]), twin);
   };
   for (std::size_t i = 0; i < states.size(); ++i) {
     std::mt19937_64 random(plan.seed);
-    marcher.set_lane(static_cast<int>(2 * i), LaneSpec(marcher.program().lanes[2 * i]), states[i]);
     std::vector<LaneState> direction{random_column(states[i], random)};
     orthonormalise(direction, metric, growth);
     place_twin(i, direction, states[i]);
@@ -148,12 +148,17 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
   for (int n = -plan.discard; n < plan.periods && marcher.any_running(); ++n) {
     marcher.march(plan.steps_per_period);
     marcher.set_clock(origin);
+    const auto done = static_cast<std::size_t>(n + plan.discard);
     for (std::size_t i = 0; i < states.size(); ++i) {
-      for (const int lane : {static_cast<int>(2 * i), static_cast<int>(2 * i) + 1})
-        if (!marcher.status(lane).running) found[i].cause = marcher.status(lane).cause;
       if (!found[i].cause.empty()) continue;
-      const LaneState orbit = marcher.lane_state(static_cast<int>(2 * i));
-      std::vector<LaneState> direction{marcher.lane_state(static_cast<int>(2 * i) + 1)};
+      found[i].cause = marcher.status(static_cast<int>(i)).cause;
+      if (done >= orbits[i].orbit.size()) found[i].cause = orbits[i].cause;
+      if (!found[i].cause.empty()) {
+        marcher.freeze(static_cast<int>(i), found[i].cause);
+        continue;
+      }
+      const LaneState& orbit = orbits[i].orbit.at(done);
+      std::vector<LaneState> direction{marcher.lane_state(static_cast<int>(i))};
       add(direction.front(), -1, orbit);
       orthonormalise(direction, metric, growth);
       if (!std::isfinite(growth[0])) {

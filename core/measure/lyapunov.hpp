@@ -17,6 +17,7 @@ struct LyapunovPlan {
   /// finds that root on the kernel of the mass, where it would hide what is physical.
   bool without_sawtooth = false;
   std::uint64_t seed = 1;
+  bool keep_orbit = false;  ///< whether LyapunovRates::orbit is wanted
 };
 
 /// Growth of the tangent columns of one lane.
@@ -24,6 +25,7 @@ struct LyapunovRates {
   std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
   std::string cause;                       ///< of a lane that stopped; "" otherwise
   int jumps = 0;                           ///< impacts with inertia whose jump was applied
+  std::vector<LaneState> orbit;            ///< of the lane itself after each period, discarded ones first
 };
 
 /// Lyapunov exponents along the lanes of a program that has tangent columns: from `states` (one step after a strobe)
@@ -35,9 +37,11 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
                                           const LyapunovPlan& plan);
 
 /// The same growth measured with a twin: a second trajectory `offset` metres away (in the norm above), brought back to
-/// that distance once per period. Lanes 2i and 2i+1 of the program are an orbit and its twin; `states` are those of the
-/// orbits.
-std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states, const LyapunovPlan& plan,
+/// that distance once per period. The lanes of the program are the twins; `states` are those of the orbits, and
+/// `orbits[i].orbit` where orbit i went from there (lyapunov_rates() with keep_orbit; without tangent columns it does
+/// nothing else).
+std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states,
+                                      const std::vector<LyapunovRates>& orbits, const LyapunovPlan& plan,
                                       double offset);
 
 }  // namespace ricochet

@@ -122,16 +122,17 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   const auto measure = [&](const Batch& batch) {
     LyapunovPlan one = base;
     one.without_sawtooth = task.sawtooth[static_cast<std::size_t>(batch.group)];
-    std::vector<LaneSpec> lanes, twins;
+    std::vector<LaneSpec> lanes;
     std::vector<LaneState> states;
     for (const std::size_t i : batch.orbits) {
       lanes.push_back(orbits[i]->lane);
-      twins.insert(twins.end(), 2, orbits[i]->lane);
       states.push_back(orbits[i]->entry);
     }
     bool tangents = true;
+    one.keep_orbit = !one.without_sawtooth;
+    std::vector<LyapunovRates> rates;
     try {
-      const auto rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
+      rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
       for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
         OrbitExponents& exponents = found[batch.orbits[b]];
         exponents.cause = rates[b].cause;
@@ -143,10 +144,12 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       }
     } catch (const Refusal&) {
       tangents = false;  // the law has none: twins alone
+      one.keep_orbit = true;
+      rates = lyapunov_rates(scenes.program(batch.group, lanes), states, one);
     }
     // A twin carries the sawtooth of single steps, which its distance cannot be rid of.
-    if (one.without_sawtooth && tangents) return;
-    const auto twin = twin_rates(scenes.program(batch.group, twins), states, one, twin_offset);
+    if (!one.keep_orbit) return;
+    const auto twin = twin_rates(scenes.program(batch.group, lanes), states, rates, one, twin_offset);
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
       if (!twin[b].cause.empty() || !usable(twin[b].rates[0])) continue;
