@@ -432,8 +432,8 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   out.notes = scenes.notes(0);
   const Json& settings = study_case.settings;
   // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
-  // cost half as much again as free flight.
-  constexpr double contact_share = 1.5;
+  // cost 0.7 of free flight on top of it.
+  constexpr double contact_share = 1.7;
   const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
   const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +
                                   settings.at("transient").at("at_most").get<double>());
@@ -445,8 +445,8 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   const double orbit = (transient + kept) * period;
   out.steps = static_cast<long long>(orbit * count * (chains + singles));
   out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
-  // The orbit again, one column more than exponents, and two lanes for the twin.
-  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 4) * lanes(8);
+  // The orbit again, one column more than exponents, and the twin.
+  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
   return out;
 }
 
