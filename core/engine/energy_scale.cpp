@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/engine/energy_scale.hpp>
 
 namespace ricochet {
@@ -9,23 +9,10 @@ namespace {
 
 // ½ fᵀ K⁻¹ f; 0 without a force or where K has no factor.
 double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
-  if (load.size() == 0 || load.isZero(0)) return 0;
-  QuasiDefinite spd;
-  spd.A = stiffness;
-  BandLdlt ldlt;
-  if (ldlt.factorise(spd)) return 0;
-  Block x(ldlt.rows(), 1, ldlt.half_width());
-  BandStep step;
-  step.solve_rows = ldlt.rows();
-  step.solve_width = ldlt.half_width();
-  step.factor = ldlt.factor();
-  step.z = x.data();
-  Eigen::VectorXd rhs = load;
-  step.b = rhs.data();
-  lane_kernels(1).band_step(step);
-  double energy = 0;
-  for (int i = 0; i < load.size(); ++i) energy += 0.5 * load[i] * x.data()[i];
-  return energy;
+  if (load.size() == 0) return 0;
+  QuasiDefinite matrix;
+  matrix.A = stiffness;
+  return 0.5 * inverse_form(matrix, load).value_or(0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/measure/impact_jump.hpp>
 #include <ricochet/measure/plan_restitution.hpp>
 #include <ricochet/measure/velocity_offset.hpp>
@@ -11,6 +12,8 @@ namespace {
 
 // An impact is over within this many steps of contact: restitution over three levels takes two.
 constexpr int longest_impact = 3;
+// hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
+constexpr double resolved_turn = 0.1;
 
 // The last three displacements, newest first.
 struct Past {
@@ -40,6 +43,27 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
   // The kernel's basis has entries of order one.
   for (int i = 0; i < problem.points(); ++i) massive[static_cast<std::size_t>(i)] = moved.row(i).norm() < 1e-9;
   return massive;
+}
+
+std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
+  std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
+  const auto given_way = [&](double time, const Eigen::VectorXd& push) {
+    QuasiDefinite matrix;
+    matrix.A = time * time * problem.stiffness;
+    if (problem.inertia.factored()) {
+      matrix.G = problem.inertia.coupling;
+      matrix.Cv = problem.inertia.velocity_mass;
+    } else {
+      matrix.A += problem.inertia.mass;
+    }
+    return inverse_form(matrix, push);
+  };
+  for (int i = 0; i < problem.points(); ++i) {
+    const Eigen::VectorXd push = problem.contact.row(i).transpose();
+    const auto step = given_way(h, push), instant = given_way(1e-3 * h, push);
+    resolved[static_cast<std::size_t>(i)] = step && instant && *instant <= (1 + resolved_turn * resolved_turn) * *step;
+  }
+  return resolved;
 }
 
 struct ImpactJump::Impact {
@@ -75,6 +99,8 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   const Program& program = marcher.program();
   if (program.tangents == 0 || !program.contact || program.law->reads()) return;
   massive_ = points_with_mass(*program.problem);
+  const std::vector<bool> resolved = resolved_points(*program.problem, program.h);
+  for (std::size_t i = 0; i < massive_.size(); ++i) massive_[i] = massive_[i] && resolved[i];
   needed_ = std::find(massive_.begin(), massive_.end(), true) != massive_.end();
   if (!needed_) return;
   marcher.hold_tangents(massive_, longest_impact);

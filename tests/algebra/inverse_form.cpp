@@ -1,0 +1,28 @@
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <random>
+#include <ricochet/algebra/inverse_form.hpp>
+
+using namespace ricochet;
+
+TEST_CASE("the inverse form is that of the dense matrix, bordered or not") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  const int n = 9, r = 4;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n), G = Eigen::MatrixXd::Zero(r, n);
+  for (int i = 0; i < n; ++i) {
+    A(i, i) = 4;
+    for (int j = std::max(0, i - 2); j < i; ++j) A(i, j) = A(j, i) = entry(random);
+  }
+  for (int j = 0; j < r; ++j)
+    for (int i = 2 * j; i < std::min(n, 2 * j + 3); ++i) G(j, i) = entry(random);
+  const Eigen::MatrixXd Cv = 0.5 * Eigen::MatrixXd::Identity(r, r);
+  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return entry(random); });
+  QuasiDefinite plain{A.sparseView(), {}, {}}, bordered{A.sparseView(), G.sparseView(), Cv.sparseView()};
+  CHECK(*inverse_form(plain, b) == Approx(b.dot(A.ldlt().solve(b))).epsilon(1e-12));
+  const Eigen::MatrixXd whole = A + 2 * G.transpose() * G;
+  CHECK(*inverse_form(bordered, b) == Approx(b.dot(whole.ldlt().solve(b))).epsilon(1e-12));
+  CHECK(*inverse_form(plain, Eigen::VectorXd::Zero(n)) == 0.0);
+  plain.A = Eigen::SparseMatrix<double>(n, n);
+  CHECK_FALSE(inverse_form(plain, b));
+}
