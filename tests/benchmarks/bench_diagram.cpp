@@ -26,7 +26,7 @@ constexpr int steps_per_period = 6000, elements = 20;
 constexpr double pulsation = 10, diagram = 500.0 * 600.0 * steps_per_period;
 
 struct Setting {
-  int lanes = 8, periods = 3, rounds = 5;
+  int lanes = 8, periods = 40, rounds = 9;
 };
 
 const Registry& registry() {
@@ -84,16 +84,26 @@ std::unique_ptr<SectionMarch> block(const std::string& law, const Setting& setti
   return march;
 }
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
 struct Row {
   std::string name;
   double lane_steps;
   std::function<void()> work;
-  std::vector<double> seconds = {};
-  double median() {
-    std::sort(seconds.begin(), seconds.end());
-    return seconds[seconds.size() / 2];
-  }
+  std::vector<double> seconds = {};  // of each round
+  double typical() const { return median(seconds); }
 };
+
+// The median over the rounds of how much longer the one took than the other: neighbours in time share their noise.
+double ratio(const Row& one, const Row& other) {
+  std::vector<double> ratios;
+  for (std::size_t round = 0; round < one.seconds.size(); ++round)
+    ratios.push_back(one.seconds[round] / other.seconds[round]);
+  return median(ratios);
+}
 
 void measure(const Setting& setting, StopsSpec::Place place) {
   const double steps = static_cast<double>(setting.periods) * steps_per_period;
@@ -135,17 +145,18 @@ void measure(const Setting& setting, StopsSpec::Place place) {
   fmt::print("{} lanes, stops at {}, {} operator\n", setting.lanes,
              place == StopsSpec::Place::nodes ? "all nodes" : "the tip",
              operator_name(contact->marcher().program().kind));
-  for (Row& row : rows)
+  for (const Row& row : rows) {
+    const auto [least, most] = std::minmax_element(row.seconds.begin(), row.seconds.end());
     fmt::print("  {:<40} {:8.3g} ns per lane-step  {:8.3g} million lane-steps/s   [{:.3g} … {:.3g} s]\n", row.name,
-               1e9 * row.median() / row.lane_steps, 1e-6 * row.lane_steps / row.median(), row.seconds.front(),
-               row.seconds.back());
-  const double open = rows[0].median(), closed = rows[1].median(), watched = rows[2].median();
-  fmt::print("  shares while periods are kept: march {:.0f} %, contact {:.0f} %, measure {:.0f} %\n",
-             100 * open / watched, 100 * (closed - open) / watched, 100 * (watched - closed) / watched);
-  fmt::print("  one tangent column costs {:.2f} of a lane (block against block)\n",
-             rows[5].median() / rows[4].median() - 1);
+               1e9 * row.typical() / row.lane_steps, 1e-6 * row.lane_steps / row.typical(), *least, *most);
+  }
+  const double open = ratio(rows[0], rows[2]), closed = ratio(rows[1], rows[2]);
+  fmt::print("  shares while periods are kept: march {:.0f} %, contact {:.0f} %, measure {:.0f} %\n", 100 * open,
+             100 * (closed - open), 100 * (1 - closed));
+  fmt::print("  one tangent column costs {:.2f} of a lane (block against block)\n", ratio(rows[5], rows[4]) - 1);
   fmt::print("  reference diagram, 500 amplitudes × 600 periods × 6000 steps: {:.0f} s on one core, {:.0f} s on two\n",
-             diagram * (closed + watched) / 2 / lane_steps, diagram * rows[3].median() / rows[3].lane_steps);
+             diagram * (rows[1].typical() + rows[2].typical()) / 2 / lane_steps,
+             diagram * rows[3].typical() / rows[3].lane_steps);
 }
 
 }  // namespace
