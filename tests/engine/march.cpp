@@ -50,8 +50,8 @@ TEST_CASE("memory stays flat over ten million steps") {
   const long before = resident();
   beam.march(10000000);
   CHECK(beam.status(0).running);
-  // A page or two may come and go with the test program itself; a byte per step would be 2400 of them.
-  CHECK(resident() - before <= 16);
+  // Some pages come and go with the test program itself (a sanitizer's shadow: 22); a byte per step would be 2400.
+  CHECK(resident() - before <= 64);
 }
 
 TEST_CASE("a lane that diverges is frozen with step, time and cause, and the others go on") {
