@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ricochet/scene/assembly.hpp>
@@ -52,9 +53,11 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
     const auto row = static_cast<Eigen::Index>(i);
     const auto [x, slope] = places[i];
     const InitialSpec& initial = scene.initial;
+    // The last node, i·(L/N), may lie an ulp beyond the end.
     problem.position[row] =
-        slope ? initial.displacement.slope(x, 0, length) : initial.displacement(x) - support.position;
-    problem.velocity[row] = slope ? initial.velocity.slope(x, 0, length) : initial.velocity(x) - support.velocity;
+        slope ? initial.displacement.slope(std::min(x, length), 0, length) : initial.displacement(x) - support.position;
+    problem.velocity[row] =
+        slope ? initial.velocity.slope(std::min(x, length), 0, length) : initial.velocity(x) - support.velocity;
   }
   if (!problem.space.left_fixed && !problem.space.right_fixed) return;
   const double clamp = problem.space.left_fixed ? 0 : length;
