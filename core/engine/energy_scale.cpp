@@ -1,30 +1,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/engine/energy_scale.hpp>
 
 namespace ricochet {
-namespace {
-
-// ½ fᵀ K⁻¹ f; 0 without a force or where K has no factor.
-double static_energy(const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
-  if (load.size() == 0) return 0;
-  QuasiDefinite matrix;
-  matrix.A = stiffness;
-  return 0.5 * inverse_form(matrix, load).value_or(0);
-}
-
-}  // namespace
-
 EnergyScale::EnergyScale(const SemiDiscrete& problem)
-    : problem_(&problem), mass_(QuadraticForm::of(problem.inertia)), stiffness_(problem.stiffness) {
-  support_energy_ = static_energy(problem.stiffness, problem.support_shape);
+    : problem_(&problem),
+      mass_(QuadraticForm::of(problem.inertia)),
+      stiffness_(problem.stiffness),
+      compliance_({problem.stiffness, {}, {}}) {
+  support_energy_ = static_energy(problem.support_shape);
   support_mass_ = problem.support_shape.lpNorm<1>();
   for (int i = 0; i < problem.points(); ++i) {
-    const double compliance = 2 * static_energy(problem.stiffness, problem.contact.row(i).transpose());
+    const double compliance = 2 * static_energy(problem.contact.row(i).transpose());
     stop_energy_.push_back(compliance > 0 ? 0.5 / compliance : 0);
   }
+}
+
+// ½ fᵀ K⁻¹ f; 0 without a force or where K has no factor.
+double EnergyScale::static_energy(const Eigen::VectorXd& load) const {
+  return load.size() == 0 ? 0 : 0.5 * compliance_(load).value_or(0);
 }
 
 double EnergyScale::of_lane(const LaneSpec& lane) const {
@@ -39,15 +34,15 @@ double EnergyScale::of_lane(const LaneSpec& lane) const {
   return scale;
 }
 
-double EnergyScale::of_load(double t, bool constant) const {
+double EnergyScale::of_load(double t) const {
   if (!problem_->load) return 0;
   Eigen::VectorXd load = Eigen::VectorXd::Ones(problem_->dofs());
-  if (static_energy(problem_->stiffness, load) == 0) return std::numeric_limits<double>::infinity();
+  if (static_energy(load) == 0) return std::numeric_limits<double>::infinity();
   constexpr int looks = 64;
   double scale = 0;
-  for (int k = 0; k <= (constant || t == 0 ? 0 : looks); ++k) {
+  for (int k = 0; k <= (t == 0 ? 0 : looks); ++k) {
     problem_->load->assemble(t * k / looks, load.data());
-    if (load.allFinite()) scale = std::max(scale, static_energy(problem_->stiffness, load));
+    if (load.allFinite()) scale = std::max(scale, static_energy(load));
   }
   return scale;
 }

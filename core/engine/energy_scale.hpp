@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <vector>
@@ -16,11 +17,14 @@ class EnergyScale {
 
   /// The largest static energy ½ Fᵀ K⁻¹ F of the distributed load at evenly spaced times up to t (s); infinite where
   /// nothing holds the structure back, so that no energy is too large; 0 without a load.
-  double of_load(double t, bool constant) const;
+  double of_load(double t) const;
 
  private:
+  double static_energy(const Eigen::VectorXd& load) const;
+
   const SemiDiscrete* problem_;
   QuadraticForm mass_, stiffness_;
+  InverseForm compliance_;
   double support_energy_ = 0;        // of a clamp acceleration of 1 m/s²
   double support_mass_ = 0;          // moved by a clamp speed of 1 m/s
   std::vector<double> stop_energy_;  // of each contact point pushed aside by 1 m; 0 where K is singular

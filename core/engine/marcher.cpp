@@ -56,7 +56,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
   }
   energy_scale_ = std::make_unique<EnergyScale>(problem);
   lane_bounds_.resize(program_.lanes.size());
-  if (program_.load) load_bound_ = divergence_factor * energy_scale_->of_load(0, program_.load_constant);
+  if (program_.load) load_bound_ = divergence_factor * energy_scale_->of_load(0);
   for (int lane = 0; lane < lanes(); ++lane) {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
     const Eigen::VectorXd q = model.to_model(spec.position), v = model.to_model(spec.velocity);
@@ -435,7 +435,7 @@ bool Marcher::beyond_bound(int lane, double energy) {
   const bool looks = program_.load && !program_.load_constant && time() > load_known_until_;
   if (looks && energy > std::max(lane_bounds_[static_cast<std::size_t>(lane)], load_bound_)) {
     load_known_until_ = 2 * time();
-    load_bound_ = std::max(load_bound_, divergence_factor * energy_scale_->of_load(load_known_until_, false));
+    load_bound_ = std::max(load_bound_, divergence_factor * energy_scale_->of_load(load_known_until_));
   }
   return energy > energy_bound(lane);
 }

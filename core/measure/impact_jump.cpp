@@ -46,8 +46,7 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
 }
 
 std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
-  std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
-  const auto given_way = [&](double time, const Eigen::VectorXd& push) {
+  const auto given_way = [&](double time) {
     QuasiDefinite matrix;
     matrix.A = time * time * problem.stiffness;
     if (problem.inertia.factored()) {
@@ -56,11 +55,13 @@ std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
     } else {
       matrix.A += problem.inertia.mass;
     }
-    return inverse_form(matrix, push);
+    return InverseForm(matrix);
   };
+  const InverseForm within_step = given_way(h), at_once = given_way(1e-3 * h);
+  std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
   for (int i = 0; i < problem.points(); ++i) {
     const Eigen::VectorXd push = problem.contact.row(i).transpose();
-    const auto step = given_way(h, push), instant = given_way(1e-3 * h, push);
+    const auto step = within_step(push), instant = at_once(push);
     resolved[static_cast<std::size_t>(i)] = step && instant && *instant <= (1 + resolved_turn * resolved_turn) * *step;
   }
   return resolved;
@@ -99,9 +100,11 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   const Program& program = marcher.program();
   if (program.tangents == 0 || !program.contact || program.law->reads()) return;
   massive_ = points_with_mass(*program.problem);
+  const auto some = [&] { return std::find(massive_.begin(), massive_.end(), true) != massive_.end(); };
+  if (!some()) return;
   const std::vector<bool> resolved = resolved_points(*program.problem, program.h);
   for (std::size_t i = 0; i < massive_.size(); ++i) massive_[i] = massive_[i] && resolved[i];
-  needed_ = std::find(massive_.begin(), massive_.end(), true) != massive_.end();
+  needed_ = some();
   if (!needed_) return;
   marcher.hold_tangents(massive_, longest_impact);
   offset_ = velocity_offset(program.plan);

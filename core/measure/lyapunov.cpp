@@ -90,7 +90,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
     found[lane].rates.resize(static_cast<std::size_t>(count));
   }
   ImpactJump jump(marcher);
-  StepObserver* observer = count > 0 && jump.needed() ? &jump : nullptr;
+  StepObserver* observer = jump.needed() ? &jump : nullptr;
   for (int n = -plan.discard; n < plan.periods && marcher.any_running(); ++n) {
     marcher.march(plan.steps_per_period - 1, observer);
     std::vector<std::vector<LaneState>> before(states.size());

@@ -174,7 +174,7 @@ std::vector<Orbit> OrbitScheduler::admit(Shared& shared, std::unique_lock<std::m
 }
 
 // What a worker marches next, all of one group: orbits that an interrupted run had on their way, else new ones. Empty
-// when there is nothing for now.
+// after it has waited for other workers, where none was ready.
 std::vector<Orbit> OrbitScheduler::next_batch(Shared& shared, int worker, std::unique_lock<std::mutex>& lock) {
   std::vector<Orbit> orbits;
   const auto group_of = [&](int number) { return scenes_[task(number).scene].group; };

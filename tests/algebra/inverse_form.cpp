@@ -19,10 +19,10 @@ TEST_CASE("the inverse form is that of the dense matrix, bordered or not") {
   const Eigen::MatrixXd Cv = 0.5 * Eigen::MatrixXd::Identity(r, r);
   const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return entry(random); });
   QuasiDefinite plain{A.sparseView(), {}, {}}, bordered{A.sparseView(), G.sparseView(), Cv.sparseView()};
-  CHECK(*inverse_form(plain, b) == Approx(b.dot(A.ldlt().solve(b))).epsilon(1e-12));
+  CHECK(*InverseForm(plain)(b) == Approx(b.dot(A.ldlt().solve(b))).epsilon(1e-12));
   const Eigen::MatrixXd whole = A + 2 * G.transpose() * G;
-  CHECK(*inverse_form(bordered, b) == Approx(b.dot(whole.ldlt().solve(b))).epsilon(1e-12));
-  CHECK(*inverse_form(plain, Eigen::VectorXd::Zero(n)) == 0.0);
+  CHECK(*InverseForm(bordered)(b) == Approx(b.dot(whole.ldlt().solve(b))).epsilon(1e-12));
+  CHECK(*InverseForm(plain)(Eigen::VectorXd::Zero(n)) == 0.0);
   plain.A = Eigen::SparseMatrix<double>(n, n);
-  CHECK_FALSE(inverse_form(plain, b));
+  CHECK_FALSE(InverseForm(plain)(b));
 }

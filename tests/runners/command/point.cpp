@@ -34,6 +34,14 @@ std::string field(const std::string& line, int number) {
   return one;
 }
 
+/// Where a table's first line has this name.
+int place(const std::string& line, const std::string& name) {
+  for (int i = 0; i < 40; ++i)
+    if (field(line, i) == name) return i;
+  FAIL("no column " << name << " in " << line);
+  return -1;
+}
+
 /// Words after `ricochet point` that are wrong, and a part of what is said of them.
 void check_refused(const ScratchFolder& here, const std::vector<std::pair<std::string, std::string>>& wrong) {
   for (const auto& [words, part] : wrong) {
@@ -65,11 +73,7 @@ TEST_CASE("A point of a diagram is printed as it was stored, or the nearest name
   std::ifstream points(here / "there" / "points.csv");
   std::string line, stored, id;
   std::getline(points, line);
-  int parameter = 0, start = 0;
-  for (int i = 0; i < 40; ++i) {
-    if (field(line, i) == "parameter" && parameter == 0) parameter = i;
-    if (field(line, i) == "start" && start == 0) start = i;
-  }
+  const int parameter = place(line, "parameter"), start = place(line, "start");
   while (std::getline(points, line))
     if (id = field(line, 0); field(line, parameter) == "0.2" && field(line, start) == "down")
       stored += field(line, start + 2) + "," + field(line, start + 3) + "\n";
@@ -119,11 +123,7 @@ TEST_CASE("A cell of a grid is marched as its run did, or the nearest cells are 
   std::ifstream cells(here / "there" / "cells.csv");
   std::string line;
   std::getline(cells, line);
-  int x = 0, marched = 0;
-  for (int i = 0; i < 40; ++i) {
-    if (field(line, i) == "x" && x == 0) x = i;
-    if (field(line, i) == "marched" && marched == 0) marched = i;
-  }
+  const int x = place(line, "x"), marched = place(line, "marched");
   std::string id;
   int compared = 0, filled = 0;
   while (std::getline(cells, line)) {
