@@ -3,10 +3,12 @@
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <span>
+#include <string>
 
 namespace ricochet {
 
-/// Columns of the Delassus operator W = H S⁻¹ Hᵀ (m × m, SPD or semidefinite, m/N), computed when first asked for.
+/// Columns of the Delassus operator W = H S⁻¹ Hᵀ (m × m, SPD or semidefinite, m/N), computed when first asked for: the
+/// first time a column costs one solve with S, then it is a lookup.
 class DelassusColumns {
  public:
   virtual ~DelassusColumns() = default;
@@ -17,35 +19,55 @@ class DelassusColumns {
 /// How a law's work on one lane ended.
 struct LaneOutcome {
   bool converged = true;
-  int iterations = 0;   ///< pivoting or augmentation iterations of this solve
-  double residual = 0;  ///< complementarity residual, in units of the measure
+  int iterations = 0;      ///< pivoting, augmentation or Newton iterations of this solve
+  double residual = 0;     ///< complementarity residual, or error of the force law, in units of the measure
+  double dissipation = 0;  ///< power that the law itself dissipates at its evaluation (W ≥ 0): a damper's
 };
 
-/// What a law sees of one stage: a block of lanes, affine in p with the same W. Blocks are m × lanes, lanes contiguous.
+/// What a law sees of one stage: a block of lanes, affine in p with the same W. Blocks are m × lanes, lanes contiguous:
+/// point i of lane l stands at i·lanes + l.
 ///
 ///     measure_i = free_i + reach · (W p)_i,     lower_i and upper_i are ±∞ where a side is absent or open
 ///     rate_i    = rate_free_i + rate_reach · (W p)_i        (only for laws that read a rate)
+///
+/// p_i > 0 pushes up from the lower stop, p_i < 0 down from the upper one. Everything is in the frame of the
+/// laboratory.
 struct ReducedProblem {
   int points = 0, lanes = 0;
   DelassusColumns* delassus = nullptr;
-  double reach = 0;
+  double reach = 0;  ///< η π₀ ≥ 0; 0: the effort does not move the measure (explicit evaluation)
   const double* free = nullptr;
   const double* lower = nullptr;
   const double* upper = nullptr;
   double rate_reach = 0;
-  const double* rate_free = nullptr;
-  double* effort = nullptr;      ///< in: last step's p; out: p. Lanes not in `touched` are zero on entry and left alone
-  std::span<const int> touched;  ///< lanes where a free measure passes a bound, or that were in contact
+  const double* rate_free = nullptr;  ///< m/s
+  const double* before = nullptr;  ///< the measure one step before, against the same bounds; null where there is none
+  /// What the law keeps per point and lane (memory_per_point() blocks of m × lanes, one after the other), zero at
+  /// first.
+  double* memory = nullptr;
+  double* effort = nullptr;        ///< in: what this stage found last; out: p. Lanes not in `touched` are left alone
+  std::span<const int> touched;    ///< lanes where a free measure passes a bound, or that were in contact
   LaneOutcome* outcome = nullptr;  ///< per lane
 };
 
+/// Slopes of a compliant law at one point: δp = −stiffness δg − viscosity δu − before δg⁻, on the side that is in
+/// contact, in the frame of (5). All ≥ 0 for a law that does not soften.
+struct ContactSlopes {
+  double stiffness = 0;  ///< N/m
+  double viscosity = 0;  ///< N s/m
+  double before = 0;     ///< N/m
+};
+
 /// A contact law: it never knows the scheme, nor the scheme the law.
+///
+/// The loop calls prepare() once (and again when parameters of a lane change), then, at each stage that has the measure
+/// the law reads, solve() with the lanes that are touched; slopes() and the outcomes are read right after.
 class ContactLaw {
  public:
   virtual ~ContactLaw() = default;
   /// No contact at all: no rows of H, no box problem.
   virtual bool absent() const { return false; }
-  /// Which compliance measure it reads; none: the impact measure (rigid).
+  /// Which compliance measure it reads; none: the impact measure, and the law is rigid.
   virtual std::optional<Evaluation> reads() const { return std::nullopt; }
   /// Whether rate_free is needed.
   virtual bool reads_rate() const { return false; }
@@ -53,10 +75,29 @@ class ContactLaw {
   virtual void prepare(int points, std::span<const Parameters> lanes) = 0;
   /// Finds p for each touched lane. No allocation here.
   virtual void solve(ReducedProblem& problem) = 0;
-  /// Energy stored by the law at penetration `depth` ≥ 0 (m) in lane `lane`, joules; rigid laws store none.
+  /// Energy stored by the law at penetration `depth` (m, at least −layer) in lane `lane`, joules; rigid laws store
+  /// none.
   virtual double potential(double /*depth*/, int /*lane*/) const { return 0; }
-  /// Stiffness dp/dg of a closed contact (N/m) in lane `lane`; none: bilateral constraint (rigid).
-  virtual std::optional<double> linearise(int /*lane*/) const { return std::nullopt; }
+
+  /// Of a compliant law whose force is κ times the depth, whatever the depth: κ (N/m), for spectra and references.
+  /// None: rigid, or not linear.
+  virtual std::optional<double> constant_stiffness(int /*lane*/) const { return std::nullopt; }
+  /// Whether slopes() are known: tangents use them; without, exponents of a compliant law are those of twins.
+  virtual bool offers_slopes() const { return false; }
+  /// Slopes at the last solve of a point in contact.
+  virtual ContactSlopes slopes(int /*point*/, int /*lane*/) const { return {}; }
+
+  /// Distance before the stop at which the law begins to act (m ≥ 0): the bounds that solve() sees are shifted by it;
+  /// depth and penetration stay measured at the stop.
+  virtual double layer(int /*lane*/) const { return 0; }
+  /// Numbers that the law keeps per point and lane from stage to stage (ReducedProblem::memory); part of a lane's
+  /// state.
+  virtual int memory_per_point() const { return 0; }
+
+  /// Whether a problem of that many points is solved in closed form: then no search is needed, and `plan` says so.
+  virtual bool closed_form(int /*points*/) const { return false; }
+  /// How solve() finds the efforts, a few words for `describe`; "" leaves it unsaid.
+  virtual std::string how_solved() const { return {}; }
 };
 
 }  // namespace ricochet

@@ -12,18 +12,31 @@
 ///     M q'' + C q' + K q = F(t) + Hᵀ p,        lower(t) ≤ H q ≤ upper(t)                                    (1)
 ///
 /// q: n dofs; H: m × n, one row per contact point; p: m contact efforts (N, positive where the lower stop pushes).
-/// A scheme keeps named state slots x_0 … x_{s−1} (n-vectors; x_0 is always the position q) and makes each step of one
-/// or more stages of the form
+/// A scheme keeps named state slots x_0 … x_{s−1} (n-vectors; x_0 is always the position q; at most `most_slots`) and
+/// makes each step of one or more stages (at most `most_stages`) of the form
 ///
-///     S z = b + Hᵀ(π₀ p + π₁ p₋₁ + π₂ p₋₂),   S = s_M M + s_C C + s_K K                                      (2)
+///     S z = b + Hᵀ(π₀ p + π₁ p₋₁ + π₂ p₋₂ + …),   S = s_M M + s_C C + s_K K                                  (2)
 ///     b   = Σ_j (β^M_j M + β^C_j C + β^K_j K) x_j + Σ_k φ_k F(t + c_k h)                                      (3)
 ///     y   = H(Σ_j y_j x_j + y_z z)          the impact measure, restitution folded in: rigid laws             (4)
 ///     g   = H(Σ_j g_j x_j + g_z z)          the displacement where the scheme evaluates compliance            (5)
 ///     x_j ← Σ_i u_ji x_i + u_jz z                                                                              (6)
 ///
-/// with p₋₁, p₋₂ the efforts of the previous steps. Everything else follows from these numbers: the engine's loop, the
-/// spectral radius on each mode, the energy balance.
+/// Stages follow each other without end: after the last stage of a step comes the first of the next. p₋ₖ is the effort
+/// that the k-th stage before this one found (zero where that stage reads no contact): in a plan of one stage the
+/// effort of k steps ago; in a plan of s stages p₋₁ is that of the previous sub-step and p₋ₛ that of this stage one
+/// step ago. The stage that the start rule ends with stands where the last stage of a step before the first would
+/// stand.
+///
+/// Everything else follows from these numbers: the engine's loop, the time at which each stage stands, the momentum
+/// that its effort gives, the spectral radius on each mode, the energy balance. Coefficients that depend on the state
+/// are out of a plan's reach; a step that varies is too.
 namespace ricochet {
+
+/// Limits of a plan; check_plan() refuses what is beyond them, the loop never sees it.
+inline constexpr int most_slots = 8;     ///< state vectors
+inline constexpr int most_stages = 6;    ///< of a step, and of the start rule
+inline constexpr int most_efforts = 13;  ///< weights π₀, π₁, …: two steps of the longest plan and now
+inline constexpr int most_levels = 8;    ///< time levels of a load or of a stop in one stage
 
 /// Σ_j slots[j] x_j + z z, over the slots *before* the stage and the stage's unknown. Missing trailing slots are zero.
 struct Combination {
@@ -61,23 +74,34 @@ struct VelocityGate {
 
 /// The measure y of rigid laws. Position level (no gate): Σ w lower(t+ch) ≤ y ≤ Σ w upper(t+ch), with the same levels
 /// as y itself. Velocity level (gate): y is a velocity and `bound` weights the rates of the bounds.
+///
+/// Levels of stops, here and below, may be left empty: they are then those at which the combination itself stands
+/// (stage_facts.hpp). Given levels must agree with it on a motion at constant speed, to which check_plan() holds them.
 struct ImpactMeasure {
   Combination value;
-  Levels bound;
-  std::optional<VelocityGate> gate;
+  Levels bound = {};
+  std::optional<VelocityGate> gate = {};
+  std::vector<double> effort = {1.0};  ///< π₀, π₁, …
 };
 
 /// Where the scheme evaluates a compliant law, and how the resulting effort enters its equation.
 struct ComplianceMeasure {
-  Combination displacement;  ///< g, metres
-  Levels bound;              ///< the stop's position in the same combination
-  Combination rate;          ///< u, m/s, for laws with damping
-  Levels rate_bound;
-  std::vector<double> effort = {1.0};  ///< π₀, π₁, π₂
+  Combination displacement;            ///< g, metres
+  Levels bound = {};                   ///< the stop's position in the same combination
+  Combination rate = {};               ///< u, m/s, for laws with damping
+  Levels rate_bound = {};              ///< of the stop's rate
+  std::vector<double> effort = {1.0};  ///< π₀, π₁, …
+  /// g⁻, the same displacement one step before, over the slots before the stage: for laws that conserve energy through
+  /// the difference g − g⁻, which is then H·work.displacement.
+  std::optional<Combination> before = {};
+  Levels before_bound = {};  ///< the stop's position in it
 };
 
-/// The three ways to evaluate a compliant law within a step.
-enum class Evaluation { implicit_end, averaged, explicit_start };
+/// The ways to evaluate a compliant law within a step.
+enum class Evaluation { implicit_end, averaged, explicit_start, conserving };
+inline constexpr int evaluations = 4;
+/// "implicit", "averaged", "explicit", "conserving".
+const char* evaluation_word(Evaluation evaluation);
 
 /// A test displacement s and the levels that go with it: when the stage's equation is multiplied by s, the change of
 /// the scheme's own energy equals s·F̄ − s·C r + s·Hᵀp̄ exactly (no remainder but round-off) where the scheme has an
@@ -86,38 +110,48 @@ struct WorkForm {
   Combination displacement;            ///< s
   Combination rate;                    ///< r, the velocity that damping sees
   Levels load;                         ///< F̄
-  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k p_{−k}
-  Levels support;  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
+  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k p₋ₖ
+  Levels support = {};  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
+};
+
+enum class EnergyMatrix { M, K };
+
+/// coefficient · |Σ_j w_j x_j + w_z z|²_A ≥ 0 (J), A = M or K, over the slots before the stage: what the scheme itself
+/// dissipates in the stage, numerical damping, apart from C and from the stops.
+struct LossTerm {
+  EnergyMatrix matrix = EnergyMatrix::M;
+  double coefficient = 0;
+  Combination value;
 };
 
 struct Stage {
-  OperatorWeights matrix;                                      ///< S; all zero: no solve, z = 0
-  std::vector<OperatorWeights> history;                        ///< (β^M_j, β^C_j, β^K_j) per slot
-  Levels load;                                                 ///< (c_k, φ_k)
-  std::optional<ImpactMeasure> impact;                         ///< absent: this stage lets rigid laws be
-  std::array<std::optional<ComplianceMeasure>, 3> compliance;  ///< indexed by Evaluation
-  std::vector<Combination> update;                             ///< one per slot
-  Combination increment;  ///< position after − position before, without cancellation
-  std::optional<WorkForm> work;
+  OperatorWeights matrix;                                                ///< S; all zero: no solve, z = 0
+  std::vector<OperatorWeights> history;                                  ///< (β^M_j, β^C_j, β^K_j) per slot
+  Levels load;                                                           ///< (c_k, φ_k)
+  std::optional<ImpactMeasure> impact;                                   ///< absent: this stage lets rigid laws be
+  std::array<std::optional<ComplianceMeasure>, evaluations> compliance;  ///< indexed by Evaluation
+  std::vector<Combination> update;                                       ///< one per slot
+  std::optional<WorkForm> work;  ///< none: the balance of the scheme is not known
+  std::vector<LossTerm> loss;    ///< none: the scheme dissipates nothing itself
   const std::optional<ComplianceMeasure>& at(Evaluation e) const { return compliance[static_cast<int>(e)]; }
   std::optional<ComplianceMeasure>& at(Evaluation e) { return compliance[static_cast<int>(e)]; }
 };
 
 /// coefficient · |Σ_j w_j x_j|²_A over the slots after the step, A = M or K.
 struct QuadraticTerm {
-  enum class Matrix { M, K };
-  Matrix matrix = Matrix::M;
+  using Matrix = EnergyMatrix;
+  EnergyMatrix matrix = EnergyMatrix::M;
   double coefficient = 0.5;
   std::vector<double> slots;
 };
 
 enum class Restitution { exact, asymptotic, ignored };
 
-/// What a scheme declares of itself; the conformance suite measures each and fails the plugin that is wrong.
+/// What a scheme declares of itself; `ricochet check` measures each and names what is wrong.
 struct SchemeFacts {
   double order = 1;  ///< in h, without contact, with the start rule chosen
-  /// In h, at rigid stops: of displacements, impact times and impulses once an impact has happened.
-  double contact_order = 1;
+  /// In h, at rigid stops: of displacements, impact times and impulses once an impact has happened; none: not known.
+  std::optional<double> contact_order = {};
   Restitution restitution = Restitution::ignored;
   bool needs_regular_mass = false;
   /// Largest stable h·ω on the undamped oscillator, none when unconditionally stable.
@@ -130,17 +164,21 @@ struct StepPlan {
   std::vector<std::string> slots;  ///< names; slots[0] is "q"
   /// Slots before the start rule: x_j = a_j q₀ + b_j v₀ (per slot: {a, b}).
   std::vector<std::array<double, 2>> initial;
-  std::vector<Stage> start;           ///< applied once; empty: nothing to do
-  bool start_advances = false;        ///< whether the start rule moves time by h
-  std::vector<Stage> stages;          ///< one to three
+  std::vector<Stage> start;     ///< applied once; empty: nothing to do
+  bool start_advances = false;  ///< whether the start rule moves time by h
+  std::vector<Stage> stages;
   std::vector<QuadraticTerm> energy;  ///< scheme_energy; empty when none is declared
-  Combination velocity;               ///< tip velocity shown to people, over the slots after the step
+  /// The scheme's velocity over the slots after a step (and before each stage, where they have the same meaning): what
+  /// sections, the dating of impacts and momenta read. Where in time it stands is found from the plan.
+  Combination velocity;
   SchemeFacts facts;
 };
 
 using PlanOrRefusal = std::variant<StepPlan, Refusal>;
 
-/// Ill-formed plans are plugin bugs; returns what is wrong with the plan, or nothing.
+/// Ill-formed plans are plugin bugs; returns what is wrong with the plan, or nothing: sizes, limits, numbers that are
+/// none, a free mass that is not carried at constant speed, levels of stops that stand elsewhere than what they bound,
+/// a velocity or a test displacement that is none.
 std::optional<std::string> check_plan(const StepPlan& plan);
 
 /// The plan as a person reads it: slots, S, b, measures, updates, with numbers.

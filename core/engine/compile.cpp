@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
@@ -5,18 +7,6 @@
 
 namespace ricochet {
 namespace {
-
-const char* evaluation_word(Evaluation evaluation) {
-  switch (evaluation) {
-    case Evaluation::implicit_end:
-      return "implicit";
-    case Evaluation::averaged:
-      return "averaged";
-    case Evaluation::explicit_start:
-      break;
-  }
-  return "explicit";
-}
 
 Combination padded(Combination c, std::size_t slots) {
   c.slots.resize(slots, 0.0);
@@ -37,6 +27,7 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
     if (!stage.impact) return std::nullopt;
     program.measure = stage.impact->value;
     program.measure_levels = stage.impact->bound;
+    program.effort = stage.impact->effort;
     program.gate = stage.impact->gate;
   }
   if (stage.matrix.M == 0 && stage.matrix.C == 0 && stage.matrix.K == 0)
@@ -57,7 +48,10 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   };
   program.load_phase = phase(stage.load);
   program.measure_phase = phase(program.measure_levels);
-  if (program.compliance) program.rate_phase = phase(program.compliance->rate_bound);
+  if (program.compliance) {
+    program.rate_phase = phase(program.compliance->rate_bound);
+    program.before_phase = phase(program.compliance->before_bound);
+  }
   if (program.gate) {
     program.predictor_phase = phase(program.gate->predictor_bound);
     program.approach_phase = phase(program.gate->approach_bound);
@@ -92,7 +86,8 @@ void say_what_is_left_out(Program& program) {
     };
     if (absent(true)) say("lower stop", "absent");
     if (absent(false)) say("upper stop", "absent");
-    if (problem.points() == 1) say("active-set search", "one contact point: closed form");
+    if (program.law->closed_form(problem.points()))
+      say("active-set search", problem.points() == 1 ? "one contact point: closed form" : "the law has a closed form");
     if (!program.eager_delassus)
       say("Delassus columns of points never touched", "computed when a point is first touched");
   }
@@ -102,6 +97,31 @@ void say_what_is_left_out(Program& program) {
   if (problem.inertia.factored() && program.kind != OperatorKind::modal)
     say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
+}
+
+// What an effort of each stage is worth, and which stages look at contact together.
+void add_contact_facts(Program& program) {
+  StageEfforts efforts(program.stages.size());
+  for (std::size_t k = 0; k < program.stages.size(); ++k)
+    if (program.stages[k].reads_contact) efforts[k] = program.stages[k].effort;
+  const std::vector<double> momentum = momentum_weights(program.plan, efforts);
+  StageProgram* last = nullptr;
+  for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    StageProgram& stage = program.stages[k];
+    stage.momentum = std::isfinite(momentum[k]) ? momentum[k] : program.h;
+    if (!stage.reads_contact) continue;
+    stage.opens_instant = !last || std::abs(stage.facts.instant - last->facts.instant) > 1e-9;
+    if (last && stage.opens_instant) last->closes_instant = true;
+    last = &stage;
+  }
+  if (last) last->closes_instant = true;
+  for (std::size_t k = 0; k < program.start.size(); ++k) {
+    StageProgram& stage = program.start[k];
+    if (!stage.reads_contact) continue;
+    stage.opens_instant = stage.closes_instant = true;
+    const double given = start_momentum(program.plan, k, stage.effort[0], efforts);
+    stage.momentum = std::isfinite(given) ? given : program.h;
+  }
 }
 
 }  // namespace
@@ -138,14 +158,20 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
                          std::unique_ptr<ContactLaw> law, std::vector<LaneSpec> lanes, const CompileOptions& options) {
   if (const auto wrong = check_plan(plan)) throw std::logic_error("ill-formed plan: " + *wrong);
   if (lanes.empty()) throw std::logic_error("a program needs at least one lane");
+  DerivedPlan derived = derive(std::move(plan));
+  // Twice the tolerance of check_plan() for a motion at constant speed.
+  if (derived.h != 0 && !(std::abs(derived.h - h) <= 2e-8 * h))
+    throw std::logic_error(
+        fmt::format("ill-formed plan: a step of {:g} s carries a free mass at 1 m/s by {:g} m", h, derived.h));
   Program program;
   program.problem = problem;
-  program.plan = std::move(plan);
+  program.plan = std::move(derived.plan);
   program.h = h;
+  program.velocity_offset = derived.velocity_offset;
   program.law = std::move(law);
   program.tangents = options.tangents;
-  if (program.tangents > 0 && program.law->reads_rate())
-    return Refusal{"a law that reads a rate has no tangent here: its exponents are those of twins"};
+  if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
+    return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
   program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
   program.support = options.moving_support;
   program.lanes = std::move(lanes);
@@ -168,10 +194,13 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
 
   program.start.resize(program.plan.start.size());
   program.stages.resize(program.plan.stages.size());
-  for (std::size_t k = 0; k < program.start.size(); ++k)
+  for (std::size_t k = 0; k < program.start.size(); ++k) {
+    program.start[k].facts = derived.start[k];
     if (auto refusal = fill(program.start[k], program.plan.start[k], program)) return *refusal;
+  }
   bool contact_read = false, mass_only = true;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    program.stages[k].facts = derived.stages[k];
     if (auto refusal = fill(program.stages[k], program.plan.stages[k], program)) return *refusal;
     contact_read = contact_read || program.stages[k].reads_contact;
     mass_only = mass_only && program.stages[k].folded.stiffness == 0;
@@ -182,6 +211,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
                      " evaluation of a compliant law: choose another evaluation"};
     return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
+  add_contact_facts(program);
   if (program.kind == OperatorKind::band && mass_only && !problem->inertia.factored()) {
     bool diagonal = true;
     const SparseMatrix& mass = problem->inertia.mass;

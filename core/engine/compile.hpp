@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/time_scheme.hpp>
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/engine/stage_operator.hpp>
@@ -56,15 +57,21 @@ struct StageProgram {
   std::vector<double> effort = {1.0};  ///< π
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
-  PhaseWeights load_phase, measure_phase, rate_phase, predictor_phase, approach_phase;
+  PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase;
+  StageFacts facts;
+  double momentum = 0;  ///< s: what an effort of 1 N of this stage finally gives to a free mass
+  /// Contact stages that ask at the same instant (a velocity, then a projection) are one look at contact: whether this
+  /// one is its first, and its last.
+  bool opens_instant = false, closes_instant = false;
 };
 
 /// A compiled scene × methods, ready to march a block of lanes.
 struct Program {
   std::shared_ptr<const SemiDiscrete> problem;
   std::shared_ptr<const MarchModel> model;
-  StepPlan plan;
+  StepPlan plan;  ///< complete: what it left to be derived is filled in
   double h = 0;
+  double velocity_offset = 0;  ///< where plan.velocity stands after a step, in steps
   std::unique_ptr<ContactLaw> law;
   std::vector<LaneSpec> lanes;
   int width = 1;     ///< T

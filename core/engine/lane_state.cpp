@@ -13,6 +13,7 @@ LaneState Marcher::state_at(int column) const {
       for (int i = 0; i < effort.rows(); ++i) state.efforts.push_back(effort.at(i, column));
     if (stage->fastest.rows() > 0) state.fastest.push_back(stage->fastest.at(0, column));
   }
+  for (int i = 0; i < memory_.rows(); ++i) state.memory.push_back(memory_.at(i, column));
   return state;
 }
 
@@ -35,6 +36,8 @@ void Marcher::set_state_at(int column, const LaneState& state) {
     stage->contact_lanes &= ~(1u << column);
     stage->contact_lanes |= static_cast<std::uint32_t>(active) << column;
   }
+  const double* memory = state.memory.data();
+  for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, column) = *memory++;
   combined_for_ = nullptr;
 }
 
@@ -52,6 +55,7 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   // What the lane left behind when it stopped is gone.
   frozen_now_ &= ~(1u << lane);
   for (int k = 0; k < program_.tangents; ++k) frozen_now_ &= ~(1u << tangent_lane(lane, k));
+  if (program_.contact) place_stops(lane);
   set_state_at(lane, state);
 }
 

@@ -7,6 +7,7 @@
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/engine/energy_scale.hpp>
 #include <ricochet/engine/marcher_state.hpp>
+#include <set>
 #include <utility>
 
 namespace ricochet {
@@ -19,6 +20,20 @@ constexpr long long check_interval = 16;
 
 // Energy beyond this multiple of the scene's own scale counts as divergence.
 constexpr double divergence_factor = 1e9;
+
+// Times of a step at which the load is asked, of stages and of their work forms.
+std::size_t distinct_load_levels(const StepPlan& plan) {
+  std::set<long long> levels;
+  const auto add = [&](const Levels& list) {
+    for (const Level& level : list) levels.insert(std::llround(level.at * 1e6));
+  };
+  for (const auto* stages : {&plan.start, &plan.stages})
+    for (const Stage& stage : *stages) {
+      add(stage.load);
+      if (stage.work) add(stage.work->load);
+    }
+  return levels.size();
+}
 
 }  // namespace
 
@@ -67,6 +82,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
   }
   if (program_.load) {
     load_window_ = std::make_unique<LoadWindow>();
+    load_window_->entries.resize(distinct_load_levels(program_.plan) + 1);
     for (auto& entry : load_window_->entries) entry.value.resize(static_cast<std::size_t>(rows));
     load_window_->sum.resize(static_cast<std::size_t>(rows));
     load_window_->nodal.resize(static_cast<std::size_t>(rows));
@@ -85,12 +101,7 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     }
     if (!program_.contact || !stage.reads_contact) return state;
     state->delassus = std::make_unique<StageDelassus>(*stage.op, model.contact(), rows);
-    state->shifts_effort = stage.effort.size() > 1;
-    if (plan.work && plan.work->effort.size() > 1) state->shifts_effort = true;
-    for (int k = 0; k < (state->shifts_effort ? 3 : 1); ++k) {
-      state->effort[static_cast<std::size_t>(k)] = Block(points, T);
-      state->effort_pointers[static_cast<std::size_t>(k)] = state->effort[static_cast<std::size_t>(k)].data();
-    }
+    state->effort.emplace_back(points, T);
     state->free = Block(points, T);
     if (stage.effort.size() > 1 || stage.effort[0] != 1.0) state->weighted = Block(points, T);
     state->measure_weights = with_z(stage.measure);
@@ -98,6 +109,10 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     if (stage.compliance && program_.law->reads_rate()) {
       state->rate = Block(points, T);
       state->rate_weights = with_z(stage.compliance->rate);
+    }
+    if (stage.compliance && stage.compliance->before) {
+      state->before = Block(points, T);
+      state->before_weights = with_z(*stage.compliance->before);
     }
     if (stage.gate) {
       state->gap = Block(points, T);
@@ -116,6 +131,56 @@ Marcher::Marcher(Program program) : program_(std::move(program)), kernels_(lane_
     start_states_.push_back(make_state(program_.start[k], program_.plan.start[k]));
   for (std::size_t k = 0; k < program_.stages.size(); ++k)
     stage_states_.push_back(make_state(program_.stages[k], program_.plan.stages[k]));
+  connect_efforts();
+}
+
+// Which block holds p₋ₖ of each stage: stages follow each other without end, and each keeps as many of its own efforts
+// as any stage looks back to.
+void Marcher::connect_efforts() {
+  const auto stages = static_cast<std::ptrdiff_t>(stage_states_.size());
+  const auto weights = [&](std::ptrdiff_t i) {
+    const auto& work = program_.plan.stages[static_cast<std::size_t>(i)].work;
+    const std::size_t own = program_.stages[static_cast<std::size_t>(i)].effort.size();
+    return static_cast<std::ptrdiff_t>(std::max(own, work ? work->effort.size() : 0));
+  };
+  struct Source {
+    StageState* stage;
+    std::size_t ago;
+  };
+  const auto source = [&](std::ptrdiff_t i, std::ptrdiff_t k) {
+    const std::ptrdiff_t place = i - k, steps = place >= 0 ? 0 : (-place + stages - 1) / stages;
+    const std::ptrdiff_t j = place + steps * stages;
+    // A stage that comes later in the step holds its effort of the step before.
+    return Source{stage_states_[static_cast<std::size_t>(j)].get(),
+                  static_cast<std::size_t>(j > i ? steps - 1 : steps)};
+  };
+  for (std::ptrdiff_t i = 0; i < stages; ++i) {
+    if (!stage_states_[static_cast<std::size_t>(i)]->delassus) continue;
+    for (std::ptrdiff_t k = 1; k < weights(i); ++k) {
+      const auto [stage, ago] = source(i, k);
+      if (!stage->delassus) continue;
+      while (stage->effort.size() <= ago) stage->effort.emplace_back(lower_.rows(), program_.width);
+    }
+  }
+  for (std::ptrdiff_t i = 0; i < stages; ++i) {
+    StageState& state = *stage_states_[static_cast<std::size_t>(i)];
+    if (!state.delassus) continue;
+    for (std::ptrdiff_t k = 0; k < weights(i); ++k) {
+      const auto [stage, ago] = source(i, k);
+      state.effort_pointers.push_back(stage->delassus ? stage->effort[ago].data() : nullptr);
+    }
+  }
+  for (auto& state : start_states_)
+    if (state->delassus) state->effort_pointers.push_back(state->effort[0].data());
+}
+
+// The start rule ends where the last stage of a step before the first would.
+void Marcher::keep_start_efforts() {
+  if (start_states_.empty()) return;
+  StageState &start = *start_states_.back(), &last = *stage_states_.back();
+  if (!start.delassus || !last.delassus) return;
+  std::copy_n(start.effort[0].data(), start.effort[0].size(), last.effort[0].data());
+  last.contact_lanes = start.contact_lanes;
 }
 
 bool Marcher::any_running() const {
@@ -179,14 +244,7 @@ void Marcher::start(StepObserver* observer) {
   cosine_ = std::cos(omega * time());
   for (std::size_t k = 0; k < program_.start.size(); ++k)
     run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer);
-  // The first step's past effort is the start's, where there is one.
-  if (!start_states_.empty())
-    for (auto& state : stage_states_) {
-      StageState& last = *start_states_.back();
-      if (!state->delassus || !last.delassus) continue;
-      std::copy_n(last.effort[0].data(), last.effort[0].size(), state->effort[0].data());
-      state->contact_lanes = last.contact_lanes;
-    }
+  keep_start_efforts();
   if (program_.plan.start_advances) {
     ++step_;
     if (observer) observer->step_done(*this);
@@ -249,12 +307,19 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     StageView view;
     view.stage = index;
     view.plan = &plan;
+    view.program = &program;
+    view.starting = !start_states_.empty() && &program >= program_.start.data() &&
+                    &program < program_.start.data() + program_.start.size();
     view.time = time();
+    view.from = view.time + program.facts.from * program_.h;
+    view.to = view.time + program.facts.to * program_.h;
     view.slots = slot_pointers_.data();
     view.z = z;
     if (state.delassus) {
       view.effort = state.effort_pointers.data();
+      view.efforts = static_cast<int>(state.effort_pointers.size());
       view.outcome = outcome_.data();
+      view.touched_lanes = state.touched_lanes;
       view.free = state.free.data();
       view.contact_lanes = state.contact_lanes;
     }
@@ -328,7 +393,7 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
       state.gate_upper.fill(infinity);
     }
   }
-  std::array<const double*, 5> slots{};
+  std::array<const double*, most_slots + 1> slots{};
   std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
   slots[static_cast<std::size_t>(slot_count())] = z;
   const double* offset = nullptr;
@@ -342,6 +407,11 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
     if (program_.support) support_offsets(program.rate_phase, offset_.data(), true);
     kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
                      offset, state.rate.data());
+  }
+  if (state.before.rows() > 0) {
+    if (program_.support) support_offsets(program.before_phase, offset_.data(), false);
+    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
+                     offset, state.before.data());
   }
   const Block& lower = gated ? state.gate_lower : lower_;
   const Block& upper = gated ? state.gate_upper : upper_;
@@ -364,26 +434,27 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
         kernels_.add_column(rows, state.delassus->response(j), p, z);
     }
   };
-  if (state.shifts_effort) {
-    std::copy_n(state.effort[1].data(), size, state.effort[2].data());
-    std::copy_n(state.effort[0].data(), size, state.effort[1].data());
-    for (std::size_t k = 1; k < program.effort.size(); ++k) {
-      if (program.effort[k] == 0) continue;
-      for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort[k].data()[e];
-      correct(state.weighted.data());
-    }
+  for (std::size_t k = state.effort.size(); k-- > 1;)
+    std::copy_n(state.effort[k - 1].data(), size, state.effort[k].data());
+  for (std::size_t k = 1; k < program.effort.size() && k < state.effort_pointers.size(); ++k) {
+    if (program.effort[k] == 0 || !state.effort_pointers[k]) continue;
+    for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort_pointers[k][e];
+    correct(state.weighted.data());
   }
+  state.touched_lanes = 0;
   std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
   if (mask == 0) return;
   touched_.clear();
   for (; mask != 0; mask &= mask - 1) {
     const int lane = std::countr_zero(mask);
     if (lane >= lanes() || !status_[static_cast<std::size_t>(lane)].running) continue;
-    if (finite_measure(state, lane))
+    if (finite_measure(state, lane)) {
       touched_.push_back(lane);
-    else
+      state.touched_lanes |= 1u << lane;
+    } else
       freeze(lane, "the displacement at a contact point is not finite");
   }
+  for (const int lane : touched_) outcome_[static_cast<std::size_t>(lane)] = {};
   ReducedProblem problem;
   problem.points = points;
   problem.lanes = T;
@@ -394,6 +465,8 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   problem.upper = program.gate ? state.gate_upper.data() : upper_.data();
   problem.rate_reach = program.compliance ? program.compliance->rate.z * program.effort[0] : 0.0;
   problem.rate_free = state.rate.rows() > 0 ? state.rate.data() : nullptr;
+  problem.before = state.before.rows() > 0 ? state.before.data() : nullptr;
+  problem.memory = memory_.rows() > 0 ? memory_.data() : nullptr;
   problem.effort = state.effort[0].data();
   problem.touched = touched_;
   problem.outcome = outcome_.data();
@@ -489,6 +562,7 @@ void Marcher::freeze(int lane, const std::string& cause) {
           for (int i = 0; i < effort.rows(); ++i) effort.at(i, tangent) = 0;
   }
   amplitude_.at(0, lane) = 0;
+  for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, lane) = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     lower_.at(i, lane) = -infinity;
     upper_.at(i, lane) = infinity;
@@ -503,10 +577,15 @@ void Marcher::place_lane(int lane) {
   cos_phase_.at(0, lane) = std::cos(spec.phase);
   sin_phase_.at(0, lane) = std::sin(spec.phase);
   phases_ = phases_ || spec.phase != 0;
-  if (!program_.contact) return;
+}
+
+// The law acts from its layer on.
+void Marcher::place_stops(int lane) {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const double layer = program_.law->layer(lane);
   for (int i = 0; i < lower_.rows(); ++i) {
-    lower_.at(i, lane) = spec.lower[i];
-    upper_.at(i, lane) = spec.upper[i];
+    lower_.at(i, lane) = spec.lower[i] + layer;
+    upper_.at(i, lane) = spec.upper[i] - layer;
   }
 }
 
@@ -516,7 +595,12 @@ void Marcher::prepare_law() {
   std::vector<Parameters> parameters;
   for (int lane = 0; lane < program_.width; ++lane)
     parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
-  program_.law->prepare(program_.problem->points(), parameters);
+  const int points = program_.problem->points();
+  program_.law->prepare(points, parameters);
+  const int kept = program_.law->memory_per_point();
+  if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
+  for (int lane = 0; lane < lanes(); ++lane)
+    if (status_[static_cast<std::size_t>(lane)].running) place_stops(lane);
 }
 
 void Marcher::clear_lane(int lane) {

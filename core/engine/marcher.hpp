@@ -21,19 +21,25 @@ struct LaneStatus {
 /// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
 struct LaneState {
   std::vector<double> slots;    ///< slot by slot
-  std::vector<double> efforts;  ///< per stage p, then p₋₁ and p₋₂ where the plan weights them
+  std::vector<double> efforts;  ///< per stage its p, and those of steps before where the plan weights them
   std::vector<double> fastest;  ///< per stage with a gate: the largest speed seen at its stops, m/s
+  std::vector<double> memory;   ///< of the law, per point
 };
 
 /// What an observer sees while a step is made. Blocks are rows × T or points × T.
 struct StageView {
   int stage = 0;
   const Stage* plan = nullptr;
+  const StageProgram* program = nullptr;  ///< what was derived of the stage
+  bool starting = false;                  ///< a stage of the start rule
   double time = 0;                        ///< when the step begins, s
+  double from = 0, to = 0;                ///< when the position stands before and after the stage, s
   const double* const* slots = nullptr;   ///< before the stage
   const double* z = nullptr;              ///< the stage's unknown, efforts included
-  const double* const* effort = nullptr;  ///< p, p₋₁, p₋₂ (null beyond what the plan weights); null: no contact
-  const LaneOutcome* outcome = nullptr;   ///< per lane, of the law
+  const double* const* effort = nullptr;  ///< p, p₋₁, … as far as the plan weights them; null: no contact
+  int efforts = 0;                        ///< how many; each may be null: a stage that reads no contact
+  const LaneOutcome* outcome = nullptr;   ///< per lane, of the law; of lanes that were looked at
+  std::uint32_t touched_lanes = 0;        ///< lanes that the law looked at
   const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
   std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
 };
@@ -127,12 +133,15 @@ class Marcher {
   struct ActiveSystem;
   void place_lane(int lane);
   void prepare_law();
+  void place_stops(int lane);
   LaneState state_at(int column) const;
   void set_state_at(int column, const LaneState& state);
   void remove_load(StageProgram& program, const double* load);
   void tangent_contact(StageProgram& program, StageState& state);
   void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
   void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
+  void connect_efforts();
+  void keep_start_efforts();
   void contact(StageProgram& program, StageState& state, double* z);
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
   void open_gates(StageProgram& program, StageState& state);
@@ -151,6 +160,7 @@ class Marcher {
   const StageProgram* combined_for_ = nullptr;
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
   Block scale_, offset_, lower_, upper_, amplitude_, cos_phase_, sin_phase_;
+  Block memory_;  // of the law, points × T for each number that it keeps
   bool phases_ = false;
   std::vector<int> touched_;
   std::vector<LaneOutcome> outcome_;

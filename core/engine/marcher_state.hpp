@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <memory>
 #include <ricochet/engine/marcher.hpp>
@@ -64,13 +63,14 @@ class Marcher::StageDelassus final : public DelassusColumns {
 // A small symmetric system over the active points of one lane, A = reach·W + compliance·I, factorised by L D Lᵀ.
 struct Marcher::ActiveSystem {
   std::vector<int> points;
-  std::vector<double> matrix, right;
+  std::vector<double> matrix, right, slopes;
   std::size_t capacity = 0;
   void reserve(int most) {
     capacity = static_cast<std::size_t>(most);
     points.reserve(capacity);
     matrix.resize(capacity * capacity);
     right.resize(capacity);
+    slopes.resize(capacity);
   }
   double& at(std::size_t i, std::size_t j) { return matrix[i * capacity + j]; }
   void factorise();
@@ -81,15 +81,16 @@ struct Marcher::ActiveSystem {
 // What a stage keeps between steps, and the constants of its loop.
 struct Marcher::StageState {
   std::unique_ptr<StageDelassus> delassus;
-  std::array<Block, 3> effort;  // p, p₋₁, p₋₂
-  std::array<const double*, 3> effort_pointers{};
-  Block free, weighted, rate, gap, gate_lower, gate_upper, approach;
+  std::vector<Block> effort;  // p of this stage, then of 1, 2, … steps ago as far as anyone weights it
+  std::vector<const double*>
+      effort_pointers;  // p, p₋₁, p₋₂, …: this stage, the one before it, …; null: no contact there
+  Block free, weighted, rate, before, gap, gate_lower, gate_upper, approach;
   Block fastest;                    // largest speed seen at a closed point, per lane
   std::uint32_t contact_lanes = 0;  // lanes with a non-zero effort
   std::uint32_t closed_lanes = 0;   // lanes with a closed gate
+  std::uint32_t touched_lanes = 0;  // lanes that the law looked at in this stage
   std::vector<double> update;       // slots × (slots + 1)
-  std::vector<double> measure_weights, rate_weights, gap_weights, approach_weights;
-  bool shifts_effort = false;
+  std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  // steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         // of the lane whose tangents are being corrected
 };
@@ -101,7 +102,7 @@ struct Marcher::LoadWindow {
     long long used = -1;
     std::vector<double> value;
   };
-  std::array<Entry, 5> entries;
+  std::vector<Entry> entries;
   std::vector<double> sum, nodal;
   long long clock = 0;
 };

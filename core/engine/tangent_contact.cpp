@@ -2,6 +2,12 @@
 #include <ricochet/engine/marcher_state.hpp>
 
 namespace ricochet {
+namespace {
+
+// Of a point in contact whose force does not answer: nothing moves it.
+constexpr double infinite_compliance = 1e300;
+
+}  // namespace
 
 void Marcher::ActiveSystem::factorise() {
   // A pivot this small against its diagonal belongs to a point that depends on those before it.
@@ -53,6 +59,20 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
   for (std::size_t a = 0; a < system.points.size(); ++a) {
     const int i = system.points[a];
     double target = 0;
+    if (program.compliance) {
+      // (base·W + I/κ) δp = −(D δg° + D_u δu° + D₋ δg⁻)/κ, with κ = (D η + D_u η_u)/base the slope of the whole.
+      const ContactSlopes slopes = program_.law->slopes(i, lane);
+      if (slopes.viscosity == 0 && slopes.before == 0) {
+        system.right[a] = -state.free.at(i, tangent);
+        continue;
+      }
+      const double stiffness = system.slopes[a];
+      double push = slopes.stiffness * state.free.at(i, tangent);
+      if (state.rate.rows() > 0) push += slopes.viscosity * state.rate.at(i, tangent);
+      if (state.before.rows() > 0) push += slopes.before * state.before.at(i, tangent);
+      system.right[a] = stiffness != 0 ? -push / stiffness : 0.0;
+      continue;
+    }
     if (program.gate) {
       const double speed = state.approach.at(i, lane), still = 1e-10 * state.fastest.at(0, lane);
       const bool lower = state.effort[0].at(i, lane) > 0;
@@ -66,10 +86,13 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
 }
 
 // Derivatives of the efforts of every lane that was looked at: with the active set A of the lane,
-//     rigid:      reach·W_AA δp = target − δy°            compliant:  (reach·W_AA + I/κ) δp = −δg°
+//     rigid:      reach·W_AA δp = target − δy°            compliant:  (base·W_AA + I/κ) δp = −(D δg° + D_u δu° + D₋
+//     δg⁻)/κ
 void Marcher::tangent_contact(StageProgram& program, StageState& state) {
   ActiveSystem& system = state.tangents;
   const double reach = program.measure_z * program.effort[0];
+  const double rate_reach =
+      program.compliance && state.rate.rows() > 0 ? program.compliance->rate.z * program.effort[0] : 0.0;
   for (const int lane : touched_) {
     const bool active = (state.contact_lanes >> lane) & 1u;
     for (int k = 0; k < program_.tangents; ++k)
@@ -86,12 +109,21 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
       if (closed && !waits) system.points.push_back(i);
     }
     if (system.points.empty()) continue;
-    const auto stiffness = program_.law->linearise(lane);
-    const double compliance = stiffness ? 1 / *stiffness : 0.0;
+    const double base = reach != 0 || !program.compliance ? reach : rate_reach;
     for (std::size_t a = 0; a < system.points.size(); ++a) {
-      const double* column = reach != 0 ? state.delassus->column(system.points[a]) : nullptr;
+      double compliance = 0;
+      if (program.compliance) {
+        const ContactSlopes slopes = program_.law->slopes(system.points[a], lane);
+        double& stiffness = system.slopes[a];
+        stiffness = slopes.stiffness;
+        if (slopes.viscosity != 0 || slopes.before != 0)
+          // An effort that no displacement of its own step moves follows from what is known.
+          stiffness = base != 0 ? (slopes.stiffness * reach + slopes.viscosity * rate_reach) / base : 1.0;
+        compliance = stiffness != 0 ? 1 / stiffness : infinite_compliance;
+      }
+      const double* column = base != 0 ? state.delassus->column(system.points[a]) : nullptr;
       for (std::size_t b = 0; b < system.points.size(); ++b)
-        system.at(b, a) = (column ? reach * column[system.points[b]] : 0.0) + (a == b ? compliance : 0.0);
+        system.at(b, a) = (column ? base * column[system.points[b]] : 0.0) + (a == b ? compliance : 0.0);
     }
     system.factorise();
     for (int k = 0; k < program_.tangents; ++k) {

@@ -5,16 +5,20 @@
 
 namespace ricochet {
 
-/// Energies of one step, joules, in the frame of the clamp (w = u − φ).
+/// Energies of one step, joules, in the frame of the clamp (w = u − φ), at the time where the plan's own velocity
+/// stands: at the end of the step, from that velocity and q_{n+1}; or, for plans whose velocity is a mean over the
+/// step, in the middle of its last sub-step, from v = Δq/Δt and q̄ = q_{n+1} − Δq/2. There neither has a bias of order
+/// h² of its own: positions of another time beside a velocity would show a gain that the scheme does not make.
 struct EnergySample {
-  double kinetic = 0;  ///< ½ vᵀM v, v = (q_{n+1} − q_n)/h
-  double elastic = 0;  ///< ½ q̄ᵀK q̄, q̄ = (q_{n+1} + q_n)/2
-  double contact = 0;  ///< potential of a compliant law at q̄
+  double kinetic = 0;  ///< ½ vᵀM v
+  double elastic = 0;  ///< ½ qᵀK q
+  double contact = 0;  ///< potential of a compliant law at that q
   double scheme = 0;   ///< the scheme's own invariant; the common energy where it declares none
   double common() const { return kinetic + elastic + contact; }
 };
 
-/// What the audit of a lane adds up, from its first complete step.
+/// What the audit of a lane adds up. `first` is of t = 0 where energies stand at the end of a step, else of the first
+/// sub-step.
 struct EnergyTotals {
   EnergySample first, last;
   double scheme_start = 0;       ///< scheme energy from which the balance starts
@@ -22,19 +26,23 @@ struct EnergyTotals {
   double work_of_damping = 0;    ///< Σ sᵀC r ≥ 0 where the scheme pairs them (J)
   double work_of_loads = 0;      ///< Σ sᵀF̄, and the support's work through the stops (J)
   double work_of_contact = 0;    ///< Σ p̄ᵀ(H s + Δφ): what the stops, at rest in the laboratory, give (J)
-  /// E_end − E_start − loads + damping − contact: round-off × steps where the scheme has an exact balance, else what is
-  /// left.
+  double work_of_scheme = 0;     ///< Σ of the plan's loss terms: what the scheme itself dissipates (J ≥ 0)
+  double work_of_law = 0;        ///< what the contact law itself dissipates, by the power that it reports (J ≥ 0)
+  /// E_end − E_start − loads + damping + scheme − contact: round-off × steps where the scheme has an exact balance,
+  /// else what is left.
   double balance_residual() const {
-    return last.scheme - scheme_start - work_of_loads + work_of_damping - work_of_contact;
+    return last.scheme - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact;
   }
 };
 
-/// Contact seen over a run, per lane.
+/// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
+/// together as one.
 struct ContactTotals {
   long long impacts = 0;             ///< times that contact began anywhere (from no active point to some)
   long long active_set_changes = 0;  ///< steps whose set of active points (with side) differs from the step before
   long long contact_steps = 0;
-  double impulse = 0;                            ///< Σ h Σ_i |p_i| (N s)
+  int most_iterations = 0;                       ///< of one solve of the law
+  double impulse = 0;                            ///< Σ ω Σ_i |p_i| (N s), ω the momentum weight of the stage
   double deepest_penetration = 0;                ///< m
   double residual = 0;                           ///< largest complementarity residual of the law
   double first_impact = -1, first_release = -1;  ///< s; −1: never
@@ -55,7 +63,9 @@ class EnergyAudit final : public StepObserver {
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }
   const ContactTotals& contact(int lane) const { return lanes_[static_cast<std::size_t>(lane)].contact; }
   double penetration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].penetration; }
-  /// (u_tip(t_{n+1}) − u_tip(t_n))/h of the last step, absolute, m/s.
+  /// Whether the plan declares a work form: without, the works and the balance are not known.
+  bool balances() const { return balances_; }
+  /// Δu_tip/Δt of the last sub-step, absolute, m/s.
   double tip_velocity(int lane) const { return lanes_[static_cast<std::size_t>(lane)].tip_velocity; }
 
  private:
@@ -63,23 +73,29 @@ class EnergyAudit final : public StepObserver {
     EnergyTotals energy;
     EnergySample now;
     ContactTotals contact;
-    std::vector<double> increment;   // q_{n+1} − q_n, over the stages of the step
-    std::vector<signed char> signs;  // side of each active point
-    double step_loads = 0, step_damping = 0, step_contact = 0;
+    std::vector<double> increment;          // of the position, over the stages of the last sub-step
+    double duration = 0;                    // of it, s
+    std::vector<signed char> signs, asked;  // side of each active point: at the last instant, and at the present one
+    bool in_contact = false;                // at the present instant
+    double force = 0;
+    double step_loads = 0, step_damping = 0, step_contact = 0, step_scheme = 0, step_law = 0;
     double penetration = 0, tip_velocity = 0;
-    bool has_scheme = false, has_first = false, counted = false;
+    bool has_scheme = false, has_first = false;
   };
+  EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
+  void work(const Marcher& marcher, const StageView& view, int lane);
   double scheme_energy(const Marcher& marcher, int lane);
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
                std::vector<double>& out) const;
   void count_contact(const StageView& view, int lane);
+  void close_instant(const StageView& view, Lane& state);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;
   Damping damping_;
   double h_;
   int T_;
-  bool compliant_;
+  bool compliant_, mean_velocity_, balances_ = false;
   std::vector<Lane> lanes_;
   std::vector<double> first_, second_;
 };

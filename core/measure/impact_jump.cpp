@@ -5,7 +5,6 @@
 #include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/measure/impact_jump.hpp>
 #include <ricochet/measure/plan_restitution.hpp>
-#include <ricochet/measure/velocity_offset.hpp>
 
 namespace ricochet {
 namespace {
@@ -107,7 +106,7 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   needed_ = some();
   if (!needed_) return;
   marcher.hold_tangents(massive_, longest_impact);
-  offset_ = velocity_offset(program.plan);
+  offset_ = program.velocity_offset;
   restitution_ = plan_restitution(program.plan, program.h);
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     lanes_.push_back(std::make_unique<Lane>());
@@ -135,11 +134,11 @@ int ImpactJump::applied(int lane) const {
 }
 
 void ImpactJump::stage_solved(const Marcher& marcher, const StageView& view) {
-  if (!view.effort) return;
   for (std::size_t index = 0; index < lanes_.size(); ++index) {
     Lane& lane = *lanes_[index];
-    lane.contact = false;
-    if (!((view.contact_lanes >> index) & 1u)) continue;
+    // Contact anywhere in the step, whichever of its stages asked.
+    if (view.stage == 0) lane.contact = false;
+    if (!view.effort || !((view.contact_lanes >> index) & 1u)) continue;
     for (std::size_t i = 0; i < massive_.size(); ++i) {
       const double p = view.effort[0][i * static_cast<std::size_t>(marcher.width()) + index];
       if (p == 0 || !massive_[i]) continue;

@@ -3,9 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <ricochet/measure/motion_sampler.hpp>
-#include <ricochet/measure/velocity_offset.hpp>
 #include <ricochet/scene/assembly.hpp>
 
 namespace ricochet {
@@ -35,10 +33,9 @@ Cubic cubic(double s) {
 
 constexpr int block = 8;
 
-// Whether `block` points have no effort now and had none before.
-bool all_free(const double* efforts, int stride, const signed char* signs) {
+// Whether `block` points have no effort.
+bool all_free(const double* efforts, int stride) {
   std::uint64_t any = 0;
-  std::memcpy(&any, signs, sizeof any);
   for (int j = 0; j < block; ++j) any |= std::bit_cast<std::uint64_t>(efforts[j * stride]) << 1U;  // −0 is no effort
   return any == 0;
 }
@@ -64,74 +61,89 @@ ContactLog::ContactLog(const Marcher& marcher)
       T_(marcher.width()),
       h_(marcher.program().h),
       signs_(static_cast<std::size_t>(problem_.points()), 0),
+      asked_(signs_),
       position_(static_cast<std::size_t>(model_.rows())),
-      velocity_(static_cast<std::size_t>(model_.rows())) {
+      velocity_(static_cast<std::size_t>(model_.rows())),
+      momentum_(marcher.program()) {
   events_.reserve(64);
 }
 
-void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
-  force_ = 0;
-  if (!view.effort) return;
-  const bool touching = (view.contact_lanes & 1u) != 0;
-  if (!touching && !closed_[0] && !closed_[1]) return;
+// When the gap of a point closes, from the state before the stage.
+double ContactLog::onset(const Marcher& marcher, const StageView& view, int point, int side) {
+  const double t = view.from, dt = view.to != view.from ? view.to - view.from : h_ * view.program->facts.instant;
+  if (!state_known_) {
+    const Combination& rate = marcher.program().plan.velocity;
+    const auto T = static_cast<std::size_t>(T_);
+    for (std::size_t i = 0; i < position_.size(); ++i) {
+      position_[i] = view.slots[0][i * T];
+      velocity_[i] = 0;
+      for (std::size_t s = 0; s < rate.slots.size(); ++s) velocity_[i] += rate.slots[s] * view.slots[s][i * T];
+    }
+    tip_speed_ = marcher.support_rate(0, t) + model_.tip().times(0, velocity_.data());
+    state_known_ = true;
+  }
   const LaneSpec& lane = marcher.program().lanes.front();
-  const double t = view.time;
-  bool now[2] = {false, false}, changed = false, state_known = false;
-  double onset[2] = {t + 2 * h_, t + 2 * h_};
+  const double stop = side == 0 ? lane.lower[point] : lane.upper[point];
+  const double gap = model_.contact().times(point, position_.data()) + marcher.support(0, t) - stop;
+  const double speed = model_.contact().times(point, velocity_.data()) + marcher.support_rate(0, t);
+  double time = t;
+  if (gap * speed < 0) time += std::min(-gap / speed, 2 * dt);
+  if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
+  return std::clamp(time, t - dt, t + dt);
+}
+
+void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
+  if (!view.effort) {
+    momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
+    return;
+  }
+  if (view.program->opens_instant) {
+    force_ = 0;
+    now_[0] = now_[1] = false;
+  }
+  if ((view.contact_lanes & 1u) != 0)
+    look(marcher, view);
+  else
+    momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
+  if (view.program->closes_instant && (now_[0] || now_[1] || closed_[0] || closed_[1])) close_instant(view);
+}
+
+void ContactLog::look(const Marcher& marcher, const StageView& view) {
   const double* efforts = view.effort[0];
-  signed char* signs = signs_.data();
   const int points = problem_.points();
+  state_known_ = false;
+  double force = 0;
   for (int j = 0; j < points; ++j) {
     // Most points of most steps are free: eight at a time are passed over.
     if (j % block == 0)
-      while (j + block <= points && all_free(efforts + j * T_, T_, signs + j)) j += block;
+      while (j + block <= points && all_free(efforts + j * T_, T_)) j += block;
     if (j >= points) break;
     const double p = efforts[j * T_];
-    if (p == 0 && signs[j] == 0) continue;
-    const auto sign = static_cast<signed char>(p > 0 ? 1 : (p < 0 ? -1 : 0));
-    changed = changed || sign != signs[j];
-    signs[j] = sign;
-    if (sign == 0) continue;
-    force_ += p;
-    const int side = sign > 0 ? 0 : 1;
-    now[side] = true;
-    if (closed_[side]) continue;
-    if (!state_known) {
-      const Combination& rate = marcher.program().plan.velocity;
-      const auto T = static_cast<std::size_t>(T_);
-      for (std::size_t i = 0; i < position_.size(); ++i) {
-        position_[i] = view.slots[0][i * T];
-        velocity_[i] = 0;
-        for (std::size_t s = 0; s < rate.slots.size(); ++s) velocity_[i] += rate.slots[s] * view.slots[s][i * T];
-      }
-      state_known = true;
+    if (p == 0) continue;
+    force += p;
+    const int side = p > 0 ? 0 : 1;
+    asked_[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
+    if (!closed_[side]) {
+      const double time = onset(marcher, view, j, side);
+      onset_[side] = now_[side] ? std::min(onset_[side], time) : time;
     }
-    const double stop = side == 0 ? lane.lower[j] : lane.upper[j];
-    const double gap = model_.contact().times(j, position_.data()) + marcher.support(0, t) - stop;
-    const double speed = model_.contact().times(j, velocity_.data()) + marcher.support_rate(0, t);
-    double time = t;
-    if (gap * speed < 0) time += std::min(-gap / speed, 2 * h_);
-    if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
-    onset[side] = std::min(onset[side], time);
+    now_[side] = true;
   }
-  if (changed) ++changes_;
-  // What the step gives to the momentum: the scheme's own mean of this effort and the last ones.
-  double given = force_;
-  if (view.plan->work && view.plan->work->effort.size() > 1) {
-    given = 0;
-    const std::vector<double>& weights = view.plan->work->effort;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      for (int j = 0; view.effort[k] && j < problem_.points(); ++j) given += weights[k] * view.effort[k][j * T_];
-  }
-  impulse_ += h_ * given;
+  momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
+  // What only puts a position right is no force.
+  if (view.program->momentum != 0) force_ += force;
+}
+
+void ContactLog::close_instant(const StageView& view) {
+  if (asked_ != signs_) ++changes_;
+  signs_.swap(asked_);
+  std::fill(asked_.begin(), asked_.end(), static_cast<signed char>(0));
   for (const int side : {0, 1}) {
-    if (now[side] && !closed_[side]) {
-      const double tip = marcher.support_rate(0, t) + model_.tip().times(0, velocity_.data());
-      events_.push_back({std::clamp(onset[side], t - h_, t + h_), side == 0 ? -1 : 1, true, tip});
-    } else if (!now[side] && closed_[side]) {
-      events_.push_back({t, side == 0 ? -1 : 1, false, 0});
-    }
-    closed_[side] = now[side];
+    if (now_[side] && !closed_[side])
+      events_.push_back({onset_[side], side == 0 ? -1 : 1, true, tip_speed_});
+    else if (!now_[side] && closed_[side])
+      events_.push_back({view.from, side == 0 ? -1 : 1, false, 0});
+    closed_[side] = now_[side];
   }
 }
 
@@ -143,7 +155,7 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid)
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),
       strains_(strain_rows(marcher.program().problem->space, grid.places)),
-      offset_(velocity_offset(marcher.program().plan)) {}
+      offset_(marcher.program().velocity_offset) {}
 
 void MotionSampler::keep() {
   constexpr std::size_t window = 5;
@@ -207,8 +219,9 @@ bool MotionSampler::next() {
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
     const Eigen::VectorXd touched = problem.contact * w;
+    const double layer = marcher_.law().layer(0);
     for (int j = 0; j < problem.points(); ++j)
-      if (const double depth = marcher_.depth(0, j, touched[j], support); depth > 0)
+      if (const double depth = marcher_.depth(0, j, touched[j], support); depth > -layer)
         energy += marcher_.law().potential(depth, 0);
   }
   motion_.tip.push_back((problem.tip * w)[0] + support);

@@ -3,6 +3,7 @@
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/momentum_ledger.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -15,28 +16,35 @@ void sample_places(double length, int cells, SampleGrid& grid);
 /// one test.
 ///
 /// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero, kept within a
-/// step of the step that closed it; a release is the beginning of the first step without contact on that side.
+/// sub-step of the one that closed it; a release is the beginning of the first sub-step without contact on that side.
 class ContactLog final : public StepObserver {
  public:
   explicit ContactLog(const Marcher& marcher);
   void stage_solved(const Marcher& marcher, const StageView& view) override;
-  void step_done(Marcher&) override {}
+  void step_done(Marcher&) override { momentum_.step_done(); }
 
   const std::vector<ContactEvent>& events() const { return events_; }
-  double impulse() const { return impulse_; }  ///< ∫₀ᵗ Σp, signed, N s
-  double force() const { return force_; }      ///< Σp of the last step, N
+  double impulse() const { return momentum_.momentum(); }  ///< ∫₀ᵗ Σp, signed, N s
+  double force() const { return force_; }                  ///< Σp of the last step, N
   long long changes() const { return changes_; }
 
  private:
+  void look(const Marcher& marcher, const StageView& view);
+  void close_instant(const StageView& view);
+  double onset(const Marcher& marcher, const StageView& view, int point, int side);
+
   const MarchModel& model_;
   const SemiDiscrete& problem_;
   int T_;
   double h_;
-  std::vector<signed char> signs_;
+  std::vector<signed char> signs_, asked_;  // at the last instant of contact, and at the present one
   std::vector<double> position_, velocity_;
-  bool closed_[2] = {false, false};  // lower, upper
+  bool state_known_ = false;                                   // position_ and velocity_ are those before the stage
+  bool closed_[2] = {false, false}, now_[2] = {false, false};  // lower, upper
+  double onset_[2] = {0, 0}, tip_speed_ = 0;
   std::vector<ContactEvent> events_;
-  double impulse_ = 0, force_ = 0;
+  MomentumLedger momentum_;
+  double force_ = 0;
   long long changes_ = 0;
 };
 
@@ -44,9 +52,9 @@ class ContactLog final : public StepObserver {
 ///
 /// Positions at a time t between steps n and n+1 are the cubic through steps n−1 … n+2, velocities its derivative; at a
 /// time that is a step, q_n and (q_{n+1} − q_{n−1})/2h. Both are second-order accurate or better, whatever the scheme
-/// keeps as its own velocity. Impulses of a scheme whose momentum stands at mid-step (d/h) are those of mid-steps, and
-/// are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at that time. The march goes up to two
-/// steps beyond the last time.
+/// keeps as its own velocity. Impulses are the momentum that the plan gives to a free mass (MomentumLedger); those of a
+/// scheme whose momentum stands at mid-step (d/h) are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at
+/// that time. The march goes up to two steps beyond the last time.
 class MotionSampler {
  public:
   MotionSampler(Marcher& marcher, const SampleGrid& grid);

@@ -9,4 +9,10 @@ namespace ricochet {
 /// measure no effort can move. Compliant laws rebound by themselves: this says nothing of them.
 std::optional<double> plan_restitution(const StepPlan& plan, double h);
 
+/// The same over the phases at which the mass may meet its stop within a step.
+struct RestitutionRange {
+  double least = 0, mean = 0, most = 0;
+};
+std::optional<RestitutionRange> restitution_range(const StepPlan& plan, double h);
+
 }  // namespace ricochet

@@ -4,7 +4,6 @@
 #include <limits>
 #include <numbers>
 #include <ricochet/measure/section_march.hpp>
-#include <ricochet/measure/velocity_offset.hpp>
 
 namespace ricochet {
 namespace {
@@ -25,7 +24,7 @@ class SectionMarch::Watch final : public StepObserver {
         plan_(plan),
         orbits_(orbits),
         h_(marcher.program().h),
-        offset_(velocity_offset(marcher.program().plan)) {
+        offset_(marcher.program().velocity_offset) {
     tips_.resize(orbits.size());
   }
 
@@ -80,22 +79,28 @@ class SectionMarch::Watch final : public StepObserver {
       if (p > 0) first[0] = i;
       if (p < 0) first[1] = i;
     }
+    std::array<bool, 2>& asked = asked_[static_cast<std::size_t>(lane)];
+    if (view.program->opens_instant) asked = {false, false};
     bool any = false;
-    for (int side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < 2; ++side) {
       const bool now = first[side] >= 0;
-      any = any || now;
-      if (now && !orbit.closed[side]) begin(marcher, view, lane, side, first[side], orbit);
-      orbit.closed[side] = now;
+      if (now && !asked[side] && !orbit.closed[side])
+        begin(marcher, view, lane, static_cast<int>(side), first[side], orbit);
+      asked[side] = asked[side] || now;
+      any = any || asked[side];
+      if (view.program->closes_instant) orbit.closed[side] = asked[side];
     }
+    if (!view.program->closes_instant) return;
     orbit.contact_steps += any;
     closed_ &= ~(1u << lane);
     closed_ |= static_cast<std::uint32_t>(any) << lane;
   }
 
   void begin(const Marcher& marcher, const StageView& view, int lane, int side, int point, Orbit& orbit) {
-    const double t = view.time;
+    const double t = view.from;
     const double speed = closing_speed(marcher, view, lane, side, point);
-    const double turns = static_cast<double>(marcher.step() % plan_.steps_per_period) / plan_.steps_per_period;
+    const double turns = (static_cast<double>(marcher.step() % plan_.steps_per_period) + view.program->facts.from) /
+                         plan_.steps_per_period;
     orbit.impacts.push_back({2 * std::numbers::pi * turns, side, std::abs(speed)});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
     if (plan_.section != SectionKind::impact) return;
@@ -107,12 +112,12 @@ class SectionMarch::Watch final : public StepObserver {
   // The velocity at which a point meets its stop: between that of the scheme and that of the free step to come, at the
   // time when the gap closes. A point without mass changes its velocity within few steps.
   double closing_speed(const Marcher& marcher, const StageView& view, int lane, int side, int point) const {
-    const double t = view.time;
+    const double t = view.from, dt = view.to - view.from;
     const double before = velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t);
     const Program& program = marcher.program();
     const StageProgram& stage = program.stages[static_cast<std::size_t>(view.stage)];
     const Combination& update = view.plan->update[0];
-    if (program.stages.size() != 1 || stage.gate || stage.measure_z == 0 || update.z == 0) return before;
+    if (dt == 0 || stage.gate || stage.measure_z == 0 || update.z == 0) return before;
     // H q₊ of the free step from what the law measured, which is affine in the same z°.
     const auto at = [&](const std::vector<double>& weights) {
       double sum = 0;
@@ -121,15 +126,16 @@ class SectionMarch::Watch final : public StepObserver {
       return sum;
     };
     const double measured = view.free[static_cast<std::ptrdiff_t>(point) * marcher.width() + lane] -
-                            marcher.support_levels(lane, t, stage.measure_levels);
+                            marcher.support_levels(lane, view.time, stage.measure_levels);
     const double z = (measured - at(stage.measure.slots)) / stage.measure_z;
     const double now = at({1.0}) + marcher.support(lane, t);
-    const double next = at(update.slots) + update.z * z + marcher.support(lane, t + h_);
-    const double after = (next - now) / h_;
+    const double next = at(update.slots) + update.z * z + marcher.support(lane, view.to);
+    const double after = (next - now) / dt;
     const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane)];
     const double stop = side == 0 ? spec.lower[point] : spec.upper[point];
     const double ahead = next != now ? std::clamp((stop - now) / (next - now), 0.0, 1.0) : 0.0;
-    const double share = (ahead - offset_) / (0.5 - offset_);
+    // The velocity stands where it does after any sub-step.
+    const double offset = offset_ * h_ / dt, share = (ahead - offset) / (0.5 - offset);
     return before + share * (after - before);
   }
 
@@ -168,6 +174,7 @@ class SectionMarch::Watch final : public StepObserver {
   double h_, offset_;
   std::uint32_t keeping_ = 0, closed_ = 0;
   std::array<std::array<int, 2>, 32> counts_{};
+  std::array<std::array<bool, 2>, 32> asked_{};  // sides in contact at the present instant
   std::vector<Tips> tips_;
 };
 

@@ -18,26 +18,27 @@ MatrixXd weighted(const LinearProblem& problem, const OperatorWeights& w) {
   return w.M * problem.mass + w.C * problem.damping + w.K * problem.stiffness;
 }
 
-// Where a stage keeps p₋₁ and p₋₂ in the state.
-struct PastEfforts {
-  Index at = 0;
-  Index levels = 0;
-};
-
 struct Measure {
   const Combination* value = nullptr;
   std::vector<double> effort = {1.0};
+  const Combination* before = nullptr;  // a conserving evaluation takes the mean of both
 };
 
 std::optional<Measure> measure_of(const Stage& stage, const ClosedContact& law) {
   if (!law.evaluation) {
     if (!stage.impact) return std::nullopt;
-    return Measure{&stage.impact->value, {1.0}};
+    return Measure{&stage.impact->value, stage.impact->effort};
   }
   const auto& compliance = stage.at(*law.evaluation);
   if (!compliance) return std::nullopt;
-  return Measure{&compliance->displacement, compliance->effort};
+  return Measure{&compliance->displacement, compliance->effort, compliance->before ? &*compliance->before : nullptr};
 }
+
+// The last efforts of all stages in the state, newest first: p₋₁ of the stage to come, p₋₂, …
+struct PastEfforts {
+  Index at = 0;
+  Index levels = 0;
+};
 
 // Rows of one stage: the unknown z and the effort p over the state before it.
 class StageRows {
@@ -62,13 +63,15 @@ class StageRows {
     if (!solves(stage_)) return Refusal{"the scheme measures contact in a stage that solves nothing"};
     const MatrixXd response = lu_.solve(H.transpose());
     const MatrixXd delassus = H * response;
-    for (Index k = 1; k <= past.levels; ++k)
+    for (Index k = 1; k < static_cast<Index>(measure.effort.size()); ++k)
       unknown_.middleCols(past.at + (k - 1) * points, points) += measure.effort[static_cast<std::size_t>(k)] * response;
     const double z = measure.value->z, weight = measure.effort.front();
-    const MatrixXd free = H * combine(*measure.value);
+    MatrixXd free = H * combine(*measure.value);
     if (law.evaluation) {
-      const MatrixXd A = MatrixXd::Identity(points, points) + law.stiffness * z * weight * delassus;
-      effort_ = -law.stiffness * A.partialPivLu().solve(free);
+      const double stiffness = measure.before ? 0.5 * law.stiffness : law.stiffness;
+      if (measure.before) free += H * combine(*measure.before);
+      const MatrixXd A = MatrixXd::Identity(points, points) + stiffness * z * weight * delassus;
+      effort_ = -stiffness * A.partialPivLu().solve(free);
     } else {
       if (z == 0) return Refusal{"the scheme's impact measure does not see the effort of its own step"};
       // Points that depend on others share the effort among them: the least one that does it.
@@ -91,12 +94,14 @@ class StageRows {
     MatrixXd map = MatrixXd::Identity(total_, total_);
     for (std::size_t j = 0; j < plan_.slots.size(); ++j)
       map.middleRows(static_cast<Index>(j) * n_, n_) = combine(stage_.update[j]);
+    // A stage without contact has found no effort.
     const Index points = problem_.contact.rows();
-    if (past.levels > 0) map.middleRows(past.at, points) = effort_;
-    if (past.levels > 1) {
-      map.middleRows(past.at + points, points).setZero();
-      map.block(past.at + points, past.at, points, points).setIdentity();
+    for (Index k = past.levels; k-- > 1;) {
+      map.middleRows(past.at + k * points, points).setZero();
+      map.block(past.at + k * points, past.at + (k - 1) * points, points, points).setIdentity();
     }
+    if (past.levels > 0 && effort_.size() > 0) map.middleRows(past.at, points) = effort_;
+    if (past.levels > 0 && effort_.size() == 0) map.middleRows(past.at, points).setZero();
     return map;
   }
 
@@ -134,18 +139,14 @@ Eigen::VectorXd balance(MatrixXd& A) {
 
 StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law) {
   const Index n = problem.mass.rows(), points = problem.contact.rows();
-  std::vector<PastEfforts> past;
-  Index total = n * static_cast<Index>(plan.slots.size());
+  PastEfforts past{n * static_cast<Index>(plan.slots.size()), 0};
   bool reads = false;
-  for (const Stage& stage : plan.stages) {
-    PastEfforts kept{total, 0};
+  for (const Stage& stage : plan.stages)
     if (const auto measure = points > 0 ? measure_of(stage, law) : std::nullopt) {
-      kept.levels = static_cast<Index>(measure->effort.size()) - 1;
+      past.levels = std::max(past.levels, static_cast<Index>(measure->effort.size()) - 1);
       reads = true;
     }
-    total += kept.levels * points;
-    past.push_back(kept);
-  }
+  const Index total = past.at + past.levels * points;
   if (points > 0 && !reads)
     return Refusal{law.evaluation ? "the time scheme offers no such evaluation of a compliant law"
                                   : "the time scheme has no impact measure for a rigid law"};
@@ -154,14 +155,16 @@ StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, co
     StageRows rows(problem, plan, plan.stages[k], total);
     if (auto refusal = rows.free_step()) return *refusal;
     if (const auto measure = points > 0 ? measure_of(plan.stages[k], law) : std::nullopt)
-      if (auto refusal = rows.close(*measure, law, past[k])) return *refusal;
-    whole = rows.step(past[k]) * whole;
+      if (auto refusal = rows.close(*measure, law, past)) return *refusal;
+    whole = rows.step(past) * whole;
   }
   return whole;
 }
 
 std::optional<MatrixXd> held_point_map(const StepPlan& plan) {
   if (plan.stages.size() != 1 || !plan.stages[0].impact || plan.stages[0].impact->value.z == 0) return std::nullopt;
+  // Weighted past efforts are a state of their own.
+  if (plan.stages[0].impact->effort.size() != 1) return std::nullopt;
   const Stage& stage = plan.stages[0];
   const Combination& held = stage.impact->value;
   const auto slots = static_cast<Index>(plan.slots.size());

@@ -11,9 +11,10 @@
 /// One step of a plan as a matrix, while the contact set stays what it is. Stage by stage, with R = S⁻¹Hᵀ and W = H R
 /// over the closed points alone,
 ///
-///     z° = S⁻¹ Σ_j (β^M_j M + β^C_j C + β^K_j K) x_j + R(π₁ p₋₁ + π₂ p₋₂),     z = z° + π₀ R p
+///     z° = S⁻¹ Σ_j (β^M_j M + β^C_j C + β^K_j K) x_j + R(π₁ p₋₁ + π₂ p₋₂ + …),     z = z° + π₀ R p
 ///     rigid:      0 = H(Σ_j y_j x_j + y_z z)                                   the impact measure rests on its stop
 ///     compliant:  p = −κ H(Σ_j g_j x_j + g_z z)                                the spring, pulling as well as pushing
+///     conserving: p = −½κ H(Σ_j (g_j + g⁻_j) x_j + g_z z)                      its discrete gradient
 ///
 /// and x_j ← Σ_i u_ji x_i + u_jz z. Loads and bounds move the fixed point and not the eigenvalues: they are left out.
 namespace ricochet {
@@ -31,8 +32,8 @@ struct ClosedContact {
 
 using StepMapOrRefusal = std::variant<Eigen::MatrixXd, Refusal>;
 
-/// A of X_{n+1} = A X_n, X = (x_0, …, x_{s−1}, then p₋₁ and p₋₂ of each stage whose law weights them). Refused: a
-/// singular S, a plan without the measure that the law reads, an impact measure that no effort can move.
+/// A of X_{n+1} = A X_n, X = (x_0, …, x_{s−1}, then p₋₁, p₋₂, … of the stages before, as far as one weights them).
+/// Refused: a singular S, a plan without the measure that the law reads, an impact measure that no effort can move.
 StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law);
 
 /// What a scheme does to the closed points themselves under a rigid law: A (s × s) of x_{n+1} = A x_n over one contact

@@ -31,6 +31,7 @@ class AugmentedLagrangian final : public ContactLaw {
   void solve(ReducedProblem& problem) override {
     for (const int lane : problem.touched) problem.outcome[lane] = solve_lane(problem, lane);
   }
+  std::string how_solved() const override { return "augmentations, each an active-set solve"; }
 
  private:
   LaneOutcome solve_lane(ReducedProblem& problem, int lane) {

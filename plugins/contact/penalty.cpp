@@ -32,7 +32,11 @@ class Penalty final : public ContactLaw {
   }
 
   double potential(double depth, int lane) const override { return 0.5 * stiffness(lane) * depth * depth; }
-  std::optional<double> linearise(int lane) const override { return stiffness(lane); }
+  std::optional<double> constant_stiffness(int lane) const override { return stiffness(lane); }
+  bool offers_slopes() const override { return true; }
+  ContactSlopes slopes(int, int lane) const override { return {.stiffness = stiffness(lane)}; }
+  bool closed_form(int points) const override { return points == 1; }
+  std::string how_solved() const override { return "one point: closed form; more: active set with a finite fallback"; }
 
  private:
   double stiffness(int lane) const { return stiffness_[static_cast<std::size_t>(lane)]; }

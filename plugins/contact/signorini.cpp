@@ -16,6 +16,8 @@ class Signorini final : public ContactLaw {
           solver_.solve(*problem.delassus, problem.reach, 0.0, problem.free + lane, problem.lower + lane,
                         problem.upper + lane, problem.effort + lane, problem.points, problem.lanes);
   }
+  bool closed_form(int points) const override { return points == 1; }
+  std::string how_solved() const override { return "one point: closed form; more: active set with a finite fallback"; }
 
  private:
   BoxSolver solver_;

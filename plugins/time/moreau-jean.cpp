@@ -47,7 +47,6 @@ class MoreauJean final : public TimeScheme {
     stage.at(Evaluation::explicit_start) = {
         {.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
     stage.update = {end, {.slots = {0, 1}, .z = 1}};
-    stage.increment = {.slots = {0, h}, .z = h * theta_};
     stage.work = {{.slots = {0, h}, .z = h / 2}, {.slots = {0, 1}, .z = theta_}, load, {1}, {{1, 1}, {0, -1}}};
     plan.stages = {stage};
     plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};

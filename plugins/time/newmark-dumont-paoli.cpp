@@ -61,7 +61,6 @@ class NewmarkDumontPaoli final : public TimeScheme {
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, central_rate, {{0, 1}}, {beta_, 1 - 2 * beta_, beta_}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
     stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-    stage.increment = {.slots = {0, 1}, .z = 1};
     stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}, {{1, 0.5}, {-1, -0.5}}};
     return stage;
   }
@@ -79,14 +78,12 @@ class NewmarkDumontPaoli final : public TimeScheme {
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};
     stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
-    stage.increment = {.slots = {0, 1}, .z = 0.5};
     return stage;
   }
 
   static Stage taylor_start() {
     Stage stage;
     stage.update = {{.slots = {1, 1}}, {.slots = {0, 1}}};
-    stage.increment = {.slots = {0, 1}};
     return stage;
   }
 

@@ -12,8 +12,8 @@ using namespace ricochet;
 ///     (M + γhC + βh²K) z = F(t+h) − C(v + (1−γ)h a) − K(q + h v + (½−β)h² a) + Hᵀp
 ///     q ← q + h v + (½−β)h² a + βh² z,   v ← v + (1−γ)h a + γh z,   a ← z,   y = H q_{n+1}
 ///
-/// Invariant (undamped, free, γ = ½): ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M; test displacement q_{n+1} − q_n with the
-/// averaged equation.
+/// Energy (undamped, free): E = ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M, of which a step takes
+/// (γ−½)(|Δq|²_K + (β−γ/2)h²|Δa|²_M); test displacement q_{n+1} − q_n with the equations of both ends, γ and 1−γ.
 class Newmark final : public TimeScheme {
  public:
   Newmark(double beta, double gamma) : beta_(beta), gamma_(gamma) {}
@@ -58,12 +58,17 @@ class Newmark final : public TimeScheme {
     stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
     stage.at(Evaluation::explicit_start) = {{.slots = {1, h, curve}}, {{1, 1}}, {.slots = {0, 1, lag}}, {{1, 1}}, {1}};
     stage.update = {end(h), end_rate, {.slots = {}, .z = 1}};
-    stage.increment = {.slots = {0, h, curve}, .z = beta_ * h * h};
-    stage.work = {stage.increment,
-                  {.slots = {0, 1, lag / 2}, .z = gamma_ * h / 2},
-                  {{0, 0.5}, {1, 0.5}},
-                  {0.5, 0.5},
-                  {{1, 1}, {0, -1}}};
+    const Combination increment{.slots = {0, h, curve}, .z = beta_ * h * h};
+    stage.work = {increment,
+                  {.slots = {0, 1, gamma_ * lag}, .z = gamma_ * gamma_ * h},
+                  {{0, 1 - gamma_}, {1, gamma_}},
+                  {gamma_, 1 - gamma_}};
+    // (γ−½)(|Δq|²_K + (β−γ/2)h²|Δa|²_M): what γ > ½ takes.
+    if (gamma_ != 0.5) {
+      const double taken = gamma_ - 0.5;
+      stage.loss = {{EnergyMatrix::K, taken, increment},
+                    {EnergyMatrix::M, taken * (beta_ - gamma_ / 2) * h * h, {.slots = {0, 0, -1}, .z = 1}}};
+    }
     return stage;
   }
 

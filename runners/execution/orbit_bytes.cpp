@@ -11,6 +11,7 @@ void describe_state(Archive& archive, State& state) {
   archive(state.slots);
   archive(state.efforts);
   archive(state.fastest);
+  archive(state.memory);
 }
 
 template <class Archive, class One>

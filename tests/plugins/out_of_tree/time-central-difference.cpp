@@ -54,7 +54,6 @@ class CentralDifference final : public TimeScheme {
     stage.at(Evaluation::implicit_end) = {{.slots = {1, 1}, .z = 1}, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
     stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-    stage.increment = {.slots = {0, 1}, .z = 1};
     stage.work = {{.slots = {0, 1}, .z = 0.5}, rate, {{0, 1}}, {1}, {{1, 0.5}, {-1, -0.5}}};
     return stage;
   }
@@ -68,7 +67,6 @@ class CentralDifference final : public TimeScheme {
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};
     stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
-    stage.increment = {.slots = {0, 1}, .z = 0.5};
     stage.work.reset();
     return stage;
   }

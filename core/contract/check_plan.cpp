@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/step_plan.hpp>
 
 namespace ricochet {
@@ -17,6 +18,8 @@ class Checker {
   }
   void number(double x, const std::string& what) { demand(std::isfinite(x), what + " is not finite"); }
   void levels(const Levels& list, const std::string& what) {
+    demand(list.size() <= most_levels,
+           fmt::format("{} has {} time levels, at most {} are marched", what, list.size(), most_levels));
     for (const Level& level : list) {
       number(level.at, what);
       number(level.weight, what);
@@ -28,10 +31,12 @@ class Checker {
     number(c.z, what);
   }
   void effort(const std::vector<double>& weights, const std::string& what) {
-    demand(!weights.empty() && weights.size() <= 3, what + " has one to three effort weights");
+    demand(!weights.empty() && weights.size() <= most_efforts,
+           fmt::format("{} has {} effort weights, one to {} are marched", what, weights.size(), most_efforts));
     for (const double w : weights) number(w, what);
   }
   void partition(const Levels& list, const std::string& what) {
+    if (list.empty()) return;
     double sum = 0;
     for (const Level& level : list) sum += level.weight;
     demand(std::abs(sum - 1) < 1e-9, what + " must weight its levels to one");
@@ -49,7 +54,11 @@ class Checker {
     levels(stage.load, name + ": load");
     demand(stage.update.size() == slots_, name + ": update must give one combination per slot");
     for (const Combination& c : stage.update) combination(c, name + ": update");
-    combination(stage.increment, name + ": increment");
+    for (const LossTerm& term : stage.loss) {
+      number(term.coefficient, name + ": loss");
+      demand(!(term.coefficient < 0), name + ": loss has a negative coefficient: it would be a gain");
+      combination(term.value, name + ": loss");
+    }
     if (stage.impact) {
       combination(stage.impact->value, name + ": impact measure");
       levels(stage.impact->bound, name + ": impact bound");
@@ -60,15 +69,22 @@ class Checker {
         partition(stage.impact->gate->predictor_bound, name + ": gate predictor bound");
         levels(stage.impact->gate->approach_bound, name + ": gate approach bound");
         number(stage.impact->gate->restitution, name + ": restitution");
+        levels(stage.impact->gate->predictor_bound, name + ": gate predictor bound");
       }
+      effort(stage.impact->effort, name + ": impact");
     }
     for (const auto& compliance : stage.compliance) {
       if (!compliance) continue;
       combination(compliance->displacement, name + ": compliance");
       combination(compliance->rate, name + ": compliance rate");
+      levels(compliance->bound, name + ": compliance bound");
       partition(compliance->bound, name + ": compliance bound");
       levels(compliance->rate_bound, name + ": compliance rate bound");
       effort(compliance->effort, name + ": compliance");
+      if (compliance->before) {
+        combination(*compliance->before, name + ": compliance before the step");
+        levels(compliance->before_bound, name + ": compliance bound before the step");
+      }
     }
     if (stage.work) {
       combination(stage.work->displacement, name + ": work displacement");
@@ -83,82 +99,6 @@ class Checker {
   std::size_t slots_;
 };
 
-void append_term(std::string& text, double weight, const std::string& symbol) {
-  if (weight == 0) return;
-  const bool first = text.empty();
-  const double size = std::abs(weight);
-  if (weight < 0)
-    text += first ? "−" : " − ";
-  else if (!first)
-    text += " + ";
-  if (size != 1) text += fmt::format("{:.6g} ", size);
-  text += symbol;
-}
-
-std::string combination_text(const Combination& c, const std::vector<std::string>& slots) {
-  std::string text;
-  for (std::size_t j = 0; j < c.slots.size(); ++j) append_term(text, c.slots[j], slots[j]);
-  append_term(text, c.z, "z");
-  return text.empty() ? "0" : text;
-}
-
-std::string levels_text(const Levels& levels, const std::string& symbol) {
-  std::string text;
-  for (const Level& level : levels) {
-    std::string at = "t";
-    if (level.at != 0) at += fmt::format("{}{:g}h", level.at > 0 ? "+" : "−", std::abs(level.at));
-    append_term(text, level.weight, symbol + "(" + at + ")");
-  }
-  return text.empty() ? "0" : text;
-}
-
-std::string operator_text(const OperatorWeights& w) {
-  std::string text;
-  append_term(text, w.M, "M");
-  append_term(text, w.C, "C");
-  append_term(text, w.K, "K");
-  return text;
-}
-
-std::string effort_text(const std::vector<double>& weights) {
-  static const char* names[] = {"p", "p₋₁", "p₋₂"};
-  std::string text;
-  for (std::size_t k = 0; k < weights.size(); ++k) append_term(text, weights[k], names[k]);
-  return text;
-}
-
-std::string stage_text(const Stage& stage, const StepPlan& plan) {
-  std::string text;
-  const std::string s = operator_text(stage.matrix);
-  if (!s.empty()) {
-    text += "    S = " + s + "\n    b = ";
-    std::string b;
-    for (std::size_t j = 0; j < stage.history.size(); ++j) {
-      const std::string term = operator_text(stage.history[j]);
-      if (!term.empty()) b += (b.empty() ? "(" : " + (") + term + ") " + plan.slots[j];
-    }
-    const std::string load = levels_text(stage.load, "F");
-    text += b + (load == "0" ? "" : (b.empty() ? "" : " + ") + load) + "\n";
-  }
-  if (stage.impact) {
-    text += "    y = H(" + combination_text(stage.impact->value, plan.slots) + "), bounded by " +
-            levels_text(stage.impact->bound, stage.impact->gate ? "bound'" : "bound") + "\n";
-    if (const auto& gate = stage.impact->gate)
-      text += "    closed where H(" + combination_text(gate->predictor, plan.slots) + ") passes " +
-              levels_text(gate->predictor_bound, "bound") +
-              fmt::format(", rebound e = {:g} of an approaching H({})\n", gate->restitution,
-                          combination_text(gate->approach, plan.slots));
-  }
-  static const char* evaluations[] = {"implicit", "averaged", "explicit"};
-  for (int k = 0; k < 3; ++k)
-    if (const auto& c = stage.compliance[static_cast<std::size_t>(k)])
-      text += fmt::format("    g ({}) = H({}), effort {}\n", evaluations[k],
-                          combination_text(c->displacement, plan.slots), effort_text(c->effort));
-  for (std::size_t j = 0; j < stage.update.size(); ++j)
-    text += "    " + plan.slots[j] + " ← " + combination_text(stage.update[j], plan.slots) + "\n";
-  return text;
-}
-
 }  // namespace
 
 std::optional<std::string> check_plan(const StepPlan& plan) {
@@ -169,7 +109,12 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
     check.number(position, "initial");
     check.number(velocity, "initial");
   }
-  check.demand(!plan.stages.empty() && plan.stages.size() <= 3, "a plan has one to three stages");
+  check.demand(plan.slots.size() <= most_slots,
+               fmt::format("the plan has {} slots, at most {} are marched", plan.slots.size(), most_slots));
+  check.demand(!plan.stages.empty() && plan.stages.size() <= most_stages,
+               fmt::format("the plan has {} stages, one to {} are marched", plan.stages.size(), most_stages));
+  check.demand(plan.start.size() <= most_stages,
+               fmt::format("the start has {} stages, at most {} are marched", plan.start.size(), most_stages));
   for (const Stage& stage : plan.start) check.stage(stage, "start");
   for (std::size_t k = 0; k < plan.stages.size(); ++k) check.stage(plan.stages[k], fmt::format("stage {}", k + 1));
   for (const QuadraticTerm& term : plan.energy) {
@@ -182,27 +127,11 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   check.demand(std::isfinite(plan.facts.order) && plan.facts.order > 0, "facts: the order is positive");
   check.demand(!plan.facts.stability_limit || *plan.facts.stability_limit > 0,
                "facts: the stability limit is positive");
+  check.demand(!plan.facts.contact_order || (std::isfinite(*plan.facts.contact_order) && *plan.facts.contact_order > 0),
+               "facts: the order at contact is positive, where it is known");
+  if (!check.wrong)
+    if (std::string wrong = inconsistent_motion(plan); !wrong.empty()) check.wrong = std::move(wrong);
   return check.wrong;
-}
-
-std::string print_plan(const StepPlan& plan) {
-  std::string text = "slots: ";
-  for (std::size_t j = 0; j < plan.slots.size(); ++j) text += (j ? ", " : "") + plan.slots[j];
-  text += "\n";
-  for (std::size_t k = 0; k < plan.start.size(); ++k)
-    text += fmt::format("start{}\n", plan.start_advances ? " (moves time by h)" : "") + stage_text(plan.start[k], plan);
-  for (std::size_t k = 0; k < plan.stages.size(); ++k)
-    text += fmt::format("stage {}: S z = b + Hᵀp\n", k + 1) + stage_text(plan.stages[k], plan);
-  std::string energy;
-  for (const QuadraticTerm& term : plan.energy) {
-    Combination c;
-    c.slots = term.slots;
-    append_term(
-        energy, term.coefficient,
-        fmt::format("|{}|²_{}", combination_text(c, plan.slots), term.matrix == QuadraticTerm::Matrix::M ? "M" : "K"));
-  }
-  if (!energy.empty()) text += "scheme energy: " + energy + "\n";
-  return text;
 }
 
 }  // namespace ricochet

@@ -10,9 +10,12 @@ struct UnitMass {
 
   /// From displacement and velocity, before the start rule.
   UnitMass(const StepPlan& plan, double displacement, double velocity);
-  /// The stages of a step under a constant force (N); with `stop`, a rigid one below at 0. Returns whether an effort of
-  /// the stop could have moved an impact measure.
-  bool step(const std::vector<Stage>& stages, double force, bool stop);
+  /// The unknown of a stage under a constant force and a weighted effort Σ π_k p₋ₖ (N); 0 where S has no M.
+  double unknown(const Stage& stage, double force, double effort) const;
+  /// The slots after the stage, with its unknown.
+  void update(const Stage& stage, double z);
+  /// Stages under a constant force and without contact.
+  void advance(const std::vector<Stage>& stages, double force);
 };
 
 /// Σ_j c_j x_j + c_z z.

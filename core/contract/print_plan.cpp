@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/contract/stage_facts.hpp>
+#include <ricochet/contract/step_plan.hpp>
+
+namespace ricochet {
+namespace {
+
+void append_term(std::string& text, double weight, const std::string& symbol) {
+  if (weight == 0) return;
+  const bool first = text.empty();
+  const double size = std::abs(weight);
+  if (weight < 0)
+    text += first ? "−" : " − ";
+  else if (!first)
+    text += " + ";
+  if (size != 1) text += fmt::format("{:.6g} ", size);
+  text += symbol;
+}
+
+std::string combination_text(const Combination& c, const std::vector<std::string>& slots) {
+  std::string text;
+  for (std::size_t j = 0; j < c.slots.size(); ++j) append_term(text, c.slots[j], slots[j]);
+  append_term(text, c.z, "z");
+  return text.empty() ? "0" : text;
+}
+
+std::string levels_text(const Levels& levels, const std::string& symbol) {
+  std::string text;
+  for (const Level& level : levels) {
+    std::string at = "t";
+    if (level.at != 0) at += fmt::format("{}{:g}h", level.at > 0 ? "+" : "−", std::abs(level.at));
+    append_term(text, level.weight, symbol + "(" + at + ")");
+  }
+  return text.empty() ? "0" : text;
+}
+
+std::string operator_text(const OperatorWeights& w) {
+  std::string text;
+  append_term(text, w.M, "M");
+  append_term(text, w.C, "C");
+  append_term(text, w.K, "K");
+  return text;
+}
+
+std::string effort_text(const std::vector<double>& weights) {
+  static const char* digits[] = {"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
+  std::string text;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    std::string name = "p";
+    if (k > 0) name += "₋" + (k >= 10 ? std::string(digits[k / 10]) : "") + digits[k % 10];
+    append_term(text, weights[k], name);
+  }
+  return text.empty() ? "0" : text;
+}
+
+const char* matrix_name(EnergyMatrix matrix) {
+  return matrix == EnergyMatrix::M ? "M" : "K";
+}
+
+std::string impact_text(const ImpactMeasure& impact, const std::vector<std::string>& slots) {
+  std::string text = "    y = H(" + combination_text(impact.value, slots) + "), bounded by " +
+                     levels_text(impact.bound, impact.gate ? "bound'" : "bound") +
+                     (impact.effort == std::vector{1.0} ? "" : ", effort " + effort_text(impact.effort)) + "\n";
+  if (const auto& gate = impact.gate)
+    text += "    closed where H(" + combination_text(gate->predictor, slots) + ") passes " +
+            levels_text(gate->predictor_bound, "bound") +
+            fmt::format(", rebound e = {:g} of an approaching H({}) against {}\n", gate->restitution,
+                        combination_text(gate->approach, slots), levels_text(gate->approach_bound, "bound'"));
+  return text;
+}
+
+std::string compliance_text(const ComplianceMeasure& c, Evaluation evaluation, const std::vector<std::string>& slots) {
+  std::string text =
+      fmt::format("    g ({}) = H({}) against {}, effort {}\n", evaluation_word(evaluation),
+                  combination_text(c.displacement, slots), levels_text(c.bound, "bound"), effort_text(c.effort));
+  if (!c.rate.slots.empty() || c.rate.z != 0)
+    text +=
+        "        rate H(" + combination_text(c.rate, slots) + ") against " + levels_text(c.rate_bound, "bound'") + "\n";
+  if (c.before)
+    text += "        one step before H(" + combination_text(*c.before, slots) + ") against " +
+            levels_text(c.before_bound, "bound") + "\n";
+  return text;
+}
+
+std::string work_text(const WorkForm& work, const std::vector<std::string>& slots) {
+  return "    work: s = " + combination_text(work.displacement, slots) + ", r = " + combination_text(work.rate, slots) +
+         ", load " + levels_text(work.load, "F") + ", effort " + effort_text(work.effort) + ", stops move by " +
+         levels_text(work.support, "φ") + "\n";
+}
+
+std::string stage_text(const Stage& stage, const std::vector<std::string>& slots) {
+  std::string text;
+  const std::string s = operator_text(stage.matrix);
+  if (!s.empty()) {
+    text += "    S = " + s + "\n    b = ";
+    std::string b;
+    for (std::size_t j = 0; j < stage.history.size(); ++j) {
+      const std::string term = operator_text(stage.history[j]);
+      if (!term.empty()) b += (b.empty() ? "(" : " + (") + term + ") " + slots[j];
+    }
+    const std::string load = levels_text(stage.load, "F");
+    text += b + (load == "0" ? "" : (b.empty() ? "" : " + ") + load) + "\n";
+  }
+  if (stage.impact) text += impact_text(*stage.impact, slots);
+  for (int k = 0; k < evaluations; ++k)
+    if (const auto& c = stage.compliance[static_cast<std::size_t>(k)])
+      text += compliance_text(*c, static_cast<Evaluation>(k), slots);
+  for (std::size_t j = 0; j < stage.update.size(); ++j)
+    text += "    " + slots[j] + " ← " + combination_text(stage.update[j], slots) + "\n";
+  if (stage.work) text += work_text(*stage.work, slots);
+  std::string loss;
+  for (const LossTerm& term : stage.loss)
+    append_term(loss, term.coefficient,
+                fmt::format("|{}|²_{}", combination_text(term.value, slots), matrix_name(term.matrix)));
+  if (!loss.empty()) text += "    dissipated by the scheme: " + loss + "\n";
+  return text;
+}
+
+// "from t to t+½h" and what an effort gives.
+std::string stands_text(const StageFacts& facts, std::size_t stages, double momentum, double h) {
+  std::string text;
+  if (stages > 1) text += fmt::format(", from t{:+g}h to t{:+g}h", facts.from, facts.to);
+  if (std::isfinite(momentum) && (stages > 1 || std::abs(momentum - h) > 1e-9 * h))
+    text += fmt::format(", an effort of 1 N gives {:.6g} h", momentum / h);
+  return text;
+}
+
+}  // namespace
+
+const char* evaluation_word(Evaluation evaluation) {
+  switch (evaluation) {
+    case Evaluation::implicit_end:
+      return "implicit";
+    case Evaluation::averaged:
+      return "averaged";
+    case Evaluation::explicit_start:
+      return "explicit";
+    case Evaluation::conserving:
+      break;
+  }
+  return "conserving";
+}
+
+std::string print_plan(const StepPlan& given) {
+  const DerivedPlan derived = derive(given);
+  const StepPlan& plan = derived.plan;
+  std::string text = "slots: ";
+  for (std::size_t j = 0; j < plan.slots.size(); ++j) text += (j ? ", " : "") + plan.slots[j];
+  text += "; at first ";
+  for (std::size_t j = 0; j < plan.slots.size(); ++j) {
+    std::string start;
+    append_term(start, plan.initial[j][0], "q₀");
+    append_term(start, plan.initial[j][1], "v₀");
+    text += (j ? ", " : "") + plan.slots[j] + " = " + (start.empty() ? "0" : start);
+  }
+  text += "\n";
+  for (const Stage& stage : plan.start)
+    text += fmt::format("start{}\n", plan.start_advances ? " (moves time by h)" : "") + stage_text(stage, plan.slots);
+  const std::vector<double> momentum = momentum_weights(plan, stage_efforts(plan, std::nullopt));
+  for (std::size_t k = 0; k < plan.stages.size(); ++k)
+    text += fmt::format("stage {}: S z = b + Hᵀp{}\n", k + 1,
+                        stands_text(derived.stages[k], plan.stages.size(), momentum[k], derived.h)) +
+            stage_text(plan.stages[k], plan.slots);
+  Combination velocity = plan.velocity;
+  text += "velocity: " + combination_text(velocity, plan.slots);
+  if (derived.velocity_offset != 0) text += fmt::format(", which stands at t{:+g}h", 1 + derived.velocity_offset);
+  text += "\n";
+  std::string energy;
+  for (const QuadraticTerm& term : plan.energy) {
+    Combination c;
+    c.slots = term.slots;
+    append_term(energy, term.coefficient,
+                fmt::format("|{}|²_{}", combination_text(c, plan.slots), matrix_name(term.matrix)));
+  }
+  text += "scheme energy: " + (energy.empty() ? "none is declared" : energy) + "\n";
+  return text;
+}
+
+}  // namespace ricochet

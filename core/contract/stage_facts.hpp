@@ -1,0 +1,50 @@
+#pragma once
+#include <ricochet/contract/step_plan.hpp>
+#include <string>
+#include <vector>
+
+/// \file
+/// What follows from the numbers of a plan and need not be declared, found by marching a free unit mass: when each
+/// stage stands, what it moves the position by, at which levels its stops are, what momentum its effort gives.
+namespace ricochet {
+
+/// One stage. Times are in steps, from the time when the step begins.
+struct StageFacts {
+  double from = 0, to = 1;  ///< where the position stands before and after the stage
+  /// When contact is asked: `to` where the stage moves the position, else the latest level of its stop.
+  double instant = 1;
+  Combination increment;  ///< position after − position before, without cancellation
+};
+
+/// A plan with what was left to be derived filled in, and the facts of its stages.
+struct DerivedPlan {
+  StepPlan plan;  ///< levels of stops complete
+  /// The step that the plan was made for, s: what a free mass at 1 m/s moves by. 0 where some S has no M: then nothing
+  /// is derived, each stage stands at the end of the step, and so does what was left out.
+  double h = 0;
+  std::vector<StageFacts> start, stages;
+  /// Where plan.velocity stands after a step, in steps: 0 at its end, −½ where it is a mean over the step (of half the
+  /// last sub-step where there are several).
+  double velocity_offset = 0;
+};
+
+/// Fills in what a well-formed plan leaves out.
+DerivedPlan derive(StepPlan plan);
+
+/// What is wrong with the motion of a free unit mass at rest or at constant speed, or with levels, velocity and test
+/// displacements measured on it; "" when nothing is. For check_plan(), which has looked at sizes before.
+std::string inconsistent_motion(const StepPlan& plan);
+
+/// Weights π of the effort in the equation of each stage, as a law that reads this evaluation (none: a rigid law) meets
+/// them; empty where the stage reads no contact.
+using StageEfforts = std::vector<std::vector<double>>;
+StageEfforts stage_efforts(const StepPlan& plan, const std::optional<Evaluation>& evaluation);
+
+/// The momentum (N s per N, hence seconds) that one effort of 1 N, found once by each stage, finally gives to a free
+/// mass: h in a plan of one stage, (h/3, 2h/3) in Bathe's two, 0 for a stage that only projects. Not finite where the
+/// velocity never settles.
+std::vector<double> momentum_weights(const StepPlan& plan, const StageEfforts& efforts);
+/// The same of an effort that a stage of the start rule finds; `weights`: its own, of which the first counts.
+double start_momentum(const StepPlan& plan, std::size_t stage, double weight, const StageEfforts& efforts);
+
+}  // namespace ricochet
