@@ -38,6 +38,7 @@ class NewmarkDumontPaoli final : public TimeScheme {
                    {QuadraticTerm::Matrix::K, 0.5, {1, -0.5}},
                    {QuadraticTerm::Matrix::K, 0.5 * (beta_ - 0.25), {0, 1}}};
     plan.facts.order = second_order_ ? 2 : 1;
+    plan.facts.contact_order = 1;
     plan.facts.restitution = Restitution::asymptotic;
     plan.facts.needs_regular_mass = beta_ < 0.25;
     if (beta_ < 0.25) plan.facts.stability_limit = 2 / std::sqrt(1 - 4 * beta_);

@@ -53,20 +53,33 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     if (std::isfinite(value)) record.measures.emplace_back(name, value);
   };
   const double start = energy.first.common(), end = energy.last.common();
-  put("scheme_energy_start", energy.scheme_start);
-  put("scheme_energy_end", energy.last.scheme);
+  const StepPlan& plan = marcher.program().plan;
+  const bool balances = audit.balances(), loads = marcher.program().support || marcher.program().load;
+  if (!plan.energy.empty()) {
+    put("scheme_energy_start", energy.scheme_start);
+    put("scheme_energy_end", energy.last.scheme);
+  } else {
+    record.notes.push_back("the scheme declares no energy of its own: its steps are judged by the common one");
+  }
   put("energy_start", start);
   put("energy_end", end);
   if (start > 0) put("energy_ratio", end / start);
-  put("largest_step_gain", energy.largest_step_gain);
-  if (contact.impacts > 0)
+  if (balances || !loads) put("largest_step_gain", energy.largest_step_gain);
+  if (!balances)
+    record.notes.push_back(
+        "the scheme declares no work form: the works of damping and loads, what contact dissipates and the balance are "
+        "not "
+        "known");
+  if (contact.impacts > 0 && balances)
     put("drift_per_impact", (energy.last.scheme - energy.scheme_start - energy.work_of_loads + energy.work_of_damping) /
                                 static_cast<double>(contact.impacts));
-  put("work_of_damping", energy.work_of_damping);
-  put("work_of_loads", energy.work_of_loads);
-  // What the stops give back (a spring's potential) is not dissipated.
-  put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
-  put("balance_residual", energy.balance_residual());
+  if (balances) {
+    put("work_of_damping", energy.work_of_damping);
+    put("work_of_loads", energy.work_of_loads);
+    // What the stops give back (a spring's potential) is not dissipated.
+    put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
+    put("balance_residual", energy.balance_residual());
+  }
   put("projection_energy", problem.projection_energy);
   put("kernel_energy", problem.kernel_energy);
   put("deepest_penetration", contact.deepest_penetration);

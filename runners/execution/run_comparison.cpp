@@ -95,8 +95,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
     record.status = "done";
     if (events.empty())
       put(record, "declared_order", facts.order);
-    else if (rigid && point_mass)
-      put(record, "declared_order", std::min(facts.order, facts.contact_order));
+    else if (rigid && point_mass && facts.contact_order)
+      put(record, "declared_order", std::min(facts.order, *facts.contact_order));
     put(record, "tip_displacement_end", sampler.motion().tip.back());
     put(record, "energy_start", sampler.motion().energy.front());
     put(record, "energy_end", sampler.motion().energy.back());

@@ -346,7 +346,9 @@ std::vector<Figure> time_figures(const CaseView& view, CurveData& curves) {
   const std::vector<Subject> subjects = {
       {"energy",
        "Energy against time",
-       "Mechanical energy at mid-step, ½vᵀMv + ½ūᵀKū plus the energy stored in compliant contacts.",
+       "Mechanical energy ½vᵀMv + ½qᵀKq plus that stored in compliant contacts, at the time where each scheme's "
+       "velocity stands "
+       "(the end of a step, or its middle).",
        "energy",
        {"energy E", "J"},
        {Scale::value, Scale::ratio, Scale::change},

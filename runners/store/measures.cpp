@@ -7,8 +7,11 @@ const std::vector<MeasureInfo>& trajectory_measures() {
       {"scheme_energy_start", "J", "The scheme's own discrete energy after its start rule, where it declares one."},
       {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step."},
       {"energy_start", "J",
-       "The common mechanical energy ½vᵀMv + ½ūᵀKū plus the contact potential, at the first mid-step."},
-      {"energy_end", "J", "The common mechanical energy at the last mid-step."},
+       "The common mechanical energy ½vᵀMv + ½qᵀKq plus the contact potential, where the scheme's velocity stands: at "
+       "t = 0, "
+       "or in the middle of the first sub-step where the velocity is a mean over it."},
+      {"energy_end", "J",
+       "The common mechanical energy at the end of the last step, or in the middle of its last sub-step."},
       {"energy_ratio", "1", "Common energy at the end divided by that at the start."},
       {"largest_step_gain", "J",
        "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
@@ -21,7 +24,9 @@ const std::vector<MeasureInfo>& trajectory_measures() {
       {"dissipated_at_contact", "J",
        "Energy taken out by the contact efforts over the run, less what springs at the stops still store."},
       {"balance_residual", "J",
-       "What the balance of the scheme's own energy fails to close by: change − loads + damping − work of the stops; "
+       "What the balance of the scheme's own energy fails to close by: change − loads + damping + losses that the "
+       "scheme "
+       "declares − work of the stops; "
        "round-off × steps "
        "where the scheme has an exact balance."},
       {"projection_energy", "J",
@@ -30,9 +35,12 @@ const std::vector<MeasureInfo>& trajectory_measures() {
        "Energy of the initial state in the kernel of a singular mass, which no inertia holds: lost or left ringing at "
        "any step, 0 after projection."},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
-      {"impacts", "1", "Number of times that contact began: no active point in one step, some in the next."},
-      {"active_set_changes", "1", "Number of steps at which the set of closed contact points changed."},
-      {"impulse", "N s", "Time integral of the contact efforts' magnitude, summed over the contact points."},
+      {"impacts", "1", "Number of times that contact began: no active point in one sub-step, some in the next."},
+      {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed."},
+      {"impulse", "N s",
+       "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
+       "stage is "
+       "worth follows from the scheme's plan."},
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity)."},
