@@ -1,5 +1,6 @@
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <stdexcept>
+#include <string>
 
 // One body per kernel, force-inlined into a wrapper per instruction set. `a += b * c` contracts to one fused operation
 // in each wrapper that has it, in scalar and in vector code alike, which is what makes lanes independent of their
@@ -66,6 +67,15 @@ RICOCHET_INLINE void product_row(const double* a, int stride, const V<T>* in, co
     for (int k = 0; k < Row<T>::count; ++k) sum[k] += a[s] * in[s * Row<T>::count + k];
     keep_order<T, W>(sum);
   }
+}
+
+// Out of the way of the loops.
+[[noreturn, gnu::cold, gnu::noinline]] void refuse_count(const char* kernel, int count, int most) {
+  throw std::logic_error(std::string("the kernel '") + kernel + "' takes 1 to " + std::to_string(most) +
+                         " blocks, not " + std::to_string(count));
+}
+RICOCHET_INLINE void check_count(const char* kernel, int count, int most) {
+  if (count < 1 || count > most) refuse_count(kernel, count, most);
 }
 
 // Elementwise kernels do not see lanes: they run over whole blocks, four doubles at a time (blocks are padded to 64
@@ -136,6 +146,55 @@ RICOCHET_INLINE void update_body(long size, double* const* x, const double* z, c
       for (int j = 1; j < N; ++j) sum += c[j] * fresh[j];
       *reinterpret_cast<Vector4*>(combined + i) = sum;
     }
+  }
+}
+
+// The same for any count, term by term in the same order. Two vectors at a time: a sum waits for its last term.
+RICOCHET_INLINE void combine_general(long size, int count, const double* const* x, const double* weight, double* out) {
+  check_count("combine", count, most_lane_slots);
+  const double* in[most_lane_slots];
+  double w[most_lane_slots];
+  for (int j = 0; j < count; ++j) {
+    in[j] = x[j];
+    w[j] = weight[j];
+  }
+  for (long i = 0; i < size; i += 8) {
+    Vector4 sum[2];
+    for (int k = 0; k < 2; ++k) sum[k] = Vector4{} + w[0] * load4(in[0] + i + 4 * k);
+    for (int j = 1; j < count; ++j)
+      for (int k = 0; k < 2; ++k) sum[k] += w[j] * load4(in[j] + i + 4 * k);
+    for (int k = 0; k < 2; ++k) *reinterpret_cast<Vector4*>(out + i + 4 * k) = sum[k];
+  }
+}
+
+template <bool Next>
+RICOCHET_INLINE void update_general(long size, int count, double* const* x, const double* z, const double* weight,
+                                    const double* next, double* combined) {
+  check_count("update", count, most_lane_slots);
+  double* slot[most_lane_slots];
+  double w[most_lane_slots * most_lane_terms], c[most_lane_slots];
+  for (int j = 0; j < count; ++j) {
+    slot[j] = x[j];
+    c[j] = Next ? next[j] : 0;
+  }
+  for (int e = 0; e < count * (count + 1); ++e) w[e] = weight[e];
+  for (long i = 0; i < size; i += 8) {
+    Vector4 old[most_lane_terms][2], combination[2] = {};
+    for (int j = 0; j <= count; ++j)
+      for (int k = 0; k < 2; ++k) old[j][k] = load4((j < count ? slot[j] : z) + i + 4 * k);
+    for (int j = 0; j < count; ++j) {
+      const double* of = w + j * (count + 1);
+      Vector4 fresh[2];
+      for (int k = 0; k < 2; ++k) fresh[k] = Vector4{} + of[0] * old[0][k];
+      for (int s = 1; s <= count; ++s)
+        for (int k = 0; k < 2; ++k) fresh[k] += of[s] * old[s][k];
+      for (int k = 0; k < 2; ++k) {
+        *reinterpret_cast<Vector4*>(slot[j] + i + 4 * k) = fresh[k];
+        if (Next) combination[k] += c[j] * fresh[k];
+      }
+    }
+    if (Next)
+      for (int k = 0; k < 2; ++k) *reinterpret_cast<Vector4*>(combined + i + 4 * k) = combination[k];
   }
 }
 
@@ -333,6 +392,57 @@ RICOCHET_INLINE void measure_body(const LaneRows& matrix, const double* const* x
   }
 }
 
+// Any count: one lane keeps its order as in a band of unknown width.
+template <int T>
+RICOCHET_INLINE void diagonal_general(int rows, int count, const double* coefficient, const double* const* x,
+                                      const double* scale, double* z) {
+  check_count("diagonal_step", count, most_lane_slots);
+  const double* in[most_lane_slots];
+  for (int j = 0; j < count; ++j) in[j] = x[j];
+  V<T> a[Row<T>::count];
+  for (int k = 0; k < Row<T>::count; ++k) a[k] = row<T>(scale, 0)[k];
+  for (long i = 0; i < rows; ++i) {
+    const double* c = coefficient + i * (count + 1);
+    V<T> sum[Row<T>::count];
+    for (int k = 0; k < Row<T>::count; ++k) sum[k] = V<T>{} + c[count] * a[k];
+    keep_order<T, -1>(sum);
+    for (int j = 0; j < count; ++j) {
+      for (int k = 0; k < Row<T>::count; ++k) sum[k] += c[j] * row<T>(in[j], i)[k];
+      keep_order<T, -1>(sum);
+    }
+    for (int k = 0; k < Row<T>::count; ++k) row<T>(z, i)[k] = sum[k];
+  }
+}
+
+template <int T>
+RICOCHET_INLINE void measure_general(const LaneRows& matrix, int count, const double* const* x, const double* weight,
+                                     const double* offset, double* y) {
+  check_count("measure", count, most_lane_terms);
+  const double* in[most_lane_terms];
+  double w[most_lane_terms];
+  for (int j = 0; j < count; ++j) {
+    in[j] = x[j];
+    w[j] = weight[j];
+  }
+  for (long i = 0; i < matrix.rows; ++i) {
+    V<T> total[Row<T>::count];
+    for (int k = 0; k < Row<T>::count; ++k) total[k] = offset ? row<T>(offset, 0)[k] : V<T>{};
+    for (int e = matrix.start[i]; e < matrix.start[i + 1]; ++e) {
+      const long at = matrix.index[e];
+      const double value = matrix.value[e];
+      V<T> sum[Row<T>::count];
+      for (int k = 0; k < Row<T>::count; ++k) sum[k] = V<T>{} + w[0] * row<T>(in[0], at)[k];
+      for (int j = 1; j < count; ++j) {
+        for (int k = 0; k < Row<T>::count; ++k) sum[k] += w[j] * row<T>(in[j], at)[k];
+        keep_order<T, -1>(sum);
+      }
+      for (int k = 0; k < Row<T>::count; ++k) total[k] += value * sum[k];
+      keep_order<T, -1>(total);
+    }
+    for (int k = 0; k < Row<T>::count; ++k) row<T>(y, i)[k] = total[k];
+  }
+}
+
 template <int T>
 RICOCHET_INLINE std::uint32_t outside_body(int rows, const double* y, const double* lower, const double* upper) {
   if constexpr (T == 1) {
@@ -367,6 +477,11 @@ RICOCHET_INLINE double triple_product_body(long size, const double* a, const dou
   double total = (all[0] + all[1]) + (all[2] + all[3]);
   for (; i < size; ++i) total += a[i] * (x[i] * y[i]);
   return total;
+}
+
+constexpr int written_slots = 4, written_terms = 5;
+RICOCHET_INLINE bool written(int count, int most) {
+  return count >= 1 && count <= most;
 }
 
 RICOCHET_INLINE void combine_any(long size, int count, const double* const* x, const double* weight, double* out) {
@@ -427,25 +542,46 @@ RICOCHET_INLINE void measure_any(const LaneRows& matrix, int count, const double
   }
 }
 
-// The wrappers: one set per instruction set.
+// The wrappers: one set per instruction set. What any count may ask for stands apart, out of the way of the registers
+// of the usual ones.
 // clang-format off
 #define RICOCHET_KERNEL_SET(NAME, TARGET)                                                                              \
   template <int T>                                                                                                     \
   struct NAME {                                                                                                        \
+    TARGET [[gnu::noinline]] static void combine_many(long n, int c, const double* const* x, const double* w, double* o) {\
+      combine_general(n, c, x, w, o);                                                                                  \
+    }                                                                                                                  \
     TARGET static void combine(long n, int c, const double* const* x, const double* w, double* o) {                    \
+      if (!written(c, written_slots)) return combine_many(n, c, x, w, o);                                              \
       combine_any(n, c, x, w, o);                                                                                      \
+    }                                                                                                                  \
+    TARGET [[gnu::noinline]] static void update_many(long n, int c, double* const* x, const double* z, const double* w,\
+                                                     const double* next, double* o) {                                  \
+      if (next) update_general<true>(n, c, x, z, w, next, o);                                                          \
+      else update_general<false>(n, c, x, z, w, next, o);                                                              \
     }                                                                                                                  \
     TARGET static void update(long n, int c, double* const* x, const double* z, const double* w, const double* next,   \
                               double* o) {                                                                             \
+      if (!written(c, written_slots)) return update_many(n, c, x, z, w, next, o);                                      \
       if (next) update_any<true>(n, c, x, z, w, next, o);                                                              \
       else update_any<false>(n, c, x, z, w, next, o);                                                                  \
     }                                                                                                                  \
     TARGET static void band_step(const BandStep& step) { band_step_body<T>(step); }                                    \
-    TARGET static void diagonal_step(int n, int c, const double* f, const double* const* x, const double* a, double* z) { \
+    TARGET [[gnu::noinline]] static void diagonal_many(int n, int c, const double* f, const double* const* x,          \
+                                                       const double* a, double* z) {                                   \
+      diagonal_general<T>(n, c, f, x, a, z);                                                                           \
+    }                                                                                                                  \
+    TARGET static void diagonal_step(int n, int c, const double* f, const double* const* x, const double* a, double* z) {\
+      if (!written(c, written_slots)) return diagonal_many(n, c, f, x, a, z);                                          \
       diagonal_any<T>(n, c, f, x, a, z);                                                                               \
+    }                                                                                                                  \
+    TARGET [[gnu::noinline]] static void measure_many(const LaneRows& h, int c, const double* const* x, const double* w,\
+                                                      const double* o, double* y) {                                    \
+      measure_general<T>(h, c, x, w, o, y);                                                                            \
     }                                                                                                                  \
     TARGET static void measure(const LaneRows& h, int c, const double* const* x, const double* w, const double* o,     \
                                double* y) {                                                                            \
+      if (!written(c, written_terms)) return measure_many(h, c, x, w, o, y);                                           \
       measure_any<T>(h, c, x, w, o, y);                                                                                \
     }                                                                                                                  \
     TARGET static void add_column(int n, const double* s, const double* a, double* y) { add_column_body<T>(n, s, a, y); } \

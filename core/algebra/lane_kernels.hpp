@@ -8,6 +8,12 @@
 /// table is asked for, never by the ABI.
 namespace ricochet {
 
+/// The most blocks that a kernel combines: the slots of a plan, and one more where the unknown z is measured with them.
+/// Up to four slots are written out; beyond, the same operations run in the same order from a loop. A count outside of
+/// 1 … limit is a std::logic_error, and nothing is written.
+constexpr int most_lane_slots = 8;
+constexpr int most_lane_terms = most_lane_slots + 1;
+
 /// One free step with band operators: S z = K k + M m + shape·scale + load, S = L D Lᵀ.
 struct BandStep {
   int rows = 0;               ///< n
@@ -38,18 +44,19 @@ struct LaneRows {
 };
 
 struct LaneKernels {
-  /// out = Σ_j weight[j] x_j, j < count ≤ 4, over `size` doubles.
+  /// out = Σ_j weight[j] x_j, j < count ≤ most_lane_slots, over `size` doubles.
   void (*combine)(long size, int count, const double* const* x, const double* weight, double* out);
   /// x_j ← Σ_i weight[j·(count+1)+i] x_i + weight[j·(count+1)+count] z, all j at once, then combined = Σ_j next[j] x_j
-  /// of the new slots (null: not wanted); count ≤ 4, over `size` doubles.
+  /// of the new slots (null: not wanted); count ≤ most_lane_slots, over `size` doubles.
   void (*update)(long size, int count, double* const* x, const double* z, const double* weight, const double* next,
                  double* combined);
   void (*band_step)(const BandStep& step);
   /// z[i] = Σ_j coefficient[i·(count+1)+j] x_j[i] + coefficient[i·(count+1)+count] scale[lane]: the whole free step of
-  /// a diagonal operator.
+  /// a diagonal operator; count ≤ most_lane_slots.
   void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
                         double* z);
-  /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ 5; offset may be null.
+  /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset
+  /// may be null.
   void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,
                   double* y);
   /// z[i] += column[i] · scale[lane]: a load shape times its amplitudes, a Delassus response times the efforts.

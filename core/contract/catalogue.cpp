@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/catalogue.hpp>
+#include <ricochet/contract/float_control.hpp>
 #include <ricochet/contract/library_symbols.hpp>
 #include <sstream>
 
@@ -166,6 +167,7 @@ void Catalogue::open_all(Registry& registry) {
 void Catalogue::open(const fs::path& file, Registry& registry) {
   const std::string place = file.string() + ": ";
   boost::dll::shared_library library;
+  const KeepFloatControl control;  // -ffast-math in a plugin would be everyone's
   try {
     library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   } catch (const std::exception& error) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
@@ -182,12 +183,16 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.eager_delassus = options.eager_delassus;
 
   const int slots = static_cast<int>(program.plan.slots.size());
+  const int solves =
+      static_cast<int>(std::count_if(program.plan.stages.begin(), program.plan.stages.end(), [&](const Stage& stage) {
+        return fold(stage, problem->damping, slots).solves();
+      }));
   program.kind = options.kind;
   if (program.kind == OperatorKind::automatic)
-    program.kind = cheapest_kind(*problem, slots, program.width, options.expected_steps);
+    program.kind = cheapest_kind(*problem, slots, solves, program.width, options.expected_steps);
   else if (!kind_applies(program.kind, *problem))
     return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
-  const Cost cost = predict_cost(program.kind, *problem, slots, program.width);
+  const Cost cost = predict_cost(program.kind, *problem, slots, solves, program.width);
   program.predicted_step_seconds = cost.step_seconds;
   program.predicted_setup_seconds = cost.setup_seconds;
   program.model = std::make_shared<MarchModel>(problem, program.kind == OperatorKind::modal);

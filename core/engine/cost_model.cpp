@@ -5,22 +5,26 @@
 namespace ricochet {
 namespace {
 
-// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2, AMD
-// EPYC, 2.4 GHz). Substitution at one lane is bound by latency, not by throughput.
+// Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2,
+// Intel Xeon, 2.5 GHz). Substitution at one lane is bound by latency, not by throughput.
 struct Rates {
-  double product, substitution, elementwise;
+  double product, substitution, elementwise, diagonal, measure;
 };
-// The same for CHOLMOD's factor, one lane at a time, from the benchmark's own rows (1780 ns for 700 multiply-adds and
-// the rest).
-constexpr double sparse_rate = 2.4;
+// The same for CHOLMOD's factor, one lane at a time, from the benchmark's own rows: the sparse one (2455 ns) less the
+// band (1186 ns), and the substitution that the band has in its place, over 700 multiply-adds.
+constexpr double sparse_rate = 2.3;
+
+// What a stage costs besides, whatever its size: calls, the motion of the support, and, per step and per lane, the look
+// at the contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
+constexpr double per_stage = 130, per_contact = 170, per_contact_lane = 25;
 
 Rates rates(int width) {
-  if (width == 1) return {0.13, 0.40, 0.05};
-  if (width == 2) return {0.16, 0.21, 0.05};
-  if (width == 4) return {0.08, 0.07, 0.05};
-  if (width == 8) return {0.06, 0.05, 0.05};
-  if (width == 16) return {0.053, 0.058, 0.053};
-  return {0.051, 0.064, 0.065};
+  if (width == 1) return {0.16, 0.48, 0.08, 0.30, 0.34};
+  if (width == 2) return {0.20, 0.20, 0.07, 0.20, 0.17};
+  if (width == 4) return {0.12, 0.11, 0.063, 0.115, 0.098};
+  if (width == 8) return {0.081, 0.078, 0.058, 0.115, 0.073};
+  if (width == 16) return {0.067, 0.064, 0.10, 0.135, 0.089};
+  return {0.064, 0.118, 0.10, 0.125, 0.087};
 }
 
 }  // namespace
@@ -32,17 +36,17 @@ bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   return true;
 }
 
-Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int width) {
+Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int solves, int width) {
   const double n = problem.dofs(), lanes = width;
   const Rates rate = rates(width);
   const double border = problem.inertia.factored() ? static_cast<double>(problem.inertia.coupling.rows()) : 0;
-  const double nano = 1e-9;
+  const double nano = 1e-9, stages = std::max(1, solves);
   Cost cost;
   const double entries = kind == OperatorKind::modal ? static_cast<double>(problem.points()) * n
                                                      : static_cast<double>(problem.contact.nonZeros());
-  double nanoseconds = (n * (slots + 1) * slots + entries * (slots + 2)) * rate.elementwise;
+  double nanoseconds = n * (slots + 1) * slots * rate.elementwise + entries * (slots + 2) * rate.measure;
   if (kind == OperatorKind::modal) {
-    nanoseconds += n * (slots + 1) * rate.elementwise;
+    nanoseconds += n * (slots + 1) * rate.diagonal;
     cost.setup_seconds = 20 * n * n * n * nano;
     if (problem.load && !problem.load->absent() && !problem.load->constant_in_time()) nanoseconds += n * n / lanes;
   } else {
@@ -50,18 +54,19 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int
     const double v = border > 0 ? w + 2 : w;
     nanoseconds += n * (2 * w + 1) * rate.product;
     nanoseconds += (n + border) * (2 * v + 1) * (kind == OperatorKind::sparse ? sparse_rate : rate.substitution);
-    cost.setup_seconds = n * 200 * nano;
+    cost.setup_seconds = stages * n * 200 * nano;
   }
-  cost.step_seconds = (nanoseconds * lanes + 60) * nano;
+  const double fixed = per_stage + (problem.points() > 0 ? per_contact + per_contact_lane * lanes : 0);
+  cost.step_seconds = stages * (nanoseconds * lanes + fixed) * nano;
   return cost;
 }
 
-OperatorKind cheapest_kind(const SemiDiscrete& problem, int slots, int width, long long steps) {
+OperatorKind cheapest_kind(const SemiDiscrete& problem, int slots, int solves, int width, long long steps) {
   OperatorKind best = OperatorKind::band;
   double best_cost = 0;
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {
     if (!kind_applies(kind, problem)) continue;
-    const Cost cost = predict_cost(kind, problem, slots, width);
+    const Cost cost = predict_cost(kind, problem, slots, solves, width);
     const double total = cost.setup_seconds + static_cast<double>(steps) * cost.step_seconds;
     if (best_cost == 0 || total < best_cost) {
       best = kind;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/flush_denormals.hpp>
 #include <ricochet/engine/energy_scale.hpp>
 #include <ricochet/engine/marcher_state.hpp>
 #include <set>
@@ -239,6 +240,7 @@ const double* Marcher::distributed_load(const Levels& levels, double t) {
 }
 
 void Marcher::start(StepObserver* observer) {
+  const FlushDenormals flush;
   const double omega = program_.problem->support.pulsation;
   sine_ = std::sin(omega * time());
   cosine_ = std::cos(omega * time());
@@ -253,6 +255,7 @@ void Marcher::start(StepObserver* observer) {
 }
 
 long long Marcher::march(long long steps, StepObserver* observer) {
+  const FlushDenormals flush;
   const double omega = program_.problem->support.pulsation;
   for (long long n = 0; n < steps; ++n) {
     if (program_.support) {

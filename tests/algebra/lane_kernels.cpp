@@ -1,5 +1,6 @@
 // Kernels against plain loops, for each instruction set and each number of lanes.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -35,6 +36,98 @@ SparseMatrix random_band(int n, int width, bool definite) {
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;
 }
+
+// Weights and lanes for the kernels that combine slots: what they make of lane l, by every kernel in turn. The lanes of
+// a shorter block are the first of a longer one.
+struct Slots {
+  int count = 0, lanes = 1;
+  std::vector<Block> x;
+  std::vector<double> weight, update, next, coefficient;
+  Block z, scale;
+  std::vector<int> start = {0, 2, 3, 6}, index = {0, 4, 2, 1, 5, 6};
+  std::vector<double> value = {0.5, -1.25, 2, 0.75, 1, -0.3};
+
+  static constexpr int rows = 7;
+
+  Slots(int n, int T, int terms) : count(n), lanes(T), z(rows, T), scale(1, T) {
+    const auto number = [](int a, int b, int c) { return std::sin(1.7 * a + 2.3 * b + 0.9 * c + 0.4); };
+    for (int j = 0; j < terms; ++j) {
+      x.emplace_back(rows, T);
+      weight.push_back(number(j, 1, 7));
+      next.push_back(number(j, 2, 5));
+      for (int i = 0; i < rows; ++i)
+        for (int l = 0; l < T; ++l) x.back().at(i, l) = number(i, l, j);
+    }
+    for (int e = 0; e < count * (count + 1); ++e) update.push_back(number(e, 3, 3));
+    for (int e = 0; e < rows * (count + 1); ++e) coefficient.push_back(number(e, 4, 1));
+    for (int l = 0; l < T; ++l) {
+      scale.at(0, l) = number(1, l, 9);
+      for (int i = 0; i < rows; ++i) z.at(i, l) = number(i, l, 11);
+    }
+  }
+
+  LaneRows matrix() const { return {3, start.data(), index.data(), value.data()}; }
+
+  std::vector<const double*> read() const {
+    std::vector<const double*> pointers;
+    for (const Block& block : x) pointers.push_back(block.data());
+    return pointers;
+  }
+
+  // Combination; updated slots; their combination; diagonal step; measure with and without offset (of one term more).
+  std::vector<Block> outcome(const LaneKernels& kernels) const {
+    Block combined(rows, lanes), following(rows, lanes), diagonal(rows, lanes), measured(3, lanes), bare(3, lanes);
+    kernels.combine(static_cast<long>(z.size()), count, read().data(), next.data(), combined.data());
+    kernels.diagonal_step(rows, count, coefficient.data(), read().data(), scale.data(), diagonal.data());
+    kernels.measure(matrix(), count + 1, read().data(), weight.data(), scale.data(), measured.data());
+    kernels.measure(matrix(), count + 1, read().data(), weight.data(), nullptr, bare.data());
+    Slots with = *this, without = *this;
+    for (Slots* one : {&with, &without}) {
+      std::vector<double*> slot;
+      for (Block& block : one->x) slot.push_back(block.data());
+      kernels.update(static_cast<long>(z.size()), count, slot.data(), z.data(), update.data(),
+                     one == &with ? next.data() : nullptr, following.data());
+    }
+    std::vector<Block> all = {combined, following, diagonal, measured, bare};
+    for (int j = 0; j < count; ++j) {
+      all.push_back(with.x[static_cast<std::size_t>(j)]);
+      all.push_back(without.x[static_cast<std::size_t>(j)]);
+    }
+    return all;
+  }
+
+  // The same, term by term, of one lane.
+  std::vector<std::vector<double>> expected(int l) const {
+    const auto n = static_cast<std::size_t>(count);
+    const auto at = [&](const std::vector<double>& w, std::size_t from, std::size_t terms, int i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < terms; ++j) sum += w[from + j] * x[j].at(i, l);
+      return sum;
+    };
+    std::vector<std::vector<double>> all(5 + 2 * n);
+    for (int i = 0; i < rows; ++i) {
+      all[0].push_back(at(next, 0, n, i));
+      double sum = 0;
+      for (std::size_t j = 0; j < n; ++j) {
+        const double fresh = at(update, j * (n + 1), n, i) + update[j * (n + 1) + n] * z.at(i, l);
+        all[5 + 2 * j].push_back(fresh);
+        all[6 + 2 * j].push_back(fresh);
+        sum += next[j] * fresh;
+      }
+      all[1].push_back(sum);
+      const std::size_t from = static_cast<std::size_t>(i) * (n + 1);
+      all[2].push_back(at(coefficient, from, n, i) + coefficient[from + n] * scale.at(0, l));
+    }
+    for (std::size_t r = 0; r < 3; ++r) {
+      double sum = 0;
+      for (int e = start[r]; e < start[r + 1]; ++e)
+        sum += value[static_cast<std::size_t>(e)] * at(weight, 0, n + 1, index[static_cast<std::size_t>(e)]);
+      all[3].push_back(sum + scale.at(0, l));
+      all[4].push_back(sum);
+    }
+    return all;
+  }
+};
 
 }  // namespace
 
@@ -108,6 +201,89 @@ TEST_CASE("the two instruction sets agree to round-off, and updates follow their
         REQUIRE(y.data()[e] == Approx(new_d).margin(1e-15));
         REQUIRE(combined.data()[e] == Approx(next[0] * new_q + next[1] * new_d).margin(1e-15));
       }
+    }
+  }
+}
+
+TEST_CASE("one to eight slots are combined, updated, stepped and measured by their weights") {
+  const int count = GENERATE(range(1, most_lane_slots + 1)), T = GENERATE(1, 2, 4, 8, 16, 32);
+  const bool baseline = GENERATE(false, true);
+  const Slots slots(count, T, count + 1);
+  const auto found = slots.outcome(lane_kernels(T, baseline));
+  for (int l = 0; l < T; ++l) {
+    const auto expected = slots.expected(l);
+    REQUIRE(expected.size() == found.size());
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (std::size_t i = 0; i < expected[k].size(); ++i) {
+        INFO(count << " slots, " << T << " lanes: outcome " << k << ", row " << i << ", lane " << l);
+        // At most 9 · 9 products of numbers below 2.
+        REQUIRE(std::abs(found[k].at(static_cast<int>(i), l) - expected[k][i]) < 1e-13);
+      }
+  }
+}
+
+TEST_CASE("a lane's bits do not depend on its company, whatever the number of slots") {
+  const int count = GENERATE(range(1, most_lane_slots + 1)), T = GENERATE(2, 4, 8, 16, 32);
+  const bool baseline = GENERATE(false, true);
+  const auto alone = Slots(count, 1, count + 1).outcome(lane_kernels(1, baseline));
+  const auto together = Slots(count, T, count + 1).outcome(lane_kernels(T, baseline));
+  for (std::size_t k = 0; k < alone.size(); ++k)
+    for (int i = 0; i < alone[k].rows(); ++i) {
+      INFO(count << " slots, " << T << " lanes: outcome " << k << ", row " << i);
+      REQUIRE(together[k].at(i, 0) == alone[k].at(i, 0));
+    }
+}
+
+TEST_CASE("a slot without weight changes no bit, also where the loop takes over from what is written out") {
+  const int count = GENERATE(range(1, most_lane_slots)), T = GENERATE(1, 2, 4, 8, 16, 32);
+  const bool baseline = GENERATE(false, true);
+  const LaneKernels& kernels = lane_kernels(T, baseline);
+  const Slots few(count, T, count + 1);
+  Slots more(count + 1, T, count + 2);
+  const auto n = static_cast<std::size_t>(count);
+  more.weight[n + 1] = more.next[n] = 0;
+  more.update.clear();
+  more.coefficient.clear();
+  for (std::size_t j = 0; j <= n; ++j)
+    for (std::size_t s = 0; s <= n + 1; ++s)
+      more.update.push_back(j == n || s == n ? 0 : few.update[j * (n + 1) + s - (s > n)]);
+  for (std::size_t i = 0; i < Slots::rows; ++i)
+    for (std::size_t s = 0; s <= n + 1; ++s)
+      more.coefficient.push_back(s == n ? 0 : few.coefficient[i * (n + 1) + s - (s > n)]);
+  const auto expected = few.outcome(kernels), found = more.outcome(kernels);
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    for (int i = 0; i < expected[k].rows(); ++i)
+      for (int l = 0; l < T; ++l) {
+        INFO(count << " slots and one, " << T << " lanes: outcome " << k << ", row " << i << ", lane " << l);
+        REQUIRE(found[k].at(i, l) == expected[k].at(i, l));
+      }
+}
+
+TEST_CASE("a number of slots that no kernel takes is an error and writes nothing") {
+  const int T = GENERATE(1, 4, 32);
+  const bool baseline = GENERATE(false, true);
+  const LaneKernels& kernels = lane_kernels(T, baseline);
+  for (const int count : {-1, 0, most_lane_slots + 1, most_lane_slots + 4}) {
+    Slots slots(most_lane_slots, T, most_lane_slots + 4);
+    std::vector<double*> written;
+    for (Block& block : slots.x) written.push_back(block.data());
+    const Slots before = slots;
+    const std::vector<double> weights(400, 0.5);
+    const long size = static_cast<long>(slots.z.size());
+    double* z = slots.z.data();
+    CHECK_THROWS_AS(kernels.combine(size, count, slots.read().data(), weights.data(), z), std::logic_error);
+    CHECK_THROWS_AS(kernels.update(size, count, written.data(), z, weights.data(), weights.data(), z),
+                    std::logic_error);
+    CHECK_THROWS_AS(kernels.update(size, count, written.data(), z, weights.data(), nullptr, nullptr), std::logic_error);
+    CHECK_THROWS_AS(
+        kernels.diagonal_step(Slots::rows, count, weights.data(), slots.read().data(), slots.scale.data(), z),
+        std::logic_error);
+    const int terms = count <= 0 ? count : count + most_lane_terms - most_lane_slots;
+    CHECK_THROWS_AS(kernels.measure(slots.matrix(), terms, slots.read().data(), weights.data(), nullptr, z),
+                    std::logic_error);
+    for (std::size_t j = 0; j <= slots.x.size(); ++j) {
+      const Block &now = j < slots.x.size() ? slots.x[j] : slots.z, &then = j < slots.x.size() ? before.x[j] : before.z;
+      CHECK(std::equal(now.data(), now.data() + now.size(), then.data()));
     }
   }
 }

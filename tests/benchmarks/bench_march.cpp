@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ctime>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/catalogue.hpp>
@@ -19,18 +18,12 @@
 
 #include "tests/benchmarks/fma_peak.hpp"
 #include "tests/benchmarks/reference_beam.hpp"
+#include "tests/benchmarks/thread_clock.hpp"
 
 using namespace ricochet;
 using namespace ricochet::benchmarks;
 
 namespace {
-
-// Processor time of this thread: what others do on the machine counts only where they share the core.
-double thread_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
 
 struct Case {
   std::string name;
@@ -62,9 +55,10 @@ double fastest(Call call) {
 }
 
 void calibrate() {
-  constexpr int rows = 100, width = 3;
+  constexpr int rows = 100, width = 3, points = 10;
   fmt::print("nanoseconds per multiply-add and lane, 100 rows, half-bandwidth 3, {}\n", lane_instruction_set());
-  fmt::print("{:>5} {:>10} {:>14} {:>12}\n", "lanes", "product", "substitution", "elementwise");
+  fmt::print("{:>5} {:>10} {:>14} {:>12} {:>10} {:>10}\n", "lanes", "product", "substitution", "elementwise",
+             "diagonal", "measure");
   for (const int lanes : {1, 2, 4, 8, 16, 32}) {
     const LaneKernels& kernels = lane_kernels(lanes);
     Block k(rows, lanes, width), b(rows, lanes), z(rows, lanes, width), q(rows, lanes), d(rows, lanes);
@@ -84,8 +78,20 @@ void calibrate() {
     const double weights[] = {1, 0.5, 0.5, 0, 1, 0.5}, next[] = {1, 2};
     const double update =
         fastest([&] { kernels.update(static_cast<long>(q.size()), 2, slots, z.data(), weights, next, k.data()); });
-    fmt::print("{:>5} {:>10.3f} {:>14.3f} {:>12.3f}\n", lanes, product / (rows * 7 * lanes),
-               (whole - product) / (rows * 7 * lanes), update / (rows * 8 * lanes));
+    // A modal step: one coefficient per slot and mode; and H on modes, which has no zeros.
+    const std::vector<double> coefficient(3 * rows, 1e-3), value(points * rows, 1e-3), terms(3, 0.5);
+    std::vector<int> start, index;
+    for (int i = 0; i <= points; ++i) start.push_back(i * rows);
+    for (int e = 0; e < points * rows; ++e) index.push_back(e % rows);
+    const LaneRows matrix{points, start.data(), index.data(), value.data()};
+    const double* read[] = {q.data(), d.data(), z.data()};
+    Block scale(1, lanes), y(points, lanes);
+    const double diagonal =
+        fastest([&] { kernels.diagonal_step(rows, 2, coefficient.data(), read, scale.data(), b.data()); });
+    const double measure = fastest([&] { kernels.measure(matrix, 3, read, terms.data(), nullptr, y.data()); });
+    fmt::print("{:>5} {:>10.3f} {:>14.3f} {:>12.3f} {:>10.3f} {:>10.3f}\n", lanes, product / (rows * 7 * lanes),
+               (whole - product) / (rows * 7 * lanes), update / (rows * 8 * lanes), diagonal / (rows * 3 * lanes),
+               measure / (points * rows * 4 * lanes));
   }
 }
 
@@ -173,16 +179,16 @@ int main(int argc, char** argv) {
   fmt::print("reference scene: N = 50, alpha = 1e-4, forced at 10 rad/s, 6000 steps per period, Signorini\n");
   fmt::print("kernels: {}; FMA peak {:.1f} per ns; {} interleaved rounds, median [fastest, slowest]\n\n",
              lane_instruction_set(), peak, rounds);
-  fmt::print("{:<44} {:>5} {:>12} {:>22} {:>16} {:>10}\n", "case", "lanes", "ns/lane-step", "spread",
-             "at peak, 2000 FMA", "ratio");
+  fmt::print("{:<44} {:>5} {:>12} {:>22} {:>10} {:>16} {:>10}\n", "case", "lanes", "ns/lane-step", "spread",
+             "predicted", "at peak, 2000 FMA", "ratio");
   for (Case& one : cases) {
     std::sort(one.nanoseconds.begin(), one.nanoseconds.end());
     const double median = one.nanoseconds[one.nanoseconds.size() / 2];
     // Multiply-adds of one band step at n = 100: product 7, substitution 7, combination and update 7 per row, rounded.
     const double ideal = peak > 0 ? 2000 / peak : 0;
-    fmt::print("{:<44} {:>5} {:>12.1f} {:>22} {:>16.1f} {:>10.2f}\n", one.name, one.lanes, median,
-               fmt::format("[{:.1f}, {:.1f}]", one.nanoseconds.front(), one.nanoseconds.back()), ideal,
-               ideal > 0 ? median / ideal : 0);
+    fmt::print("{:<44} {:>5} {:>12.1f} {:>22} {:>10.1f} {:>16.1f} {:>10.2f}\n", one.name, one.lanes, median,
+               fmt::format("[{:.1f}, {:.1f}]", one.nanoseconds.front(), one.nanoseconds.back()),
+               1e9 * one.marcher->program().predicted_step_seconds / one.lanes, ideal, ideal > 0 ? median / ideal : 0);
     for (int lane = 0; lane < one.lanes; ++lane)
       if (!one.marcher->status(lane).running)
         fmt::print("  lane {} stopped: {}\n", lane, one.marcher->status(lane).cause);

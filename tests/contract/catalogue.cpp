@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/catalogue.hpp>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/float_control.hpp>
 
 #include "tests/runners/scratch_folder.hpp"
 
@@ -154,4 +155,15 @@ TEST_CASE("a folder that does not exist holds nothing") {
   CHECK(catalogue.provided().empty());
   CHECK(catalogue.unusable().empty());
   CHECK(catalogue.folders().size() == 2);
+}
+
+TEST_CASE("a library that switches denormal numbers off as it is loaded does so for nobody else") {
+  const KeepFloatControl test;
+  set_float_control(float_control() & ~flushing_bits());
+  const std::uint64_t before = float_control();
+  Catalogue catalogue(RICOCHET_TEST_LIBRARIES, {}, {});
+  Registry registry;
+  CHECK(catalogue.require(Role::time, "flushing", registry));
+  CHECK(catalogue.opened().size() == 1);
+  CHECK(float_control() == before);
 }

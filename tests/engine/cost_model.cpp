@@ -1,0 +1,56 @@
+// What is predicted is compared, never shown as a result: laws of it, and no figure of this machine.
+#include <ricochet/engine/cost_model.hpp>
+
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+// Newmark–Dumont–Paoli without contact, its stage as often as given and `idle` stages that solve nothing.
+Program repeated(OperatorKind kind, int times, int idle) {
+  const auto problem = problem_of(working_set(), 8, {"consistent"});
+  auto law = make(registry().contact("none"), {"none"});
+  auto plan = std::get<StepPlan>(plan_of({"newmark-dumont-paoli"}, 1e-4, problem_facts(*problem, *law)));
+  const Stage stage = plan.stages.at(0);
+  plan.stages.assign(static_cast<std::size_t>(times), stage);
+  Stage nothing = stage;
+  nothing.matrix = {};
+  plan.stages.insert(plan.stages.end(), static_cast<std::size_t>(idle), nothing);
+  CompileOptions options;
+  options.kind = kind;
+  return std::get<Program>(
+      compile(problem, std::move(plan), 1e-4, std::move(law), {scene_lane(*problem, {})}, options));
+}
+
+}  // namespace
+
+TEST_CASE("a step that solves twice is predicted to cost twice as much") {
+  const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal, OperatorKind::sparse);
+  const double once = repeated(kind, 1, 0).predicted_step_seconds;
+  CHECK(once > 0);
+  CHECK(repeated(kind, 2, 0).predicted_step_seconds / once == Approx(2).epsilon(1e-12));
+  CHECK(repeated(kind, 1, 1).predicted_step_seconds == once);
+}
+
+TEST_CASE("modes are found once, factors once per stage that solves") {
+  const double modes = repeated(OperatorKind::modal, 1, 0).predicted_setup_seconds;
+  CHECK(repeated(OperatorKind::modal, 2, 0).predicted_setup_seconds == modes);
+  const double factor = repeated(OperatorKind::band, 1, 0).predicted_setup_seconds;
+  CHECK(repeated(OperatorKind::band, 2, 0).predicted_setup_seconds / factor == Approx(2).epsilon(1e-12));
+}
+
+TEST_CASE("the operator follows the number of contact points") {
+  // Modal rows of H have no zeros: one point is cheap, all of them are not.
+  SceneSpec scene = working_set();
+  const auto tip = problem_of(scene, 50, {"consistent"});
+  scene.stops.place = StopsSpec::Place::nodes;
+  const auto nodes = problem_of(scene, 50, {"consistent"});
+  for (const int solves : {1, 2, 6}) {
+    CHECK(cheapest_kind(*tip, 2, solves, 1, 100000000) == OperatorKind::modal);
+    CHECK(cheapest_kind(*nodes, 2, solves, 1, 100000000) == OperatorKind::band);
+    // Not for a few steps: a dense eigenproblem is to be paid back.
+    CHECK(cheapest_kind(*tip, 2, solves, 1, 10) == OperatorKind::band);
+  }
+}
