@@ -103,20 +103,55 @@ void catch_signals() {
   ::_exit(send(&tag, 1) && send(text.data(), text.size()) ? 0 : 1);
 }
 
-// Reads until the pipe ends; false when the limit came first.
-bool read_all(int pipe, Clock::time_point limit, std::string& message) {
-  for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now()).count();
-    if (left <= 0) return false;
-    pollfd wait = {pipe, POLLIN, 0};
-    const int ready = ::poll(&wait, 1, static_cast<int>(std::min<long long>(left, 1000)));
-    if (ready <= 0) continue;
-    char part[4096];
-    const ssize_t size = ::read(pipe, part, sizeof part);
-    if (size == 0) return true;
-    if (size > 0) message.append(part, static_cast<std::size_t>(size));
+/// The parent's view: what came through the pipe so far, and whether the child has ended.
+class Watch {
+ public:
+  Watch(pid_t child, int pipe) : child_(child), pipe_(pipe) { ::fcntl(pipe, F_SETFL, O_NONBLOCK); }
+
+  /// Reads until the child has ended; false when the limit came first. The pipe alone does not tell: another child that
+  /// was begun meanwhile may hold it open.
+  bool until(Clock::time_point limit) {
+    constexpr int beat = 10;  // ms
+    for (; !ended_; drain()) {
+      if (Clock::now() >= limit) return false;
+      pollfd wait = {pipe_, POLLIN, 0};
+      if (open_)
+        ::poll(&wait, 1, beat);
+      else
+        ::usleep(1000);
+      const pid_t found = ::waitpid(child_, &status_, WNOHANG);
+      ended_ = found == child_ || (found < 0 && errno != EINTR);
+    }
+    return true;
   }
-}
+  void kill() {
+    ::kill(child_, SIGKILL);
+    while (::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    drain();
+  }
+  const std::string& message() const { return message_; }
+  int status() const { return status_; }
+
+ private:
+  void drain() {
+    char part[4096];
+    for (;;) {
+      const ssize_t size = ::read(pipe_, part, sizeof part);
+      if (size > 0) {
+        message_.append(part, static_cast<std::size_t>(size));
+        continue;
+      }
+      if (size < 0 && errno == EINTR) continue;
+      if (size == 0) open_ = false;
+      return;
+    }
+  }
+  pid_t child_;
+  int pipe_, status_ = 0;
+  bool ended_ = false, open_ = true;
+  std::string message_;
+};
 
 void read_call(const std::string& message, ChildOutcome& outcome) {
   std::string* const fields[] = {&outcome.plugin.role, &outcome.plugin.name, &outcome.plugin.file, &outcome.function};
@@ -125,17 +160,6 @@ void read_call(const std::string& message, ChildOutcome& outcome) {
     const std::size_t end = std::min(message.find('\0', at), message.size());
     *field = message.substr(std::min(at, end), end - std::min(at, end));
     at = end + 1;
-  }
-}
-
-// A library loaded by the child may hold the pipe open after the child's end: then its end is not the pipe's.
-bool wait_for(pid_t child, Clock::time_point limit, int& status) {
-  for (;;) {
-    const pid_t ended = ::waitpid(child, &status, WNOHANG);
-    if (ended == child) return true;
-    if (ended < 0 && errno != EINTR) return false;
-    if (Clock::now() >= limit) return false;
-    ::usleep(1000);
   }
 }
 
@@ -189,21 +213,17 @@ ChildOutcome run_in_child(const std::function<std::string()>& work, double secon
   const auto from_now = [](double s) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
   };
-  const auto limit = from_now(seconds);
-  std::string message;
-  int status = 0;
-  bool in_time = read_all(ends[0], limit, message) && wait_for(child, limit, status);
+  Watch watch(child, ends[0]);
+  const bool in_time = watch.until(from_now(seconds));
   if (!in_time) {
     // First asked what it does, then ended whatever it does.
     constexpr double patience = 0.5;
     ::kill(child, SIGALRM);
-    read_all(ends[0], from_now(patience), message);
-    if (!wait_for(child, from_now(patience), status)) {
-      ::kill(child, SIGKILL);
-      ::waitpid(child, &status, 0);
-    }
+    if (!watch.until(from_now(patience))) watch.kill();
   }
   ::close(ends[0]);
+  const std::string& message = watch.message();
+  const int status = watch.status();
 
   ChildOutcome outcome;
   const char tag = message.empty() ? '\0' : message.front();

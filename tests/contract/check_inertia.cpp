@@ -73,7 +73,7 @@ TEST_CASE("entries that are no numbers are told with their place") {
 }
 
 TEST_CASE("a mass is symmetric, measured by what its own rows weigh") {
-  CHECK(wrong(assembled(with(0.1, 0, 2))) == "the mass is not symmetric: 0.1 at (0, 2), 0 at (2, 0)");
+  CHECK(wrong(assembled(with(0.1, 0, 2))) == "the mass is not symmetric: 0 at (2, 0), 0.1 at (0, 2)");
   // 1e-9 is little beside 3, but not beside √(2·1e-6).
   CHECK_THAT(wrong(assembled(with(1e-9, 0, 1))), StartsWith("the mass is not symmetric"));
   Eigen::MatrixXd rounded = Eigen::Matrix3d::Identity() + 0.5 * with(0, 1, 1);
