@@ -1,4 +1,7 @@
 #pragma once
+// First: it says what is missing before anything else can fail for it.
+#include <ricochet/contract/toolchain.hpp>
+//
 #include <Eigen/Core>
 #include <optional>
 #include <string>
@@ -7,12 +10,9 @@
 /// \file
 /// The ABI tag of a plugin: the *name* of a symbol, so that a host reads it from the file's symbol table before any
 /// code of the library runs. Fields, in order: contract version, Eigen version, Eigen's alignment limits, libstdc++
-/// string ABI.
+/// string ABI. The sizes of types stand beside it (see layout.hpp).
 #ifndef RICOCHET_ABI_CONTRACT
-#define RICOCHET_ABI_CONTRACT 1
-#endif
-#ifndef EIGEN_MAX_ALIGN_BYTES
-#error "compile plugins through the Ricochet::plugin target: it pins Eigen's alignment"
+#define RICOCHET_ABI_CONTRACT 2
 #endif
 #define RICOCHET_ABI_JOIN_(contract, world, major, align, static_align, cxx11) \
   ricochet_abi__contract_##contract##__eigen_##world##_##major##__align_##align##_##static_align##__cxx11_##cxx11

@@ -1,11 +1,16 @@
+#include <cxxabi.h>
+#include <dlfcn.h>
+
 #include <algorithm>
-#include <array>
 #include <boost/dll/runtime_symbol_info.hpp>
-#include <boost/dll/shared_library.hpp>
+#include <cctype>
 #include <cstdlib>
+#include <memory>
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/catalogue.hpp>
+#include <ricochet/contract/child.hpp>
 #include <ricochet/contract/float_control.hpp>
+#include <ricochet/contract/layout.hpp>
 #include <ricochet/contract/library_symbols.hpp>
 #include <sstream>
 
@@ -15,8 +20,7 @@ namespace {
 
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
-
-
+constexpr std::string_view layout_prefix = "ricochet_layout__";
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
   for (const Role role : all_roles) {
@@ -45,10 +49,68 @@ std::string text(Role role, const std::string& name) {
   return std::string(role_name(role)) + " '" + name + "'";
 }
 
-// Libraries stay open for the life of the process: methods made from them may outlive any catalogue.
-std::vector<boost::dll::shared_library>& open_libraries() {
-  static auto* libraries = new std::vector<boost::dll::shared_library>;
-  return *libraries;
+// "undefined symbol: _Z7nowherev" → "undefined symbol: nowhere()"
+std::string demangled(const std::string& text) {
+  std::string result;
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && in_name(text[end])) ++end;
+    if (end == at) {
+      result += text[at++];
+      continue;
+    }
+    const std::string word = text.substr(at, end - at);
+    const std::unique_ptr<char, decltype(&std::free)> plain(
+        word.starts_with("_Z") ? abi::__cxa_demangle(word.c_str(), nullptr, nullptr, nullptr) : nullptr, std::free);
+    result += plain ? plain.get() : word;
+    at = end;
+  }
+  return result;
+}
+
+// Loads a library and lets it register. It stays open for the life of the process, also when registering fails: an
+// exception, or a copy of what was registered, may hold its code, and methods may outlive any catalogue.
+void load(const fs::path& file, Registry& registry) {
+  const std::string place = file.string() + ": ", path = fs::absolute(file).string();
+  void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) {
+    const char* told = ::dlerror();
+    std::string reason = told ? told : "for no reason that the loader tells";
+    if (reason.starts_with(path + ": ")) reason.erase(0, path.size() + 2);
+    throw PluginError(place + "cannot be loaded: " + demangled(reason));
+  }
+  auto* const enter = reinterpret_cast<void (*)(Registry&)>(::dlsym(library, "ricochet_register"));
+  if (!enter) throw PluginError(place + "has no function ricochet_register; does it end with RICOCHET_PLUGIN?");
+  try {
+    enter(registry);
+  } catch (const PluginError& error) {
+    throw PluginError(place + error.what());
+  } catch (const std::exception& error) {
+    throw PluginError(place + "failed while registering: " + error.what());
+  } catch (...) {
+    throw PluginError(place + "failed while registering, with an exception that says nothing");
+  }
+}
+
+bool is_loaded(const fs::path& file) {
+  void* const library = ::dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  if (library) ::dlclose(library);
+  return library != nullptr;
+}
+
+// What its constructors or its registration may do to the process that loads it, they do to a child.
+void try_to_load(const fs::path& file) {
+  constexpr double seconds = 10;
+  const ChildOutcome tried = run_in_child(
+      [&] {
+        Registry scratch;
+        load(file, scratch);
+        return std::string();
+      },
+      seconds);
+  if (tried.end == ChildOutcome::End::exception) throw PluginError(tried.text);
+  if (!tried.ok()) throw PluginError(file.string() + ": " + tried.cause() + " while it was loaded");
 }
 
 }  // namespace
@@ -92,27 +154,29 @@ void Catalogue::look_at(const fs::path& file, bool insist) {
   };
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return refuse("no such file");
-  std::vector<std::string> symbols;
+  std::vector<ExportedSymbol> symbols;
   try {
     symbols = exported_symbols(file, "ricochet_");
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
   std::string strange;
-  for (const std::string& symbol : symbols) {
-    if (!symbol.starts_with(provides_prefix)) continue;
-    if (const auto method = parse_provides(symbol))
+  Layout layout;
+  for (const auto& [name, size] : symbols) {
+    if (name.starts_with(layout_prefix)) layout[name.substr(layout_prefix.size())] = size;
+    if (!name.starts_with(provides_prefix)) continue;
+    if (const auto method = parse_provides(name))
       methods.push_back(*method);
     else
-      strange = symbol;
+      strange = name;
   }
   const auto tag =
-      std::find_if(symbols.begin(), symbols.end(), [](const auto& s) { return s.starts_with(abi_prefix); });
+      std::find_if(symbols.begin(), symbols.end(), [](const auto& s) { return s.name.starts_with(abi_prefix); });
   if (tag == symbols.end())
     return refuse(
         "a shared library, but no Ricochet plugin (it carries no ABI tag; does it end with RICOCHET_PLUGIN?)");
-  if (const auto wrong = abi_mismatch(*tag))
-    return refuse("built for another ABI: " + *wrong + "; rebuild it against this version of Ricochet");
+  for (const auto& wrong : {abi_mismatch(tag->name), layout_mismatch(layout)})
+    if (wrong) return refuse("built for another ABI: " + *wrong + "; rebuild it against this version of Ricochet");
   if (!strange.empty()) return refuse("provides a role that this version does not know: " + strange);
   for (const auto& [role, name] : methods) provided_.push_back({role, name, file});
 }
@@ -136,6 +200,31 @@ const Provided* Catalogue::first_provider(Role role, const std::string& name) co
   const auto found = std::find_if(provided_.begin(), provided_.end(),
                                   [&](const Provided& method) { return method.role == role && method.name == name; });
   return found == provided_.end() ? nullptr : &*found;
+}
+
+const fs::path* Catalogue::provider(Role role, const std::string& name) const {
+  const Provided* first = first_provider(role, name);
+  return first ? &first->file : nullptr;
+}
+
+std::vector<fs::path> Catalogue::shadowed(Role role, const std::string& name) const {
+  std::vector<fs::path> files;
+  const fs::path* const first = provider(role, name);
+  for (const Provided& method : provided_)
+    if (method.role == role && method.name == name && method.file != *first) files.push_back(method.file);
+  return files;
+}
+
+bool Catalogue::foreign(const fs::path& file) const {
+  return file.parent_path() != folders_.front();
+}
+
+std::vector<fs::path> Catalogue::missing_folders() const {
+  std::vector<fs::path> missing;
+  std::error_code ignored;
+  for (const fs::path& folder : folders_)
+    if (!fs::is_directory(folder, ignored)) missing.push_back(folder);
+  return missing;
 }
 
 bool Catalogue::require(Role role, const std::string& name, Registry& registry) {
@@ -165,27 +254,12 @@ void Catalogue::open_all(Registry& registry) {
 }
 
 void Catalogue::open(const fs::path& file, Registry& registry) {
-  const std::string place = file.string() + ": ";
-  boost::dll::shared_library library;
   const KeepFloatControl control;  // -ffast-math in a plugin would be everyone's
-  try {
-    library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
-  } catch (const std::exception& error) {
-    throw PluginError(place + "cannot be loaded: " + error.what());
-  }
-  // Kept open even when registering fails: an exception, or a copy of what was registered, may hold its code.
-  open_libraries().push_back(library);
+  if (foreign(file) && !is_loaded(file)) try_to_load(file);
   if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
   Registry found;
-  try {
-    library.get<void(Registry&)>("ricochet_register")(found);
-  } catch (const PluginError& error) {
-    throw PluginError(place + error.what());
-  } catch (const std::exception& error) {
-    throw PluginError(place + "failed while registering: " + error.what());
-  } catch (...) {
-    throw PluginError(place + "failed while registering, with an exception that says nothing");
-  }
+  found.set_current_file(file.string());
+  load(file, found);
   adopt(file, found, registry);
 }
 
@@ -207,26 +281,9 @@ void Catalogue::adopt(const fs::path& file, const Registry& from, Registry& regi
                       (more.empty() ? "" : "; it registers " + more));
   if (!more.empty())
     throw PluginError(file.string() + ": registers " + more + " without saying so; add RICOCHET_PROVIDES(role, name)");
-  registry.set_current_file(file.string());
-  for (const auto& [role, name] : mine) {
-    // Whichever file is opened first, a method comes from its first provider.
-    if (registry.manual(role, name) || first_provider(role, name)->file != file) continue;
-    switch (role) {
-      case Role::mass:
-        registry.add_mass(from.mass(name)->manual, from.mass(name)->make);
-        break;
-      case Role::contact:
-        registry.add_contact(from.contact(name)->manual, from.contact(name)->make);
-        break;
-      case Role::time:
-        registry.add_time(from.time(name)->manual, from.time(name)->make);
-        break;
-      case Role::reference:
-        registry.add_reference(from.reference(name)->manual, from.reference(name)->make);
-        break;
-    }
-  }
-  registry.set_current_file("");
+  // Whichever file is opened first, a method comes from its first provider.
+  for (const auto& [role, name] : mine)
+    if (!registry.manual(role, name) && first_provider(role, name)->file == file) registry.adopt(role, name, from);
 }
 
 }  // namespace ricochet

@@ -38,12 +38,22 @@ class Catalogue {
   const std::vector<Unusable>& unusable() const { return unusable_; }
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
   std::vector<std::string> names(Role role) const;
+  /// The libraries that provide the method too, after the one that is used: it stands in their place.
+  std::vector<std::filesystem::path> shadowed(Role role, const std::string& name) const;
+  /// The file that provides the method, or null.
+  const std::filesystem::path* provider(Role role, const std::string& name) const;
+  /// Whether a library is not one of the install folder: what it does when asked is tried in a child process first.
+  bool foreign(const std::filesystem::path& file) const;
+  /// Folders to search that are none (a misspelt entry of RICOCHET_PLUGIN_PATH).
+  std::vector<std::filesystem::path> missing_folders() const;
   /// The unusable file that is meant to provide the method, or null.
   const Unusable* unusable_provider(Role role, const std::string& name) const;
 
   /// Opens the library that provides the method and lets it register what it provides first, unless the method is there
   /// already. Returns false when no file provides it. Throws PluginError (naming the file) when it does not load,
-  /// throws while it registers, or does not register exactly what it says; the registry is then as it was before.
+  /// throws while it registers, or does not register exactly what it says; the registry is then as it was before. A
+  /// foreign library is loaded in a child process first, so that one which ends the process that loads it, or does not
+  /// come to an end within 10 s, is a PluginError too.
   bool require(Role role, const std::string& name, Registry& registry);
   /// Opens everything (for `describe` without a name and for `schema`); failures go to unusable().
   void open_all(Registry& registry);

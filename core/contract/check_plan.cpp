@@ -134,4 +134,13 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
   return check.wrong;
 }
 
+std::optional<std::string> check_plan(const StepPlan& plan, double h) {
+  if (auto wrong = check_plan(plan)) return wrong;
+  const double carried = step_of(plan);
+  // Twice the tolerance of a motion at constant speed.
+  if (carried != 0 && !(std::abs(carried - h) <= 2e-8 * h))
+    return fmt::format("a step of {:g} s carries a free mass at 1 m/s by {:g} m", h, carried);
+  return std::nullopt;
+}
+
 }  // namespace ricochet

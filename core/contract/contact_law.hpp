@@ -58,6 +58,9 @@ struct ContactSlopes {
   double before = 0;     ///< N/m
 };
 
+/// Of ContactLaw::memory_per_point().
+inline constexpr int most_memory = 16;
+
 /// A contact law: it never knows the scheme, nor the scheme the law.
 ///
 /// The loop calls prepare() once (and again when parameters of a lane change), then, at each stage that has the measure

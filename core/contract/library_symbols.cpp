@@ -63,11 +63,11 @@ Elf64_Ehdr read_header(Bytes& bytes) {
 
 }  // namespace
 
-std::vector<std::string> exported_symbols(const fs::path& file, std::string_view prefix) {
+std::vector<ExportedSymbol> exported_symbols(const fs::path& file, std::string_view prefix) {
   Bytes bytes(file);
   const Elf64_Ehdr header = read_header(bytes);
   const auto sections = bytes.read<Elf64_Shdr>(header.e_shoff, header.e_shnum, "its section table");
-  std::vector<std::string> result;
+  std::vector<ExportedSymbol> result;
   for (const Elf64_Shdr& table : sections) {
     if (table.sh_type != SHT_DYNSYM) continue;
     if (table.sh_link >= sections.size()) damaged("its symbols have no names");
@@ -79,10 +79,10 @@ std::vector<std::string> exported_symbols(const fs::path& file, std::string_view
       if (symbol.st_name >= text.size()) damaged("a symbol has its name elsewhere");
       const auto first = text.begin() + static_cast<std::ptrdiff_t>(symbol.st_name);
       const std::string_view name(&*first, static_cast<std::size_t>(std::find(first, text.end(), '\0') - first));
-      if (name.starts_with(prefix)) result.emplace_back(name);
+      if (name.starts_with(prefix)) result.push_back({std::string(name), symbol.st_size});
     }
   }
-  std::sort(result.begin(), result.end());
+  std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return result;
 }
 

@@ -68,6 +68,11 @@ ParameterSpec word_parameter(std::string key, std::vector<std::string> words, st
   return spec;
 }
 
+ParameterSpec with_role(ParameterSpec spec, ParameterRole role) {
+  spec.role = role;
+  return spec;
+}
+
 double Parameters::real(const std::string& key) const {
   const auto found = values_.find(key);
   if (found != values_.end())
@@ -82,6 +87,13 @@ bool Parameters::flag(const std::string& key) const {
 }
 const std::string& Parameters::word(const std::string& key) const {
   return get<std::string>(values_, key);
+}
+
+std::optional<double> value_of_role(const std::vector<ParameterSpec>& declared, const Parameters& values,
+                                    ParameterRole role) {
+  for (const ParameterSpec& spec : declared)
+    if (spec.role == role && values.values().count(spec.key) > 0) return values.real(spec.key);
+  return std::nullopt;
 }
 
 std::optional<std::string> check_parameter(const ParameterSpec& spec, const ParameterValue& value) {

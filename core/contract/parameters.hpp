@@ -22,17 +22,22 @@ struct Range {
   std::string text() const;
 };
 
+/// What a parameter is to whoever does not know its plugin. A reference needs the restitution of a scheme and the
+/// stiffness of a law; it finds them by role, never by key.
+enum class ParameterRole { none, restitution, stiffness };
+
 /// One parameter of a plugin, declared once; checking, `describe` and the JSON Schema all read this.
 struct ParameterSpec {
   enum class Type { real, integer, boolean, word };
-  std::string key;
+  std::string key;  ///< [a-z][a-z0-9_]*
   Type type = Type::real;
-  std::string unit;                        ///< SI, "1" when dimensionless
-  std::optional<ParameterValue> fallback;  ///< default; absent means the study must give it
-  Range range;                             ///< for real and integer
-  std::vector<std::string> words;          ///< for word
-  std::string text;                        ///< one sentence of manual, with the symbol of the equation
-  bool per_lane = false;                   ///< may differ between lanes that share one factorisation
+  std::string unit;                          ///< SI, "1" when dimensionless
+  std::optional<ParameterValue> fallback;    ///< default; absent means the study must give it
+  Range range;                               ///< for real and integer
+  std::vector<std::string> words;            ///< for word
+  std::string text;                          ///< one sentence of manual, with the symbol of the equation
+  bool per_lane = false;                     ///< may differ between lanes that share one factorisation
+  ParameterRole role = ParameterRole::none;  ///< at most one parameter of a plugin has each role
 };
 
 ParameterSpec real_parameter(std::string key, std::string unit, std::optional<double> fallback, Range range,
@@ -40,6 +45,8 @@ ParameterSpec real_parameter(std::string key, std::string unit, std::optional<do
 ParameterSpec integer_parameter(std::string key, std::optional<long long> fallback, Range range, std::string text);
 ParameterSpec word_parameter(std::string key, std::vector<std::string> words, std::optional<std::string> fallback,
                              std::string text);
+/// The same parameter, with a role: with_role(real_parameter("e", …), ParameterRole::restitution).
+ParameterSpec with_role(ParameterSpec spec, ParameterRole role);
 
 /// Checked values of one plugin's parameters, complete (defaults filled in).
 class Parameters {
@@ -56,6 +63,10 @@ class Parameters {
  private:
   std::map<std::string, ParameterValue> values_;
 };
+
+/// The value of the number that has this role among the parameters declared, or nothing where none has it.
+std::optional<double> value_of_role(const std::vector<ParameterSpec>& declared, const Parameters& values,
+                                    ParameterRole role);
 
 /// Checks one value against its declaration; returns the sentence that says what was expected, or nothing when it fits.
 /// An integer is accepted where a real is expected; nothing is ever clamped.

@@ -11,6 +11,39 @@ auto* find(Map& map, const std::string& name) {
   return found == map.end() ? nullptr : &found->second;
 }
 
+bool is_key(const std::string& key) {
+  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto inside = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !key.empty() && lower(key.front()) && std::all_of(key.begin(), key.end(), inside);
+}
+
+// What is wrong with one parameter, beside those before it.
+std::optional<std::string> check_declaration(const PluginManual& manual, std::size_t index) {
+  const ParameterSpec& spec = manual.parameters[index];
+  const std::string name = "the parameter '" + spec.key + "'";
+  if (!is_key(spec.key))
+    return name + "; keys begin with a letter and are made of a-z, 0-9 and '_', as a study writes them";
+  // What the object of a method holds beside its parameters.
+  for (const char* reserved : {"name", "file"})
+    if (spec.key == reserved) return name + ", a key that every method has already; choose another";
+  for (std::size_t i = 0; i < index; ++i) {
+    const ParameterSpec& other = manual.parameters[i];
+    if (other.key == spec.key) return name + " twice";
+    if (spec.role != ParameterRole::none && other.role == spec.role)
+      return name + " in the role of '" + other.key + "'; one parameter has each role";
+  }
+  if (spec.role != ParameterRole::none && spec.type != ParameterSpec::Type::real)
+    return name + " in a role that only a number can have";
+  if (spec.type == ParameterSpec::Type::word && spec.words.empty()) return name + " without any word to choose from";
+  for (auto word = spec.words.begin(); word != spec.words.end(); ++word)
+    if (word->empty() || std::find(spec.words.begin(), word, *word) != word)
+      return name + (word->empty() ? " with an empty word" : " with the word '" + *word + "' twice");
+  if (spec.fallback)
+    if (const auto wrong = check_parameter(spec, *spec.fallback))
+      return name + " with a default that does not fit: " + *wrong;
+  return std::nullopt;
+}
+
 }  // namespace
 
 const char* role_name(Role role) {
@@ -34,33 +67,50 @@ void Registry::check(Role role, const PluginManual& manual) const {
                       "'; names are made of a-z, 0-9 and '-'");
   if (this->manual(role, manual.name))
     throw PluginError("the " + std::string(role_name(role)) + " plugin '" + manual.name + "' is registered twice");
-  for (const ParameterSpec& spec : manual.parameters)
-    if (spec.fallback)
-      if (const auto wrong = check_parameter(spec, *spec.fallback))
-        throw PluginError("the default of parameter '" + spec.key + "' of '" + manual.name +
-                          "' does not fit: " + *wrong);
+  for (std::size_t i = 0; i < manual.parameters.size(); ++i)
+    if (const auto wrong = check_declaration(manual, i))
+      throw PluginError("the " + std::string(role_name(role)) + " plugin '" + manual.name + "' declares " + *wrong);
 }
 
-void Registry::add_mass(PluginManual manual, std::function<std::unique_ptr<MassStrategy>(const Parameters&)> make) {
-  check(Role::mass, manual);
+template <class Interface>
+void Registry::add(std::map<std::string, Entry<Interface>>& entries, Role role, PluginManual manual,
+                   Maker<Interface> make) {
+  check(role, manual);
   const std::string name = manual.name;
-  mass_.emplace(name, Entry<MassStrategy>{std::move(manual), std::move(make), current_file_});
+  if (!make) throw PluginError("the " + std::string(role_name(role)) + " plugin '" + name + "' registers no factory");
+  entries.emplace(name,
+                  Entry<Interface>{std::move(manual), guarded({role_name(role), name, current_file_}, std::move(make)),
+                                   current_file_});
 }
-void Registry::add_contact(PluginManual manual, std::function<std::unique_ptr<ContactLaw>(const Parameters&)> make) {
-  check(Role::contact, manual);
-  const std::string name = manual.name;
-  contact_.emplace(name, Entry<ContactLaw>{std::move(manual), std::move(make), current_file_});
+
+void Registry::add_mass(PluginManual manual, Maker<MassStrategy> make) {
+  add(mass_, Role::mass, std::move(manual), std::move(make));
 }
-void Registry::add_time(PluginManual manual, std::function<std::unique_ptr<TimeScheme>(const Parameters&)> make) {
-  check(Role::time, manual);
-  const std::string name = manual.name;
-  time_.emplace(name, Entry<TimeScheme>{std::move(manual), std::move(make), current_file_});
+void Registry::add_contact(PluginManual manual, Maker<ContactLaw> make) {
+  add(contact_, Role::contact, std::move(manual), std::move(make));
 }
-void Registry::add_reference(PluginManual manual,
-                             std::function<std::unique_ptr<ReferenceSolver>(const Parameters&)> make) {
-  check(Role::reference, manual);
-  const std::string name = manual.name;
-  reference_.emplace(name, Entry<ReferenceSolver>{std::move(manual), std::move(make), current_file_});
+void Registry::add_time(PluginManual manual, Maker<TimeScheme> make) {
+  add(time_, Role::time, std::move(manual), std::move(make));
+}
+void Registry::add_reference(PluginManual manual, Maker<ReferenceSolver> make) {
+  add(reference_, Role::reference, std::move(manual), std::move(make));
+}
+
+void Registry::adopt(Role role, const std::string& name, const Registry& from) {
+  switch (role) {
+    case Role::mass:
+      mass_.emplace(name, from.mass_.at(name));
+      break;
+    case Role::contact:
+      contact_.emplace(name, from.contact_.at(name));
+      break;
+    case Role::time:
+      time_.emplace(name, from.time_.at(name));
+      break;
+    case Role::reference:
+      reference_.emplace(name, from.reference_.at(name));
+      break;
+  }
 }
 
 const Entry<MassStrategy>* Registry::mass(const std::string& name) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/guarded.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/parameters.hpp>
 #include <ricochet/contract/reference.hpp>
@@ -30,17 +31,21 @@ struct PluginManual {
 template <class Interface>
 struct Entry {
   PluginManual manual;
-  std::function<std::unique_ptr<Interface>(const Parameters&)> make;
-  std::string file;  ///< library it came from
+  Maker<Interface> make;  ///< guarded (see guarded.hpp)
+  std::string file;       ///< library it came from
 };
 
-/// All methods known to this process, by role and name. Core registers none itself.
+/// All methods known to this process, by role and name. Core registers none itself. Adding one throws a PluginError
+/// when its name is no name or is taken, or when its parameters cannot be what a study writes.
 class Registry {
  public:
-  void add_mass(PluginManual manual, std::function<std::unique_ptr<MassStrategy>(const Parameters&)> make);
-  void add_contact(PluginManual manual, std::function<std::unique_ptr<ContactLaw>(const Parameters&)> make);
-  void add_time(PluginManual manual, std::function<std::unique_ptr<TimeScheme>(const Parameters&)> make);
-  void add_reference(PluginManual manual, std::function<std::unique_ptr<ReferenceSolver>(const Parameters&)> make);
+  void add_mass(PluginManual manual, Maker<MassStrategy> make);
+  void add_contact(PluginManual manual, Maker<ContactLaw> make);
+  void add_time(PluginManual manual, Maker<TimeScheme> make);
+  void add_reference(PluginManual manual, Maker<ReferenceSolver> make);
+
+  /// Takes over a method of another registry, with its file; it must be there, and not here.
+  void adopt(Role role, const std::string& name, const Registry& from);
 
   const Entry<MassStrategy>* mass(const std::string& name) const;
   const Entry<ContactLaw>* contact(const std::string& name) const;
@@ -55,6 +60,8 @@ class Registry {
 
  private:
   void check(Role role, const PluginManual& manual) const;
+  template <class Interface>
+  void add(std::map<std::string, Entry<Interface>>& entries, Role role, PluginManual manual, Maker<Interface> make);
   std::map<std::string, Entry<MassStrategy>> mass_;
   std::map<std::string, Entry<ContactLaw>> contact_;
   std::map<std::string, Entry<TimeScheme>> time_;

@@ -349,6 +349,10 @@ std::string inconsistent_motion(const StepPlan& plan) {
   return {};
 }
 
+double step_of(const StepPlan& plan) {
+  return has_inertia(plan) ? Uniform(plan).h() : 0.0;
+}
+
 DerivedPlan derive(StepPlan plan) {
   DerivedPlan derived;
   if (!has_inertia(plan)) {

@@ -28,6 +28,9 @@ struct DerivedPlan {
   double velocity_offset = 0;
 };
 
+/// DerivedPlan::h alone.
+double step_of(const StepPlan& plan);
+
 /// Fills in what a well-formed plan leaves out.
 DerivedPlan derive(StepPlan plan);
 

@@ -180,6 +180,8 @@ using PlanOrRefusal = std::variant<StepPlan, Refusal>;
 /// none, a free mass that is not carried at constant speed, levels of stops that stand elsewhere than what they bound,
 /// a velocity or a test displacement that is none.
 std::optional<std::string> check_plan(const StepPlan& plan);
+/// The same, and whether it is a plan for the step h (s): whether it carries a free mass at 1 m/s by h.
+std::optional<std::string> check_plan(const StepPlan& plan, double h);
 
 /// The plan as a person reads it: slots, S, b, measures, updates, with numbers.
 std::string print_plan(const StepPlan& plan);

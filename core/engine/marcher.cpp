@@ -16,6 +16,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+static_assert(most_slots <= most_lane_slots);
+
 // Lanes are looked at this often when nobody observes them; the cause says so.
 constexpr long long check_interval = 16;
 

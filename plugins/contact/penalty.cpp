@@ -49,6 +49,7 @@ void register_all(Registry& registry) {
   ParameterSpec stiffness = real_parameter("stiffness", "N/m", std::nullopt, {.low = 0, .low_open = true},
                                            "κ, stiffness of the spring at each contact point");
   stiffness.per_lane = true;
+  stiffness.role = ParameterRole::stiffness;
   registry.add_contact(
       {.name = "penalty",
        .summary = "linear springs behind the stops",

@@ -77,8 +77,9 @@ void register_all(Registry& registry) {
        .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and "
                  "Brogliato (2008), ch. 10",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
-                      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
-                                     "e, Newton's restitution coefficient")}},
+                      with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
+                                               "e, Newton's restitution coefficient"),
+                                ParameterRole::restitution)}},
       [](const Parameters& p) { return std::make_unique<MoreauJean>(p.real("theta"), p.real("restitution")); });
 }
 

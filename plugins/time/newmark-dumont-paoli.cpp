@@ -106,7 +106,9 @@ void register_all(Registry& registry) {
                  "approximation; Paoli and Schatzman (2002) for the combination that carries the restitution",
        .parameters = {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5},
                                      "β, weight of the outer levels in K q and F"),
-                      real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+                      with_role(
+                          real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+                          ParameterRole::restitution),
                       word_parameter(
                           "start", {"first-order", "second-order"}, "second-order",
                           "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation")}},

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <ostream>
+#include <ricochet/contract/child.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <sstream>
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
@@ -83,7 +86,9 @@ std::string indented(const std::string& text) {
 }
 
 void print_facts(const SchemeFacts& facts, std::ostream& out) {
-  out << "  order " << fmt::format("{}", facts.order) << " without contact\n"
+  const std::optional<double> contact_order = facts.contact_order;
+  out << "  order " << fmt::format("{}", facts.order) << " without contact, "
+      << (contact_order ? fmt::format("{}", *contact_order) : std::string("not declared")) << " at rigid stops\n"
       << "  restitution: " << restitution_text(facts.restitution) << "\n"
       << "  mass matrix: " << (facts.needs_regular_mass ? "must be regular" : "may be singular") << "\n"
       << "  stability: "
@@ -94,26 +99,103 @@ void print_facts(const SchemeFacts& facts, std::ostream& out) {
       << "\n";
 }
 
-void print_scheme(const PluginManual& manual, const TimeScheme& scheme, std::ostream& out) {
+std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   constexpr double step = 1e-5;
   ProblemFacts facts;
   facts.dofs = 100;
   facts.damped = true;
   facts.contact = true;
   const PlanOrRefusal answer = scheme.plan(step, facts);
-  out << "\n"
-      << fmt::format("facts of {} with its default parameters, h = {} s, a regular mass, damping and contact:\n",
+  std::ostringstream out;
+  out << fmt::format("facts of {} with its default parameters, h = {} s, a regular mass, damping and contact:\n",
                      manual.name, step);
   if (const auto* refusal = std::get_if<Refusal>(&answer)) {
     out << "  refused: " << refusal->sentence << "\n";
-    return;
+    return out.str();
   }
   const auto& plan = std::get<StepPlan>(answer);
   print_facts(plan.facts, out);
   out << "  the step, S z = b + Hᵀp:\n" << indented(print_plan(plan));
+  return out.str();
 }
 
-void print_manual(Role role, const PluginManual& manual, const Registry& registry, std::ostream& out) {
+std::string facts_of(const PluginManual& manual, const MassStrategy& mass) {
+  constexpr int elements = 4;
+  std::string text = fmt::format("facts of {} with its default parameters, on {} elements:\n", manual.name, elements);
+  for (const StructureSpec& structure : {StructureSpec(BeamSpec{}), StructureSpec(BarSpec{})}) {
+    const FiniteElementSpace space = make_space(structure, elements);
+    const InertiaOrRefusal answer = mass.build(space);
+    if (const auto* refusal = std::get_if<Refusal>(&answer)) {
+      text += "  " + space.structure + ": refused: " + refusal->sentence + "\n";
+      continue;
+    }
+    const auto& inertia = std::get<Inertia>(answer);
+    text += fmt::format("  {}: {} dofs, kernel of dimension {}, {}\n", space.structure, space.dofs,
+                        inertia.kernel_dimension,
+                        inertia.factored() ? fmt::format("M = Bᵀ C_v⁻¹ B with {} velocities", inertia.coupling.rows())
+                                           : std::string("a sparse matrix"));
+  }
+  return text;
+}
+
+std::string facts_of(const PluginManual& manual, ContactLaw& law, const Parameters& parameters) {
+  static const char* evaluations[] = {"at the end of the step", "averaged over its levels", "where the step begins"};
+  std::string text = fmt::format("facts of {} with its default parameters:\n", manual.name);
+  if (law.absent()) return text + "  no contact at all\n";
+  law.prepare(1, {&parameters, 1});
+  const auto reads = law.reads();
+  return text + "  reads " +
+         (reads ? std::string("the displacement ") + evaluations[static_cast<int>(*reads)]
+                : std::string("the impact measure: rigid")) +
+         (law.reads_rate() ? ", and its rate" : "") + "\n";
+}
+
+// What a method says when it is asked. Throws whatever its plugin does wrong.
+std::string facts_of(Role role, const PluginManual& manual, const Registry& registry, const Parameters& parameters) {
+  switch (role) {
+    case Role::mass:
+      return facts_of(manual, *registry.mass(manual.name)->make(parameters));
+    case Role::contact:
+      return facts_of(manual, *registry.contact(manual.name)->make(parameters), parameters);
+    case Role::time:
+      return facts_of(manual, *registry.time(manual.name)->make(parameters));
+    case Role::reference:
+      break;
+  }
+  const bool of_the_mesh = registry.reference(manual.name)->make(parameters)->of_the_mesh();
+  return fmt::format("facts of {} with its default parameters:\n  {}\n", manual.name,
+                     of_the_mesh ? "exact in time on the mesh that the methods have"
+                                 : "of the structure itself: computed once for all meshes");
+}
+
+// Prints the facts; false where the plugin goes wrong instead, which is printed. A foreign one is asked in a child
+// process: whatever it does there, this one goes on.
+bool print_answers(Role role, const PluginManual& manual, const Catalogue& catalogue, const Registry& registry,
+                   const Parameters& parameters, std::ostream& out) {
+  constexpr double seconds = 10;
+  const auto ask = [&] { return facts_of(role, manual, registry, parameters); };
+  const std::string file = registry.file(role, manual.name);
+  std::string failure;
+  if (!file.empty() && catalogue.foreign(file)) {
+    const ChildOutcome outcome = run_in_child(ask, seconds);
+    if (outcome.ok())
+      out << outcome.text;
+    else
+      failure = outcome.sentence();
+  } else {
+    try {
+      out << ask();
+    } catch (const PluginFault& fault) {
+      failure = fault.what();
+    }
+  }
+  if (!failure.empty()) out << "fails: " << failure << "\n";
+  return failure.empty();
+}
+
+// False where the plugin goes wrong.
+bool print_manual(Role role, const PluginManual& manual, const Catalogue& catalogue, const Registry& registry,
+                  std::ostream& out) {
   out << manual.name << " (" << role_name(role) << "): " << manual.summary << "\n\n" << manual.text << "\n\n";
   if (manual.parameters.empty())
     out << "no parameters\n";
@@ -121,12 +203,12 @@ void print_manual(Role role, const PluginManual& manual, const Registry& registr
     out << "parameters\n" << parameter_table(manual);
   if (!manual.source.empty()) out << "\nsource: " << manual.source << "\n";
   if (const std::string file = registry.file(role, manual.name); !file.empty()) out << "file: " << file << "\n";
-  if (role != Role::time) return;
+  out << "\n";
   std::string missing;
   if (const auto parameters = default_parameters(manual, missing))
-    print_scheme(manual, *registry.time(manual.name)->make(*parameters), out);
-  else
-    out << "\nfacts depend on parameters that have no default: " << missing << "\n";
+    return print_answers(role, manual, catalogue, registry, *parameters, out);
+  out << "facts depend on parameters that have no default: " << missing << "\n";
+  return true;
 }
 
 }  // namespace
@@ -136,16 +218,16 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
   Registry registry;
   const std::string& name = arguments.operands.front();
   std::vector<std::string> names;
-  bool found = false;
+  bool found = false, sound = true;
   for (const Role role : all_roles) {
     const std::vector<std::string> here = catalogue.names(role);
     names.insert(names.end(), here.begin(), here.end());
     if (!catalogue.require(role, name, registry)) continue;
     if (found) out << "\n----\n\n";
     found = true;
-    print_manual(role, *registry.manual(role, name), registry, out);
+    sound = print_manual(role, *registry.manual(role, name), catalogue, registry, out) && sound;
   }
-  if (found) return exit_done;
+  if (found) return sound ? exit_done : exit_some_failed;
   for (const Role role : all_roles)
     if (const Unusable* file = catalogue.unusable_provider(role, name))
       throw PluginError(file->file.string() + ": " + file->reason);

@@ -9,7 +9,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/table.hpp"
-#include "runners/execution/run_study.hpp"
+#include "runners/execution/plan_cases.hpp"
 
 namespace ricochet {
 namespace {
@@ -59,11 +59,13 @@ void print_grouped(const char* title, const Grouped& grouped, std::size_t all, s
 
 struct Costs {
   double total = 0, longest = 0;
-  int runnable = 0, refused = 0, excluded = 0;
+  int runnable = 0, refused = 0, excluded = 0, failed = 0;
 };
 
 void print_costs(const Costs& costs, std::ostream& out) {
-  out << "\n" << fmt::format("{} to run, {} refused, {} excluded\n", costs.runnable, costs.refused, costs.excluded);
+  out << "\n"
+      << fmt::format("{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
+      << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   out << "predicted: " << plain_seconds(costs.total) << " on 1 core";
@@ -83,6 +85,12 @@ void print_unopened(const Catalogue& catalogue, std::ostream& out) {
   out << "\n";
 }
 
+void print_warnings(const std::vector<std::string>& warnings, std::ostream& out) {
+  if (warnings.empty()) return;
+  out << "\nplugins:\n";
+  for (const std::string& warning : warnings) out << "  " << warning << "\n";
+}
+
 }  // namespace
 
 int command_plan(const Arguments& arguments, std::ostream& out) {
@@ -98,6 +106,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
     TextTable table(header);
     Grouped left_out, notes;
     Costs costs;
+    CasePlanner planner(study, open.catalogue, open.registry);
     for (const StudyCase& study_case : study.cases) {
       std::vector<std::string> row = {study_case.id};
       for (const std::string& axis : varying)
@@ -108,8 +117,11 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
         table.add(std::move(row));
         continue;
       }
-      const CasePlan plan = plan_for(study.kind, study_case, open.registry);
-      if (!plan.refusal.empty()) {
+      const auto [plan, failure] = planner.plan(study_case);
+      if (!failure.empty()) {
+        ++costs.failed;
+        row.insert(row.end(), {"", "", "", "fails: " + failure});
+      } else if (!plan.refusal.empty()) {
         ++costs.refused;
         row.insert(row.end(), {"", "", "", "refused: " + plan.refusal});
       } else {
@@ -134,7 +146,8 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
     print_grouped("notes:", notes, static_cast<std::size_t>(costs.runnable), out);
     print_costs(costs, out);
     print_unopened(open.catalogue, out);
-    return exit_done;
+    print_warnings(plugin_warnings(open), out);
+    return costs.failed > 0 ? exit_some_failed : exit_done;
   });
 }
 

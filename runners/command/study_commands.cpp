@@ -9,6 +9,7 @@ namespace ricochet {
 
 int command_run(const Arguments& arguments, std::ostream&) {
   return with_study(arguments, [&](const OpenStudy& open) {
+    for (const std::string& warning : plugin_warnings(open)) std::cerr << "ricochet: " << warning << "\n";
     RunOptions options;
     options.out = arguments.out.value_or("");
     options.jobs = arguments.jobs;

@@ -55,6 +55,11 @@ std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Regis
       .make(study_case.time.parameters);
 }
 
+std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry) {
+  const auto& scheme = registered(registry.time(study_case.time.name), Role::time, study_case.time.name);
+  return value_of_role(scheme.manual.parameters, study_case.time.parameters, ParameterRole::restitution);
+}
+
 Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);
@@ -75,11 +80,10 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
     return prepared;
   }
   const StepPlan& steps = std::get<StepPlan>(plan);
-  if (law->reads() && steps.facts.restitution != Restitution::ignored)
-    for (const auto& [key, value] : study_case.time.parameters.values())
-      if (key == "restitution" && std::holds_alternative<double>(value) && std::get<double>(value) != 0)
-        prepared.notes.push_back(
-            "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
+  if (law->reads() && steps.facts.restitution != Restitution::ignored &&
+      scheme_restitution(study_case, registry).value_or(0) != 0)
+    prepared.notes.push_back(
+        "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
   options.expected_steps = prepared.steps;
   auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),

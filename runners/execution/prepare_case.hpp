@@ -36,6 +36,9 @@ std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Regis
 std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Registry& registry);
 
+/// The restitution coefficient that the study gives the scheme, or nothing where it takes none.
+std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry);
+
 /// Item and reason of everything that a program does without.
 std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items);
 

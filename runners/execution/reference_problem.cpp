@@ -78,8 +78,7 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
     problem.contact_nonlinear = !stiffness;
     problem.contact_stiffness = stiffness.value_or(0);
   }
-  for (const auto& [key, value] : study_case.time.parameters.values())
-    if (key == "restitution" && std::holds_alternative<double>(value)) problem.restitution = std::get<double>(value);
+  problem.restitution = scheme_restitution(study_case, registry).value_or(0);
   return problem;
 }
 

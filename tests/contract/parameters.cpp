@@ -92,3 +92,13 @@ TEST_CASE("a whole number serves where a real is expected, and nothing else is c
   CHECK(parameters.real("y") == 1.0);
   CHECK(parameters.values().size() == 5);
 }
+
+TEST_CASE("a value is found by the role of its parameter, whatever its key") {
+  const std::vector<ParameterSpec> declared = {
+      real_parameter("restitution", "1", 0.1, {0, 1}, "Not this."),
+      with_role(real_parameter("e", "1", 0.2, {0, 1}, "This."), ParameterRole::restitution)};
+  const Parameters values({{"restitution", 0.1}, {"e", 0.75}});
+  CHECK(value_of_role(declared, values, ParameterRole::restitution) == 0.75);
+  CHECK_FALSE(value_of_role(declared, values, ParameterRole::stiffness).has_value());
+  CHECK(value_of_role(declared, Parameters({{"e", 1LL}}), ParameterRole::restitution) == 1);
+}

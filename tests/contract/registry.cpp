@@ -75,7 +75,44 @@ TEST_CASE("a default that its own declaration refuses is a fault of the plugin")
       {{real_parameter("beta", "1", 0.75, {0, 0.5}, "β."), "0.75 is outside [0, 0.5]"},
        {integer_parameter("count", 9, {1, 4}, "N."), "9 is outside [1, 4]"},
        {word_parameter("space", {"P0", "P1"}, "P2", "Space."), "expected one of \"P0\", \"P1\""}}));
-  CHECK_THROWS_WITH(add_time(registry, manual("mine", {spec})),
-                    Contains("default of parameter '" + spec.key + "' of 'mine'") && Contains(part));
+  CHECK_THROWS_WITH(
+      add_time(registry, manual("mine", {spec})),
+      Contains("'mine' declares the parameter '" + spec.key + "' with a default that does not fit") && Contains(part));
   CHECK(registry.names(Role::time).empty());
+}
+
+TEST_CASE("a parameter that no study could write is a fault of the plugin") {
+  Registry registry;
+  const auto real = [](const std::string& key) { return real_parameter(key, "1", 0.5, {0, 1}, "x."); };
+  using Parameters_ = std::vector<ParameterSpec>;
+  const auto restitution = [&](const std::string& key) { return with_role(real(key), ParameterRole::restitution); };
+  const auto [parameters, part] = GENERATE_COPY(table<Parameters_, std::string>({
+      {{real("name")}, "the parameter 'name', a key that every method has already"},
+      {{real("file")}, "the parameter 'file', a key that every method has already"},
+      {{real("")}, "the parameter ''; keys begin with a letter"},
+      {{real("has space")}, "the parameter 'has space'; keys begin with a letter"},
+      {{real("Beta")}, "the parameter 'Beta'; keys"},
+      {{real("2nd")}, "the parameter '2nd'; keys"},
+      {{real("a-b")}, "the parameter 'a-b'; keys"},
+      {{real("beta"), real("gamma"), real("beta")}, "the parameter 'beta' twice"},
+      {{word_parameter("space", {}, std::nullopt, "x.")}, "'space' without any word to choose from"},
+      {{word_parameter("space", {"P0", "P1", "P0"}, "P0", "x.")}, "'space' with the word 'P0' twice"},
+      {{word_parameter("space", {"P0", ""}, "P0", "x.")}, "'space' with an empty word"},
+      {{restitution("e"), restitution("f")}, "the parameter 'f' in the role of 'e'"},
+      {{with_role(word_parameter("e", {"no", "yes"}, "no", "x."), ParameterRole::restitution)},
+       "'e' in a role that only a number can have"},
+  }));
+  CHECK_THROWS_AS(add_time(registry, manual("mine", parameters)), PluginError);
+  CHECK_THROWS_WITH(add_time(registry, manual("mine", parameters)),
+                    Contains("the time plugin 'mine' declares ") && Contains(part));
+  CHECK(registry.names(Role::time).empty());
+}
+
+TEST_CASE("keys that a study can write are taken") {
+  Registry registry;
+  add_time(registry,
+           manual("mine", {real_parameter("a", "1", 0.5, {0, 1}, "x."),
+                           with_role(real_parameter("e_2", "1", 0.5, {0, 1}, "x."), ParameterRole::restitution),
+                           with_role(real_parameter("k", "1", 0.5, {0, 1}, "x."), ParameterRole::stiffness)}));
+  CHECK(registry.manual(Role::time, "mine")->parameters.size() == 3);
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ricochet/contract/abi.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <sstream>
 
 #include "tests/runners/scratch_folder.hpp"
@@ -80,13 +81,58 @@ const std::map<std::string, std::string> broken = {
      "says that it provides time 'other-name' but does not register it; it registers time 'yet-another-name'"},
     {"in-silence", "registers time 'unsaid' without saying so"},
     {"halfway", "failed while registering: the second scheme was not to be had"},
+    {"aborts-at-load", "ended by signal 6 (aborted) while it was loaded"},
+    {"exits-at-load", "ended the process with exit code 7 while it was loaded"},
+    {"debug-library", "built for another ABI: layout: std::vector<double>: expected 24 bytes, found "},
+    {"one-more-field", "built for another ABI: layout: Stage: expected " + std::to_string(sizeof(ricochet::Stage)) +
+                           " bytes, found " + std::to_string(sizeof(ricochet::Stage) + sizeof(double)) +
+                           "; rebuild it against this version of Ricochet"},
+    {"undefined", "cannot be loaded: undefined symbol: nowhere(double)\n"},
+    {"parameter-name", "declares the parameter 'name', a key that every method has already; choose another"},
 };
 
-std::string study_with(const nlohmann::ordered_json& time) {
-  nlohmann::ordered_json study =
-      nlohmann::ordered_json::parse(read_text(fs::path(RICOCHET_SOURCE_DIR) / "tests/plugins/out_of_tree/study.json"));
+using Json = nlohmann::ordered_json;
+
+std::string study_with(const Json& time, const Json& mass = {"consistent", "singular"}) {
+  Json study = Json::parse(read_text(fs::path(RICOCHET_SOURCE_DIR) / "tests/plugins/out_of_tree/study.json"));
   study["methods"]["time"] = time;
+  study["methods"]["mass"] = mass;
   return study.dump(1);
+}
+
+/// What the misbehaving plugins do when asked, by the value of their parameter, and what is said of it after
+/// "plugin ROLE 'misbehaves' (FILE), ".
+const std::map<std::string, std::string> wrong_schemes = {
+    {"no-object", "make(): its factory returned no object"},
+    {"throw-in-constructor", "make(): no licence"},
+    {"throw", "plan(): my plan failed"},
+    {"throw-int", "plan(): an exception that says nothing"},
+    {"empty-refusal", "plan(): refuses without a sentence"},
+    {"ill-formed", "plan(): ill-formed plan: stage 1: update must give one combination per slot"},
+    {"not-a-number", "plan(): ill-formed plan: velocity is not finite"},
+};
+const std::map<std::string, std::string> wrong_masses = {
+    {"throw-int", "build(): an exception that says nothing"},
+    {"empty-refusal", "build(): refuses without a sentence"},
+    {"empty", "build(): its mass is 0 × 0; expected 8 × 8, the dofs of the space"},
+    {"small", "build(): its mass is 2 × 2; expected 8 × 8, the dofs of the space"},
+    {"not-a-number", "build(): the mass holds nan at (0, 0)"},
+    {"negative", "build(): the mass has -"},
+    {"indefinite", "build(): the mass has a negative eigenvalue"},
+    {"unsymmetric", "build(): the mass is not symmetric"},
+    {"kernel", "build(): declares a kernel of dimension 3, its mass has 0"},
+    {"hidden-kernel", "build(): declares a kernel of dimension 0, its mass has 8"},
+};
+/// Those that end the process which asks: only where a child process asks.
+const std::map<std::string, std::string> ending_schemes = {
+    {"crash", "plan(): ended by signal 11 (segmentation fault)"},
+    {"exit", "plan(): ended the process with exit code 7"},
+};
+
+Json all_of(const std::map<std::string, std::string>& wrong) {
+  Json how = Json::array();
+  for (const auto& [way, ignored] : wrong) how.push_back(way);
+  return {{"name", "misbehaves"}, {"how", how}};
 }
 
 std::vector<std::map<std::string, std::string>> read_cases(const fs::path& file) {
@@ -205,6 +251,101 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
     CHECK(run.code == 0);
     CHECK(installed.run(here.path(), "schema", installed.plugins().string()).code == 0);
     CHECK(installed.run(here.path(), "list time", installed.plugins().string()).code == 4);
+  }
+
+  SECTION("a plugin that goes wrong fails its own cases, by name, and no other") {
+    const std::string scheme = "plugin time 'misbehaves' (" + installed.plugin("misbehaves").string() + "), ";
+    const std::string mass =
+        "plugin mass 'misbehaves' (" + (installed.plugins() / "mass-misbehaves.so").string() + "), ";
+    struct Role {
+      std::string study, column, prefix;
+      const std::map<std::string, std::string>* wrong;
+    };
+    for (const Role& role :
+         {Role{study_with({"newmark", all_of(wrong_schemes)}, "consistent"), "time", scheme, &wrong_schemes},
+          Role{study_with("newmark", {"consistent", all_of(wrong_masses)}), "mass", mass, &wrong_masses}}) {
+      write_text(here / "study.json", role.study);
+      const Outcome run =
+          installed.run(here.path(), "run study.json --out " + role.column, installed.plugins().string());
+      INFO(run.out << run.err);
+      CHECK(run.code == 3);
+      const auto cases = read_cases(here / role.column / "cases.csv");
+      CHECK(cases.size() == role.wrong->size() + 1);
+      for (const auto& one : cases) {
+        if (one.at(role.column) != "misbehaves") {
+          CHECK(one.at("status") == "done");
+          continue;
+        }
+        const std::string way = one.at(role.column + ".how");
+        INFO(way);
+        CHECK(one.at("status") == "failed");
+        CHECK_THAT(one.at("reason"), StartsWith(role.prefix + role.wrong->at(way)));
+      }
+      const Outcome plan = installed.run(here.path(), "plan study.json", installed.plugins().string());
+      INFO(plan.out << plan.err);
+      CHECK(plan.code == 3);
+      for (const auto& [way, sentence] : *role.wrong)
+        CHECK_THAT(plan.out, Contains("fails: " + role.prefix + sentence));
+      CHECK_THAT(plan.out,
+                 Contains("1 to run, 0 refused, 0 excluded, " + std::to_string(role.wrong->size()) + " failed"));
+    }
+    const Outcome described = installed.run(here.path(), "describe misbehaves", installed.plugins().string());
+    INFO(described.out << described.err);
+    CHECK(described.code == 3);
+    CHECK_THAT(described.out, Contains("fails: " + scheme + wrong_schemes.at("ill-formed")) &&
+                                  Contains("fails: " + mass + wrong_masses.at("negative")));
+  }
+
+  SECTION("the plan of a study outlives a plugin that ends the process that asks it") {
+    write_text(here / "study.json", study_with({"newmark", all_of(ending_schemes)}, "consistent"));
+    const Outcome plan = installed.run(here.path(), "plan study.json", installed.plugins().string());
+    INFO(plan.out << plan.err);
+    CHECK(plan.code == 3);
+    for (const auto& [way, sentence] : ending_schemes)
+      CHECK_THAT(plan.out, Contains("fails: plugin time 'misbehaves' (" + installed.plugin("misbehaves").string() +
+                                    "), " + sentence));
+    CHECK_THAT(plan.out, Contains("1 to run, 0 refused, 0 excluded, 2 failed"));
+  }
+
+  SECTION("a library that never comes back from loading is given up") {
+    const Outcome doctor = installed.run(here.path(), "doctor", (installed.folder() / "build" / "slow").string());
+    INFO(doctor.out << doctor.err);
+    CHECK(doctor.code == 4);
+    CHECK_THAT(doctor.out, Contains("did not end within 10 s while it was loaded"));
+  }
+
+  SECTION("who is shadowed, and which folders are none, is said where a study uses it") {
+    const std::string hidden = (installed.folder() / "build" / "shadowed").string();
+    const std::string sentence = "time 'newmark' of " + hidden + "/time-newmark.so is shadowed by ";
+    const std::string path = hidden + ":" + (here / "nowhere").string();
+    write_text(here / "study.json", study_with("newmark", "consistent"));
+    const Outcome run = installed.run(here.path(), "run study.json --out results", path);
+    const Outcome plan = installed.run(here.path(), "plan study.json", path);
+    INFO(run.err << plan.out << plan.err);
+    CHECK(run.code == 0);
+    CHECK(plan.code == 0);
+    for (const std::string& text : {run.err, plan.out}) {
+      CHECK_THAT(text, Contains(sentence + installed.prefix().string()));
+      CHECK_THAT(text, Contains("no such plugin folder: " + (here / "nowhere").string()));
+    }
+    write_text(here / "study.json", study_with("moreau-jean", "consistent"));
+    CHECK_THAT(installed.run(here.path(), "plan study.json", path).out, !Contains("shadowed"));
+  }
+
+  SECTION("a compiler that is told too little says first what is missing") {
+    const std::string compile = "'" RICOCHET_CXX_COMPILER "' -fsyntax-only -I'" +
+                                (installed.prefix() / "include").string() + "' -I'" RICOCHET_EIGEN "' '" +
+                                (installed.folder() / "project/time-plain.cpp").string() + "' ";
+    const auto first_error = [](const Outcome& outcome) {
+      const std::size_t at = outcome.err.find("error: ");
+      return at == std::string::npos ? "" : outcome.err.substr(at, outcome.err.find('\n', at) - at);
+    };
+    const std::string aligned = "-DEIGEN_MAX_ALIGN_BYTES=32 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 ";
+    CHECK(first_error(shell(here.path(), compile + aligned + "-std=c++20")).empty());
+    CHECK_THAT(first_error(shell(here.path(), compile + aligned + "-std=c++17")),
+               Contains("Ricochet plugins need C++20"));
+    CHECK_THAT(first_error(shell(here.path(), compile + "-std=c++20")),
+               Contains("share Eigen's alignment with the program: compile through the CMake target Ricochet::plugin"));
   }
 
   SECTION("a stripped one still serves") {

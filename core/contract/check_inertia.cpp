@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseQR>
+#include <cmath>
+#include <ricochet/contract/check_inertia.hpp>
+
+namespace ricochet {
+namespace {
+
+using Wrong = std::optional<std::string>;
+
+template <class Use>
+void each_entry(const SparseMatrix& matrix, Use use) {
+  for (Eigen::Index j = 0; j < matrix.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(matrix, j); it; ++it) use(it.row(), it.col(), it.value());
+}
+
+Wrong check_finite(const SparseMatrix& matrix, const char* name) {
+  Wrong wrong;
+  each_entry(matrix, [&](Eigen::Index i, Eigen::Index j, double value) {
+    if (!std::isfinite(value) && !wrong) wrong = fmt::format("{} holds {} at ({}, {})", name, value, i, j);
+  });
+  return wrong;
+}
+
+Wrong check_diagonal(const SparseMatrix& matrix, const char* name) {
+  for (Eigen::Index i = 0; i < matrix.cols(); ++i)
+    if (matrix.coeff(i, i) < 0) return fmt::format("{} has {:g} on its diagonal, at {}", name, matrix.coeff(i, i), i);
+  return std::nullopt;
+}
+
+// D M D with D = diag(M)^{-1/2}; where the diagonal vanishes, the largest stands for it.
+SparseMatrix scaled(const SparseMatrix& matrix) {
+  Eigen::VectorXd diagonal = matrix.diagonal();
+  const double largest = diagonal.size() > 0 && diagonal.maxCoeff() > 0 ? diagonal.maxCoeff() : 1;
+  for (double& value : diagonal)
+    if (value == 0) value = largest;
+  const Eigen::VectorXd scales = diagonal.cwiseSqrt().cwiseInverse();
+  return scales.asDiagonal() * matrix * scales.asDiagonal();
+}
+
+Wrong check_symmetric(const SparseMatrix& matrix, const char* name) {
+  const SparseMatrix whole = scaled(matrix), transposed = whole.transpose();
+  const SparseMatrix gap = whole - transposed;
+  const double tolerance = 1e-12 * whole.norm();
+  Wrong wrong;
+  each_entry(gap, [&](Eigen::Index i, Eigen::Index j, double value) {
+    if (std::abs(value) > tolerance && !wrong)
+      wrong = fmt::format("{} is not symmetric: {:g} at ({}, {}), {:g} at ({}, {})", name, matrix.coeff(i, j), i, j,
+                          matrix.coeff(j, i), j, i);
+  });
+  return wrong;
+}
+
+// Whether M + shift·I is positive definite: a Cholesky factorisation needs no pivots to tell.
+bool positive(const SparseMatrix& matrix, double shift) {
+  SparseMatrix identity(matrix.rows(), matrix.cols());
+  identity.setIdentity();
+  const SparseMatrix shifted = matrix + shift * identity;
+  return Eigen::SimplicialLLT<SparseMatrix>(shifted).info() == Eigen::Success;
+}
+
+SparseMatrix with_unit_columns(const SparseMatrix& matrix) {
+  Eigen::VectorXd scales = Eigen::VectorXd::Ones(matrix.cols());
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+    if (const double norm = matrix.col(j).norm(); norm > 0) scales[j] = 1 / norm;
+  return matrix * scales.asDiagonal();
+}
+
+// Rank of M, which is that of Mᵀ scaled both ways.
+Eigen::Index rank(const SparseMatrix& matrix) {
+  SparseMatrix transposed = with_unit_columns(matrix).transpose();
+  transposed = with_unit_columns(transposed);
+  transposed.makeCompressed();
+  Eigen::SparseQR<SparseMatrix, Eigen::NaturalOrdering<int>> qr;
+  qr.setPivotThreshold(1e-9);  // columns have length 1; the rank gap of a mesh of thousands of elements is wider
+  qr.compute(transposed);
+  return qr.rank();
+}
+
+Wrong check_sizes(const Inertia& inertia, int n) {
+  const SparseMatrix &M = inertia.mass, &B = inertia.coupling, &C = inertia.velocity_mass;
+  if (!inertia.factored()) {
+    if (M.rows() != n || M.cols() != n)
+      return fmt::format("its mass is {} × {}; expected {} × {}, the dofs of the space", M.rows(), M.cols(), n, n);
+    return std::nullopt;
+  }
+  if (B.cols() != n)
+    return fmt::format("its B is {} × {}; expected {} columns, the dofs of the space", B.rows(), B.cols(), n);
+  if (C.rows() != B.rows() || C.cols() != B.rows())
+    return fmt::format("its C_v is {} × {}; expected {} × {}, the rows of B", C.rows(), C.cols(), B.rows(), B.rows());
+  return std::nullopt;
+}
+
+Wrong check_values(const Inertia& inertia) {
+  const SparseMatrix& matrix = inertia.factored() ? inertia.velocity_mass : inertia.mass;
+  const char* name = inertia.factored() ? "C_v" : "the mass";
+  if (inertia.factored())
+    if (auto wrong = check_finite(inertia.coupling, "B")) return wrong;
+  if (auto wrong = check_finite(matrix, name)) return wrong;
+  if (auto wrong = check_diagonal(matrix, name)) return wrong;
+  if (auto wrong = check_symmetric(matrix, name)) return wrong;
+  constexpr double round_off = 1e-11, regular = 1e-12;
+  if (!positive(scaled(matrix), inertia.factored() ? -regular : round_off))
+    return inertia.factored() ? "C_v is not positive definite" : "the mass has a negative eigenvalue";
+  return std::nullopt;
+}
+
+Wrong check_kernel(const Inertia& inertia, int n) {
+  if (inertia.kernel_dimension < 0 || inertia.kernel_dimension > n)
+    return fmt::format("declares a kernel of dimension {}; the mass has {} dofs", inertia.kernel_dimension, n);
+  constexpr double regular = 1e-12;
+  // A regular mass needs no rank, only a Cholesky factorisation that succeeds.
+  if (!inertia.factored() && inertia.kernel_dimension == 0 && positive(scaled(inertia.mass), -regular))
+    return std::nullopt;
+  const Eigen::Index kernel = n - rank(inertia.factored() ? inertia.coupling : inertia.mass);
+  if (kernel == inertia.kernel_dimension) return std::nullopt;
+  return fmt::format("declares a kernel of dimension {}, its mass has {}", inertia.kernel_dimension, kernel);
+}
+
+}  // namespace
+
+std::optional<std::string> check_inertia(const Inertia& inertia, const FiniteElementSpace& space) {
+  if (auto wrong = check_sizes(inertia, space.dofs)) return wrong;
+  if (auto wrong = check_values(inertia)) return wrong;
+  return check_kernel(inertia, space.dofs);
+}
+
+}  // namespace ricochet

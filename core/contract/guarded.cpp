@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <ricochet/contract/check_inertia.hpp>
+#include <ricochet/contract/guarded.hpp>
+
+namespace ricochet {
+namespace {
+
+// Turns the exception under way into one that says whose it is.
+[[noreturn]] void explain(const PluginIdentity& plugin, const char* function) {
+  try {
+    throw;
+  } catch (const PluginFault&) {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const PluginError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw PluginFault(plugin, function, "not enough memory");
+  } catch (const std::exception& error) {
+    const std::string what = error.what();
+    throw PluginFault(plugin, function, what.empty() ? "an exception that says nothing" : what);
+  } catch (...) {
+    throw PluginFault(plugin, function, "an exception that says nothing");
+  }
+}
+
+// One call into a plugin. No allocation and no indirection of its own: laws are asked in the marching loop.
+template <class Question>
+decltype(auto) ask(const PluginIdentity& plugin, const char* function, Question&& question) {
+  const PluginCallScope scope(plugin, function);
+  try {
+    return question();
+  } catch (...) {
+    explain(plugin, function);
+  }
+}
+
+void check_refusal(const PluginIdentity& plugin, const char* function, const Refusal& refusal) {
+  if (refusal.sentence.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw PluginFault(plugin, function, "refuses without a sentence");
+}
+
+/// What every guard holds. The identity is shared: objects may outlive the registry that made them.
+template <class Interface>
+class Guard : public Interface {
+ public:
+  Guard(std::shared_ptr<const PluginIdentity> plugin, std::unique_ptr<Interface> inner)
+      : plugin_(std::move(plugin)), inner_(std::move(inner)) {}
+  ~Guard() override {
+    const PluginCallScope scope(*plugin_, "destructor");
+    inner_.reset();
+  }
+
+ protected:
+  template <class Question>
+  decltype(auto) ask(const char* function, Question&& question) const {
+    return ricochet::ask(*plugin_, function, [&]() -> decltype(auto) { return question(*inner_); });
+  }
+  [[noreturn]] void fault(const char* function, const std::string& what) const {
+    throw PluginFault(*plugin_, function, what);
+  }
+
+  std::shared_ptr<const PluginIdentity> plugin_;
+  std::unique_ptr<Interface> inner_;
+};
+
+// Forwards one virtual function that needs no check of its answer.
+#define RICOCHET_FORWARD(function, ...) \
+  return ask(#function, [&](auto& inner) -> decltype(auto) { return inner.function(__VA_ARGS__); })
+
+class GuardedMass final : public Guard<MassStrategy> {
+ public:
+  using Guard::Guard;
+  InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    InertiaOrRefusal answer = ask("build", [&](auto& inner) { return inner.build(space); });
+    if (const auto* refusal = std::get_if<Refusal>(&answer))
+      check_refusal(*plugin_, "build", *refusal);
+    else if (const auto wrong = check_inertia(std::get<Inertia>(answer), space))
+      fault("build", *wrong);
+    return answer;
+  }
+};
+
+class GuardedLaw final : public Guard<ContactLaw> {
+ public:
+  using Guard::Guard;
+  bool absent() const override { RICOCHET_FORWARD(absent); }
+  std::optional<Evaluation> reads() const override {
+    const std::optional<Evaluation> answer = ask("reads", [](auto& inner) { return inner.reads(); });
+    if (answer && (static_cast<int>(*answer) < 0 || static_cast<int>(*answer) >= evaluations))
+      fault("reads", fmt::format("names the measure {}, which does not exist", static_cast<int>(*answer)));
+    return answer;
+  }
+  bool reads_rate() const override { RICOCHET_FORWARD(reads_rate); }
+  void prepare(int points, std::span<const Parameters> lanes) override { RICOCHET_FORWARD(prepare, points, lanes); }
+  void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
+  double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }
+  std::optional<double> constant_stiffness(int lane) const override { RICOCHET_FORWARD(constant_stiffness, lane); }
+  bool offers_slopes() const override { RICOCHET_FORWARD(offers_slopes); }
+  ContactSlopes slopes(int point, int lane) const override { RICOCHET_FORWARD(slopes, point, lane); }
+  double layer(int lane) const override {
+    const double answer = ask("layer", [&](auto& inner) { return inner.layer(lane); });
+    if (!(answer >= 0) || !std::isfinite(answer)) fault("layer", fmt::format("acts {:g} m before the stop", answer));
+    return answer;
+  }
+  int memory_per_point() const override {
+    const int answer = ask("memory_per_point", [](auto& inner) { return inner.memory_per_point(); });
+    if (answer < 0 || answer > most_memory)
+      fault("memory_per_point", fmt::format("keeps {} numbers per point, 0 to {} are kept", answer, most_memory));
+    return answer;
+  }
+  bool closed_form(int points) const override { RICOCHET_FORWARD(closed_form, points); }
+  std::string how_solved() const override { RICOCHET_FORWARD(how_solved); }
+};
+
+class GuardedScheme final : public Guard<TimeScheme> {
+ public:
+  using Guard::Guard;
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    PlanOrRefusal answer = ask("plan", [&](auto& inner) { return inner.plan(h, facts); });
+    if (const auto* refusal = std::get_if<Refusal>(&answer))
+      check_refusal(*plugin_, "plan", *refusal);
+    else if (const auto wrong = check_plan(std::get<StepPlan>(answer), h))
+      fault("plan", "ill-formed plan: " + *wrong);
+    return answer;
+  }
+};
+
+class GuardedReference final : public Guard<ReferenceSolver> {
+ public:
+  using Guard::Guard;
+  bool of_the_mesh() const override { RICOCHET_FORWARD(of_the_mesh); }
+  ReferenceOrRefusal solve(const ReferenceProblem& problem, const SampleGrid& grid) const override {
+    ReferenceOrRefusal answer = ask("solve", [&](auto& inner) { return inner.solve(problem, grid); });
+    if (const auto* refusal = std::get_if<Refusal>(&answer)) {
+      check_refusal(*plugin_, "solve", *refusal);
+    } else {
+      const auto& found = std::get<ReferenceMotion>(answer);
+      check(found.motion, grid, false);
+      check(found.coarser, grid, true);
+    }
+    return answer;
+  }
+
+ private:
+  // Only the coarser motion may be absent, series by series.
+  void check(const SampledMotion& motion, const SampleGrid& grid, bool optional) const {
+    const auto series = [&](const std::vector<double>& values, std::size_t expected, const char* name) {
+      if (values.size() != expected && !(optional && values.empty()))
+        fault("solve", fmt::format("its {} has {} values where the grid has {}", name, values.size(), expected));
+    };
+    const std::size_t times = grid.times.size(), fields = times * grid.places.size();
+    series(motion.tip, times, "tip");
+    series(motion.tip_velocity, times, "tip velocity");
+    series(motion.energy, times, "energy");
+    series(motion.impulse, times, "impulse");
+    series(motion.displacement, fields, "displacement");
+    series(motion.strain, fields, "strain");
+    series(motion.velocity, fields, "velocity");
+  }
+};
+
+#undef RICOCHET_FORWARD
+
+template <class Guarded, class Interface>
+Maker<Interface> guard(PluginIdentity plugin, Maker<Interface> make) {
+  return [identity = std::make_shared<const PluginIdentity>(std::move(plugin)),
+          make = std::move(make)](const Parameters& parameters) -> std::unique_ptr<Interface> {
+    std::unique_ptr<Interface> made = ask(*identity, "make", [&] { return make(parameters); });
+    if (!made) throw PluginFault(*identity, "make", "its factory returned no object");
+    return std::make_unique<Guarded>(identity, std::move(made));
+  };
+}
+
+}  // namespace
+
+Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make) {
+  return guard<GuardedMass>(std::move(plugin), std::move(make));
+}
+Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make) {
+  return guard<GuardedLaw>(std::move(plugin), std::move(make));
+}
+Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make) {
+  return guard<GuardedScheme>(std::move(plugin), std::move(make));
+}
+Maker<ReferenceSolver> guarded(PluginIdentity plugin, Maker<ReferenceSolver> make) {
+  return guard<GuardedReference>(std::move(plugin), std::move(make));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,206 @@
+#include <catch2/catch.hpp>
+#include <functional>
+#include <limits>
+#include <ricochet/contract/registry.hpp>
+
+#include "tests/allocations.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A scheme, a law, a mass and a reference that do what a test tells them.
+struct Scheme : TimeScheme {
+  explicit Scheme(std::function<PlanOrRefusal()> act_) : act(std::move(act_)) {}
+  std::function<PlanOrRefusal()> act;
+  PlanOrRefusal plan(double, const ProblemFacts&) const override { return act(); }
+};
+struct Mass : MassStrategy {
+  explicit Mass(std::function<InertiaOrRefusal()> act_) : act(std::move(act_)) {}
+  std::function<InertiaOrRefusal()> act;
+  InertiaOrRefusal build(const FiniteElementSpace&) const override { return act(); }
+};
+struct Reference : ReferenceSolver {
+  explicit Reference(std::function<ReferenceOrRefusal()> act_) : act(std::move(act_)) {}
+  std::function<ReferenceOrRefusal()> act;
+  ReferenceOrRefusal solve(const ReferenceProblem&, const SampleGrid&) const override { return act(); }
+};
+struct Law : ContactLaw {
+  explicit Law(std::function<void()> act_) : act(std::move(act_)) {}
+  std::function<void()> act;
+  bool absent() const override { return (act(), true); }
+  std::optional<Evaluation> reads() const override { return (act(), Evaluation::averaged); }
+  bool reads_rate() const override { return (act(), true); }
+  void prepare(int, std::span<const Parameters>) override { act(); }
+  void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
+  double potential(double depth, int lane) const override { return (act(), depth + lane); }
+  std::optional<double> constant_stiffness(int lane) const override { return (act(), lane); }
+};
+
+PluginManual manual() {
+  return {"mine", "A stand-in.", "Registered by the tests.", "none", {}};
+}
+
+PlanOrRefusal plan_of(std::function<PlanOrRefusal()> act) {
+  Registry registry;
+  registry.set_current_file("here.so");
+  registry.add_time(manual(), [act](const Parameters&) { return std::make_unique<Scheme>(act); });
+  return registry.time("mine")->make({})->plan(1e-3, {});
+}
+InertiaOrRefusal mass_of(std::function<InertiaOrRefusal()> act) {
+  Registry registry;
+  registry.add_mass(manual(), [act](const Parameters&) { return std::make_unique<Mass>(act); });
+  FiniteElementSpace space;
+  space.dofs = 2;
+  return registry.mass("mine")->make({})->build(space);
+}
+ReferenceOrRefusal motion_of(std::function<ReferenceOrRefusal()> act) {
+  Registry registry;
+  registry.add_reference(manual(), [act](const Parameters&) { return std::make_unique<Reference>(act); });
+  return registry.reference("mine")->make({})->solve({}, {{0, 1}, {0.5}, {1}});
+}
+std::unique_ptr<ContactLaw> law_of(std::function<void()> act) {
+  Registry registry;
+  registry.add_contact(manual(), [act](const Parameters&) { return std::make_unique<Law>(act); });
+  return registry.contact("mine")->make({});
+}
+
+StepPlan still() {
+  StepPlan plan;
+  plan.slots = {"q"};
+  plan.initial = {{1, 0}};
+  plan.stages.resize(1);
+  plan.stages[0].update = {{{1}, 0}};
+  return plan;
+}
+
+struct Silent : std::exception {
+  const char* what() const noexcept override { return ""; }
+};
+
+}  // namespace
+
+TEST_CASE("what a plugin throws arrives as a fault that names plugin, file and function") {
+  const std::string place = "plugin time 'mine' (here.so), plan(): ";
+  CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw std::runtime_error("my plan failed"); }), PluginFault);
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw std::runtime_error("my plan failed"); }),
+                    place + "my plan failed");
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw 42; }), place + "an exception that says nothing");
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw Silent(); }), place + "an exception that says nothing");
+  CHECK_THROWS_WITH(plan_of([]() -> PlanOrRefusal { throw std::bad_alloc(); }), place + "not enough memory");
+  CHECK_THROWS_WITH(mass_of([]() -> InertiaOrRefusal { throw 42; }),
+                    "plugin mass 'mine', build(): an exception that says nothing");
+  CHECK_THROWS_WITH(motion_of([]() -> ReferenceOrRefusal { throw 42; }),
+                    "plugin reference 'mine', solve(): an exception that says nothing");
+}
+
+TEST_CASE("an error that already says what to do passes as it is") {
+  CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw InputError("/methods/time/beta", "no"); }), InputError);
+  CHECK_THROWS_AS(plan_of([]() -> PlanOrRefusal { throw PluginError("no"); }), PluginError);
+}
+
+TEST_CASE("every function of a law is guarded and forwarded") {
+  std::function<void()> act = [] {};
+  const auto law = law_of([&] { act(); });
+  ReducedProblem problem;
+  // Each says whether the answer came through.
+  const std::vector<std::pair<std::string, std::function<bool()>>> calls = {
+      {"absent", [&] { return law->absent(); }},
+      {"reads", [&] { return law->reads() == Evaluation::averaged; }},
+      {"reads_rate", [&] { return law->reads_rate(); }},
+      {"prepare", [&] { return (law->prepare(1, {}), true); }},
+      {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
+      {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
+      {"constant_stiffness", [&] { return law->constant_stiffness(3) == 3; }}};
+  for (const auto& [function, call] : calls) {
+    INFO(function);
+    act = [&, name = function] {
+      REQUIRE(current_plugin_call().plugin != nullptr);
+      CHECK(current_plugin_call().plugin->text() == "contact 'mine'");
+      CHECK(current_plugin_call().function == name);
+    };
+    CHECK(call());
+    CHECK(current_plugin_call().plugin == nullptr);
+    act = [] { throw 42; };
+    CHECK_THROWS_WITH(call(), "plugin contact 'mine', " + function + "(): an exception that says nothing");
+    CHECK(current_plugin_call().plugin == nullptr);
+  }
+}
+
+TEST_CASE("a measure that does not exist is not read") {
+  struct Wild final : Law {
+    Wild() : Law([] {}) {}
+    std::optional<Evaluation> reads() const override { return static_cast<Evaluation>(3); }
+  };
+  Registry registry;
+  registry.add_contact(manual(), [](const Parameters&) { return std::make_unique<Wild>(); });
+  CHECK_THROWS_WITH(registry.contact("mine")->make({})->reads(), Contains("names the measure 3"));
+}
+
+TEST_CASE("asking a guarded law allocates nothing") {
+  const auto law = law_of([] {});
+  ReducedProblem problem;
+  const long before = allocations();
+  for (int k = 0; k < 100; ++k) {
+    law->solve(problem);
+    law->potential(0.5, 0);
+    law->constant_stiffness(0);
+  }
+  CHECK(allocations() == before);
+}
+
+TEST_CASE("a factory that gives nothing, or throws, or is none, is a fault") {
+  Registry registry;
+  registry.add_time(manual(), [](const Parameters&) { return nullptr; });
+  CHECK_THROWS_WITH(registry.time("mine")->make({}), "plugin time 'mine', make(): its factory returned no object");
+  registry.add_mass(manual(), [](const Parameters&) -> std::unique_ptr<MassStrategy> { throw 42; });
+  CHECK_THROWS_WITH(registry.mass("mine")->make({}), "plugin mass 'mine', make(): an exception that says nothing");
+  CHECK_THROWS_WITH(registry.add_contact(manual(), nullptr), "the contact plugin 'mine' registers no factory");
+}
+
+TEST_CASE("a plan is checked before anybody sees it") {
+  CHECK(std::holds_alternative<StepPlan>(plan_of([] { return still(); })));
+  CHECK_THROWS_WITH(plan_of([] {
+                      StepPlan plan = still();
+                      plan.stages[0].update.clear();
+                      return plan;
+                    }),
+                    "plugin time 'mine' (here.so), plan(): ill-formed plan: stage 1: update must give one combination "
+                    "per slot");
+  CHECK_THROWS_WITH(plan_of([] { return StepPlan{}; }), Contains("plan(): ill-formed plan: "));
+}
+
+TEST_CASE("a refusal has a sentence") {
+  const std::string blank = GENERATE("", " ", "\n\t ");
+  CHECK_THROWS_WITH(plan_of([&] { return Refusal{blank}; }), Contains("plan(): refuses without a sentence"));
+  CHECK_THROWS_WITH(mass_of([&] { return Refusal{blank}; }), Contains("build(): refuses without a sentence"));
+  CHECK_THROWS_WITH(motion_of([&] { return Refusal{blank}; }), Contains("solve(): refuses without a sentence"));
+  CHECK(std::get<Refusal>(plan_of([] { return Refusal{"use β ≥ ¼"}; })).sentence == "use β ≥ ¼");
+}
+
+TEST_CASE("a mass is checked before anybody sees it") {
+  const auto with = [](const Eigen::MatrixXd& mass) {
+    return mass_of([&] {
+      Inertia inertia;
+      inertia.mass = mass.sparseView();
+      return inertia;
+    });
+  };
+  CHECK(std::holds_alternative<Inertia>(with(Eigen::Matrix2d::Identity())));
+  CHECK_THROWS_WITH(with(Eigen::MatrixXd(0, 0)), Contains("plugin mass 'mine', build(): its mass is 0 × 0"));
+  CHECK_THROWS_WITH(with(-Eigen::Matrix2d::Identity()), Contains("build(): the mass has -1 on its diagonal"));
+}
+
+TEST_CASE("a motion fits its grid") {
+  ReferenceMotion found;
+  found.motion.tip = found.motion.tip_velocity = found.motion.energy = found.motion.impulse = {0, 0};
+  found.motion.displacement = found.motion.strain = found.motion.velocity = {0, 0};
+  CHECK_NOTHROW(motion_of([&] { return found; }));
+  found.coarser.tip = {0};
+  CHECK_THROWS_WITH(motion_of([&] { return found; }),
+                    "plugin reference 'mine', solve(): its tip has 1 values where the grid has 2");
+  found.coarser.tip.clear();
+  found.motion.strain.clear();
+  CHECK_THROWS_WITH(motion_of([&] { return found; }), Contains("its strain has 0 values where the grid has 2"));
+}

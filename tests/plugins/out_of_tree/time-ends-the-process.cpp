@@ -1,0 +1,16 @@
+// Built several times: a library whose constructor ends the process that loads it, or keeps it.
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "stand_in.hpp"
+
+[[gnu::constructor]] static void at_load() {
+  ENDING;
+}
+
+static void register_all(ricochet::Registry& registry) {
+  add_stand_in(registry, NAME);
+}
+
+RICOCHET_PLUGIN(time, SYMBOL, register_all)
