@@ -158,7 +158,7 @@ std::string print_plan(const StepPlan& given) {
   text += "\n";
   for (const Stage& stage : plan.start)
     text += fmt::format("start{}\n", plan.start_advances ? " (moves time by h)" : "") + stage_text(stage, plan.slots);
-  const std::vector<double> momentum = momentum_weights(plan, stage_efforts(plan, std::nullopt));
+  const std::vector<double> momentum = momentum_weights(plan, stage_efforts(plan.stages, std::nullopt));
   for (std::size_t k = 0; k < plan.stages.size(); ++k)
     text += fmt::format("stage {}: S z = b + Hᵀp{}\n", k + 1,
                         stands_text(derived.stages[k], plan.stages.size(), momentum[k], derived.h)) +

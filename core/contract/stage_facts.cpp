@@ -379,9 +379,9 @@ DerivedPlan derive(StepPlan plan) {
   return derived;
 }
 
-StageEfforts stage_efforts(const StepPlan& plan, const std::optional<Evaluation>& evaluation) {
+StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional<Evaluation>& evaluation) {
   StageEfforts efforts;
-  for (const Stage& stage : plan.stages) {
+  for (const Stage& stage : stages) {
     efforts.emplace_back();
     if (evaluation) {
       if (stage.at(*evaluation)) efforts.back() = stage.at(*evaluation)->effort;
@@ -394,7 +394,8 @@ StageEfforts stage_efforts(const StepPlan& plan, const std::optional<Evaluation>
 
 namespace {
 
-// Marches a mass at rest until its velocity stays, under one effort of 1 N found `back` stages before the first step.
+// Marches a mass until its velocity stays, under one effort of 1 N found by stage `source` of the first step; by one of
+// the start rule where it is negative.
 double settled_momentum(const StepPlan& plan, UnitMass mass, const StageEfforts& efforts, std::ptrdiff_t source) {
   constexpr int most_steps = 4096;
   const auto stages = static_cast<std::ptrdiff_t>(plan.stages.size());
@@ -429,17 +430,16 @@ std::vector<double> momentum_weights(const StepPlan& plan, const StageEfforts& e
   return weights;
 }
 
-double start_momentum(const StepPlan& plan, std::size_t stage, double weight, const StageEfforts& efforts) {
+double start_momentum(const StepPlan& plan, std::size_t stage, const StageEfforts& start, const StageEfforts& efforts) {
   if (!has_inertia(plan)) return std::numeric_limits<double>::quiet_NaN();
   UnitMass mass(plan, 0, 0);
-  for (std::size_t k = 0; k < plan.start.size(); ++k)
-    mass.update(plan.start[k], mass.unknown(plan.start[k], 0, k == stage ? weight : 0.0));
+  for (std::size_t k = 0; k < plan.start.size(); ++k) {
+    const bool acts = k >= stage && k - stage < start[k].size();
+    mass.update(plan.start[k], mass.unknown(plan.start[k], 0, acts ? start[k][k - stage] : 0.0));
+  }
   const double h = Uniform(plan).h();
   const auto source = static_cast<std::ptrdiff_t>(stage) - static_cast<std::ptrdiff_t>(plan.start.size());
-  // Only the last stage of the start rule is looked back to.
-  StageEfforts looks = efforts;
-  if (source != -1) looks.assign(efforts.size(), {});
-  return h * simple(settled_momentum(plan, mass, looks, source) / h);
+  return h * simple(settled_momentum(plan, mass, efforts, source) / h);
 }
 
 }  // namespace ricochet

@@ -41,13 +41,13 @@ std::string inconsistent_motion(const StepPlan& plan);
 /// Weights π of the effort in the equation of each stage, as a law that reads this evaluation (none: a rigid law) meets
 /// them; empty where the stage reads no contact.
 using StageEfforts = std::vector<std::vector<double>>;
-StageEfforts stage_efforts(const StepPlan& plan, const std::optional<Evaluation>& evaluation);
+StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional<Evaluation>& evaluation);
 
 /// The momentum (N s per N, hence seconds) that one effort of 1 N, found once by each stage, finally gives to a free
 /// mass: h in a plan of one stage, (h/3, 2h/3) in Bathe's two, 0 for a stage that only projects. Not finite where the
 /// velocity never settles.
 std::vector<double> momentum_weights(const StepPlan& plan, const StageEfforts& efforts);
-/// The same of an effort that a stage of the start rule finds; `weights`: its own, of which the first counts.
-double start_momentum(const StepPlan& plan, std::size_t stage, double weight, const StageEfforts& efforts);
+/// The same of an effort that a stage of the start rule finds; `start`: the weights of its stages.
+double start_momentum(const StepPlan& plan, std::size_t stage, const StageEfforts& start, const StageEfforts& efforts);
 
 }  // namespace ricochet

@@ -24,8 +24,7 @@
 /// Stages follow each other without end: after the last stage of a step comes the first of the next. p₋ₖ is the effort
 /// that the k-th stage before this one found (zero where that stage reads no contact): in a plan of one stage the
 /// effort of k steps ago; in a plan of s stages p₋₁ is that of the previous sub-step and p₋ₛ that of this stage one
-/// step ago. The stage that the start rule ends with stands where the last stage of a step before the first would
-/// stand.
+/// step ago. The stages of the start rule stand where the last ones of the steps before the first would stand.
 ///
 /// Everything else follows from these numbers: the engine's loop, the time at which each stage stands, the momentum
 /// that its effort gives, the spectral radius on each mode, the energy balance. Coefficients that depend on the state
@@ -110,7 +109,8 @@ struct WorkForm {
   Combination displacement;            ///< s
   Combination rate;                    ///< r, the velocity that damping sees
   Levels load;                         ///< F̄
-  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k p₋ₖ
+  /// p̄ = Σ effort_k e₋ₖ, e = π₀p + π₁p₋₁ + … the effort as the equation of its stage has it.
+  std::vector<double> effort = {1.0};
   Levels support = {};  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
 };
 
@@ -164,7 +164,8 @@ struct StepPlan {
   std::vector<std::string> slots;  ///< names; slots[0] is "q"
   /// Slots before the start rule: x_j = a_j q₀ + b_j v₀ (per slot: {a, b}).
   std::vector<std::array<double, 2>> initial;
-  std::vector<Stage> start;     ///< applied once; empty: nothing to do
+  /// Applied once; empty: nothing to do. The balance of energy begins before its first stage that has a work form.
+  std::vector<Stage> start;
   bool start_advances = false;  ///< whether the start rule moves time by h
   std::vector<Stage> stages;
   std::vector<QuadraticTerm> energy;  ///< scheme_energy; empty when none is declared

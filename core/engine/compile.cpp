@@ -100,17 +100,35 @@ void say_what_is_left_out(Program& program) {
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
+StageEfforts efforts_read(const std::vector<StageProgram>& stages) {
+  StageEfforts efforts(stages.size());
+  for (std::size_t k = 0; k < stages.size(); ++k)
+    if (stages[k].reads_contact) efforts[k] = stages[k].effort;
+  return efforts;
+}
+
+// Σ_j w_j e₋ⱼ, e₋ⱼ = Σ_k π_k p₋ⱼ₋ₖ with the weights of the stage j before; `cyclic`: stages without end.
+std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const StageEfforts& efforts, bool cyclic) {
+  const std::size_t stages = efforts.size();
+  std::vector<double> weights;
+  for (std::size_t j = 0; j < work.effort.size() && (cyclic || j <= stage); ++j) {
+    const std::vector<double>& pi = efforts[(stage + stages * j - j) % stages];
+    if (weights.size() < j + pi.size()) weights.resize(j + pi.size(), 0.0);
+    for (std::size_t k = 0; k < pi.size(); ++k) weights[j + k] += work.effort[j] * pi[k];
+  }
+  return weights;
+}
+
 // What an effort of each stage is worth, and which stages look at contact together.
 void add_contact_facts(Program& program) {
-  StageEfforts efforts(program.stages.size());
-  for (std::size_t k = 0; k < program.stages.size(); ++k)
-    if (program.stages[k].reads_contact) efforts[k] = program.stages[k].effort;
+  const StageEfforts efforts = efforts_read(program.stages), start = efforts_read(program.start);
   const std::vector<double> momentum = momentum_weights(program.plan, efforts);
   StageProgram* last = nullptr;
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
     StageProgram& stage = program.stages[k];
     stage.momentum = std::isfinite(momentum[k]) ? momentum[k] : program.h;
     if (!stage.reads_contact) continue;
+    if (const auto& work = program.plan.stages[k].work) stage.work_effort = work_efforts(*work, k, efforts, true);
     stage.opens_instant = !last || std::abs(stage.facts.instant - last->facts.instant) > 1e-9;
     if (last && stage.opens_instant) last->closes_instant = true;
     last = &stage;
@@ -120,7 +138,8 @@ void add_contact_facts(Program& program) {
     StageProgram& stage = program.start[k];
     if (!stage.reads_contact) continue;
     stage.opens_instant = stage.closes_instant = true;
-    const double given = start_momentum(program.plan, k, stage.effort[0], efforts);
+    if (const auto& work = program.plan.start[k].work) stage.work_effort = work_efforts(*work, k, start, false);
+    const double given = start_momentum(program.plan, k, start, efforts);
     stage.momentum = std::isfinite(given) ? given : program.h;
   }
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <ricochet/measure/amplification.hpp>
+#include <ricochet/measure/step_map.hpp>
 
 namespace ricochet {
 
@@ -33,6 +34,13 @@ Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, d
   Eigen::VectorXcd roots = amplification(plan, m, c, k).eigenvalues();
   std::sort(roots.begin(), roots.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
   return roots;
+}
+
+std::optional<double> root_at_infinity(const StepPlan& plan) {
+  const Eigen::MatrixXd step = amplification(plan, 0, 0, 1);
+  const std::vector<Root> roots = step_roots(step, false);  // largest first; none where the step is not finite
+  if (roots.empty()) return std::nullopt;
+  return std::abs(roots.front().value);
 }
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <ricochet/contract/step_plan.hpp>
 
 namespace ricochet {
@@ -11,5 +12,10 @@ Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k
 
 /// Eigenvalues of amplification(), largest modulus first: |r| > 1 grows, |r| = 1 is marginal.
 Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, double k);
+
+/// ρ∞: what one step leaves of a mode whose frequency is far above 1/h, the largest |r| as hω → ∞, found on a spring
+/// without mass (m = c = 0, k = 1). Roots that coincide there are known by their mean. Nothing where S vanishes on it:
+/// an explicit step.
+std::optional<double> root_at_infinity(const StepPlan& plan);
 
 }  // namespace ricochet

@@ -99,11 +99,12 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (view.stage == 0) {
       state.step_loads = state.step_damping = state.step_contact = state.step_scheme = state.step_law = 0;
-      if (declares && !state.has_scheme && !view.starting) {
-        state.energy.scheme_start = scheme_energy(marcher, lane);
-        state.now.scheme = state.energy.scheme_start;
-        state.has_scheme = true;
-      }
+    }
+    const bool balanced = view.plan->work || !view.starting;
+    if (declares && !state.has_scheme && balanced) {
+      state.energy.scheme_start = scheme_energy(marcher, lane);
+      state.now.scheme = state.energy.scheme_start;
+      state.has_scheme = true;
     }
     // The first reading: before anything moves, or after the first sub-step.
     const bool moves = facts.to != facts.from, moved = facts.from > 0;
@@ -120,9 +121,9 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     combine(view.slots, view.z, facts.increment, lane, first_);
     for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
     if (view.effort) count_contact(view, lane);
-    if (view.plan->work && !view.starting) work(marcher, view, lane);
+    if (view.plan->work) work(marcher, view, lane);
     for (const LossTerm& term : view.plan->loss) {
-      if (term.coefficient == 0 || view.starting) continue;
+      if (term.coefficient == 0 || !balanced) continue;
       combine(view.slots, view.z, term.value, lane, first_);
       state.step_scheme +=
           term.coefficient * (term.matrix == EnergyMatrix::M ? mass_(first_.data()) : stiffness_(first_.data()));
@@ -135,7 +136,8 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const WorkForm& work = *view.plan->work;
   const bool loads = marcher.program().support || marcher.program().load;
-  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || work.effort.size() > 1);
+  const std::vector<double>& weights = view.program->work_effort;
+  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || weights.size() > 1);
   const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
   if (!loads && !contact && !damped) return;
   std::vector<double>& s = first_;
@@ -161,8 +163,8 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
   const double lift = marcher.program().support ? marcher.support_levels(lane, view.time, work.support) : 0.0;
   for (int j = 0; j < model_.problem().points(); ++j) {
     double effort = 0;
-    for (int k = 0; k < std::min(static_cast<int>(work.effort.size()), view.efforts); ++k)
-      if (view.effort[k]) effort += work.effort[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
+    for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
+      if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
     if (effort == 0) continue;
     state.step_contact += effort * (model_.contact().times(j, s.data()) + lift);
     state.step_loads -= effort * lift;
