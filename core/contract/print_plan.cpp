@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/step_plan.hpp>
@@ -19,9 +20,13 @@ void append_term(std::string& text, double weight, const std::string& symbol) {
   text += symbol;
 }
 
+std::string slot_name(const std::vector<std::string>& slots, std::size_t j) {
+  return j < slots.size() ? slots[j] : fmt::format("(slot {})", j + 1);
+}
+
 std::string combination_text(const Combination& c, const std::vector<std::string>& slots) {
   std::string text;
-  for (std::size_t j = 0; j < c.slots.size(); ++j) append_term(text, c.slots[j], slots[j]);
+  for (std::size_t j = 0; j < c.slots.size(); ++j) append_term(text, c.slots[j], slot_name(slots, j));
   append_term(text, c.z, "z");
   return text.empty() ? "0" : text;
 }
@@ -49,7 +54,7 @@ std::string effort_text(const std::vector<double>& weights) {
   std::string text;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     std::string name = "p";
-    if (k > 0) name += "₋" + (k >= 10 ? std::string(digits[k / 10]) : "") + digits[k % 10];
+    if (k > 0) name += "₋" + (k >= 10 ? std::string(digits[k / 10 % 10]) : "") + digits[k % 10];
     append_term(text, weights[k], name);
   }
   return text.empty() ? "0" : text;
@@ -98,7 +103,7 @@ std::string stage_text(const Stage& stage, const std::vector<std::string>& slots
     std::string b;
     for (std::size_t j = 0; j < stage.history.size(); ++j) {
       const std::string term = operator_text(stage.history[j]);
-      if (!term.empty()) b += (b.empty() ? "(" : " + (") + term + ") " + slots[j];
+      if (!term.empty()) b += (b.empty() ? "(" : " + (") + term + ") " + slot_name(slots, j);
     }
     const std::string load = levels_text(stage.load, "F");
     text += b + (load == "0" ? "" : (b.empty() ? "" : " + ") + load) + "\n";
@@ -108,7 +113,7 @@ std::string stage_text(const Stage& stage, const std::vector<std::string>& slots
     if (const auto& c = stage.compliance[static_cast<std::size_t>(k)])
       text += compliance_text(*c, static_cast<Evaluation>(k), slots);
   for (std::size_t j = 0; j < stage.update.size(); ++j)
-    text += "    " + slots[j] + " ← " + combination_text(stage.update[j], slots) + "\n";
+    text += "    " + slot_name(slots, j) + " ← " + combination_text(stage.update[j], slots) + "\n";
   if (stage.work) text += work_text(*stage.work, slots);
   std::string loss;
   for (const LossTerm& term : stage.loss)
@@ -144,12 +149,17 @@ const char* evaluation_word(Evaluation evaluation) {
 }
 
 std::string print_plan(const StepPlan& given) {
-  const DerivedPlan derived = derive(given);
+  const std::optional<std::string> wrong = check_plan(given);
+  DerivedPlan derived;
+  if (wrong)
+    derived.plan = given;
+  else
+    derived = derive(given);
   const StepPlan& plan = derived.plan;
   std::string text = "slots: ";
   for (std::size_t j = 0; j < plan.slots.size(); ++j) text += (j ? ", " : "") + plan.slots[j];
   text += "; at first ";
-  for (std::size_t j = 0; j < plan.slots.size(); ++j) {
+  for (std::size_t j = 0; j < std::min(plan.slots.size(), plan.initial.size()); ++j) {
     std::string start;
     append_term(start, plan.initial[j][0], "q₀");
     append_term(start, plan.initial[j][1], "v₀");
@@ -158,10 +168,11 @@ std::string print_plan(const StepPlan& given) {
   text += "\n";
   for (const Stage& stage : plan.start)
     text += fmt::format("start{}\n", plan.start_advances ? " (moves time by h)" : "") + stage_text(stage, plan.slots);
-  const std::vector<double> momentum = momentum_weights(plan, stage_efforts(plan.stages, std::nullopt));
+  const std::vector<double> momentum =
+      wrong ? std::vector<double>() : momentum_weights(plan, stage_efforts(plan.stages, std::nullopt));
   for (std::size_t k = 0; k < plan.stages.size(); ++k)
     text += fmt::format("stage {}: S z = b + Hᵀp{}\n", k + 1,
-                        stands_text(derived.stages[k], plan.stages.size(), momentum[k], derived.h)) +
+                        wrong ? "" : stands_text(derived.stages[k], plan.stages.size(), momentum[k], derived.h)) +
             stage_text(plan.stages[k], plan.slots);
   Combination velocity = plan.velocity;
   text += "velocity: " + combination_text(velocity, plan.slots);
@@ -175,6 +186,7 @@ std::string print_plan(const StepPlan& given) {
                 fmt::format("|{}|²_{}", combination_text(c, plan.slots), matrix_name(term.matrix)));
   }
   text += "scheme energy: " + (energy.empty() ? "none is declared" : energy) + "\n";
+  if (wrong) text += "ill-formed: " + *wrong + "\n";
   return text;
 }
 

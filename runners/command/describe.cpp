@@ -2,6 +2,7 @@
 
 #include <ostream>
 #include <ricochet/contract/child.hpp>
+#include <ricochet/measure/amplification.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <sstream>
 
@@ -115,6 +116,10 @@ std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   }
   const auto& plan = std::get<StepPlan>(answer);
   print_facts(plan.facts, out);
+  const auto root = root_at_infinity(plan);
+  out << "  highest frequencies: "
+      << (root ? fmt::format("a step leaves {:.4g} of them (ρ∞)", *root) : std::string("beyond an explicit step"))
+      << "\n";
   out << "  the step, S z = b + Hᵀp:\n" << indented(print_plan(plan));
   return out.str();
 }

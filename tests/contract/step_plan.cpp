@@ -11,7 +11,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A plan that fills everything that a plan may say; the numbers mean nothing.
+// A three-level scheme with h = 0.1 that fills everything that a plan may say.
 StepPlan full_plan() {
   StepPlan plan;
   plan.slots = {"q", "d"};
@@ -23,14 +23,15 @@ StepPlan full_plan() {
   stage.load = {{1, 0.25}, {0, 0.5}, {-1, 0.25}};
   stage.impact = {{.slots = {1, 1}, .z = 1}, {{1, 1}}, std::nullopt};
   for (auto& compliance : stage.compliance)
-    compliance = {{.slots = {1, 1}, .z = 1}, {{1, 0.5}, {0, 0.5}}, {.slots = {0, 10}}, {{0, 1}}, {0.25, 0.5, 0.25}};
+    compliance = {{.slots = {1, 0.5}, .z = 0.5}, {{1, 0.5}, {0, 0.5}}, {.slots = {0, 10}}, {{0, 1}}, {0.25, 0.5, 0.25}};
+  stage.at(Evaluation::conserving)->before = Combination{.slots = {1, -0.5}};
+  stage.at(Evaluation::conserving)->before_bound = {{0, 0.5}, {-1, 0.5}};
   stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-  stage.increment = {.slots = {0, 1}, .z = 1};
   stage.work = {{.slots = {0, 1}, .z = 0.5}, {.slots = {0, 10}}, {{0, 1}}, {1}, {{1, 1}, {0, -1}}};
+  stage.loss = {{EnergyMatrix::K, 0.1, {.slots = {0, 1}, .z = 1}}};
   plan.stages = {stage};
   Stage start;
   start.update = {{.slots = {1, 1}}, {.slots = {0, 1}}};
-  start.increment = {.slots = {0, 1}};
   plan.start = {start};
   plan.start_advances = true;
   plan.energy = {{QuadraticTerm::Matrix::M, 50, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1, -0.5}}};
@@ -41,7 +42,8 @@ StepPlan full_plan() {
 StepPlan gated_plan() {
   StepPlan plan = full_plan();
   ImpactMeasure& impact = *plan.stages[0].impact;
-  impact.gate = VelocityGate{{.slots = {1, 0.05}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, 0.8};
+  impact.value = {.slots = {0, 10}, .z = 10};
+  impact.gate = VelocityGate{{.slots = {1, 0.5}}, {{0.5, 1}}, {.slots = {0, 10}}, {{0, 1}}, 0.8};
   return plan;
 }
 
@@ -75,21 +77,36 @@ TEST_CASE("what is wrong with the shape of a plan is told") {
       {"the first slot of a plan is the position q", [](StepPlan& p) { p.slots.clear(); }},
       {"the first slot of a plan is the position q", [](StepPlan& p) { p.slots[0] = "v"; }},
       {"for each slot how it starts", [](StepPlan& p) { p.initial.pop_back(); }},
-      {"one to three stages", [](StepPlan& p) { p.stages.clear(); }},
-      {"one to three stages", [](StepPlan& p) { p.stages.resize(4, p.stages[0]); }},
+      {"the plan has 9 slots, at most 8 are marched",
+       [](StepPlan& p) {
+         p.slots.resize(9, "x");
+         p.initial.resize(9);
+       }},
+      {"the plan has 0 stages, one to 6 are marched", [](StepPlan& p) { p.stages.clear(); }},
+      {"the plan has 7 stages, one to 6 are marched", [](StepPlan& p) { p.stages.resize(7, p.stages[0]); }},
+      {"the start has 7 stages, at most 6 are marched", [](StepPlan& p) { p.start.resize(7, p.start[0]); }},
       {"stage 1: update must give one combination per slot", [](StepPlan& p) { p.stages[0].update.pop_back(); }},
       {"start: update must give one combination per slot", [](StepPlan& p) { p.start[0].update.pop_back(); }},
       {"stage 2: update must", [](StepPlan& p) { p.stages.emplace_back(); }},
       {"stage 1: history names more slots", [](StepPlan& p) { p.stages[0].history.resize(3); }},
-      {"stage 1: increment combines more slots", [](StepPlan& p) { p.stages[0].increment.slots.resize(3); }},
+      {"stage 1: loss combines more slots", [](StepPlan& p) { p.stages[0].loss[0].value.slots.resize(3); }},
+      {"stage 1: loss has a negative coefficient: it would be a gain",
+       [](StepPlan& p) { p.stages[0].loss[0].coefficient = -1; }},
+      {"stage 1: compliance before the step combines more slots",
+       [](StepPlan& p) { p.stages[0].compliance[3]->before->slots.resize(3); }},
       {"stage 1: update combines more slots", [](StepPlan& p) { p.stages[0].update[1].slots.resize(3); }},
       {"stage 1: impact measure combines more slots", [](StepPlan& p) { p.stages[0].impact->value.slots.resize(3); }},
       {"energy: more slots", [](StepPlan& p) { p.energy[1].slots.resize(3); }},
       {"velocity combines more slots", [](StepPlan& p) { p.velocity.slots.resize(3); }},
       {"velocity combines slots after the step, not z", [](StepPlan& p) { p.velocity.z = 1; }},
-      {"compliance has one to three effort weights", [](StepPlan& p) { p.stages[0].compliance[1]->effort.clear(); }},
-      {"compliance has one to three effort weights", [](StepPlan& p) { p.stages[0].compliance[1]->effort.resize(4); }},
-      {"work has one to three effort weights", [](StepPlan& p) { p.stages[0].work->effort.clear(); }},
+      {"impact has 0 effort weights, one to 13 are marched", [](StepPlan& p) { p.stages[0].impact->effort.clear(); }},
+      {"compliance has 0 effort weights", [](StepPlan& p) { p.stages[0].compliance[1]->effort.clear(); }},
+      {"compliance has 14 effort weights", [](StepPlan& p) { p.stages[0].compliance[1]->effort.resize(14); }},
+      {"work has 0 effort weights", [](StepPlan& p) { p.stages[0].work->effort.clear(); }},
+      {"stage 1: load has 9 time levels, at most 8 are marched", [](StepPlan& p) { p.stages[0].load.resize(9); }},
+      {"stage 1: impact bound has 9 time levels", [](StepPlan& p) { p.stages[0].impact->bound.resize(9); }},
+      {"stage 1: work support has 9 time levels", [](StepPlan& p) { p.stages[0].work->support.resize(9); }},
+      {"the order at contact is positive, where it is known", [](StepPlan& p) { p.facts.contact_order = 0; }},
       {"the order is positive", [](StepPlan& p) { p.facts.order = 0; }},
       {"the stability limit is positive", [](StepPlan& p) { p.facts.stability_limit = 0; }},
   };
@@ -106,7 +123,6 @@ TEST_CASE("a bound of positions weights its levels to one, a bound of rates need
        [](StepPlan& p) {
          p.stages[0].compliance[2]->bound = {{1, 2}};
        }},
-      {"bound must weight its levels to one", [](StepPlan& p) { p.stages[0].compliance[0]->bound.clear(); }},
   };
   for (const Fault& fault : faults) CHECK_THAT(wrong(full_plan(), fault), Contains(fault.sentence));
   CHECK_THAT(wrong(gated_plan(), {"",
@@ -114,7 +130,118 @@ TEST_CASE("a bound of positions weights its levels to one, a bound of rates need
                                     p.stages[0].impact->gate->predictor_bound = {{1, 2}};
                                   }}),
              Contains("gate predictor bound must weight its levels to one"));
-  CHECK(wrong(gated_plan(), {"", [](StepPlan& p) { p.stages[0].impact->bound = {{1, 2}}; }}) == "nothing");
+  // The rate of a stop that is asked twice, for a velocity that is asked twice.
+  CHECK(wrong(gated_plan(), {"", [](StepPlan& p) { p.stages[0].impact->bound = {{1, 2}, {0, -1}}; }}) == "nothing");
+}
+
+TEST_CASE("levels of stops may be left to be derived") {
+  for (StepPlan plan : {full_plan(), gated_plan()}) {
+    Stage& stage = plan.stages[0];
+    stage.impact->bound.clear();
+    if (stage.impact->gate) stage.impact->gate->predictor_bound.clear(), stage.impact->gate->approach_bound.clear();
+    for (auto& compliance : stage.compliance) {
+      compliance->bound.clear();
+      compliance->rate_bound.clear();
+      compliance->before_bound.clear();
+    }
+    stage.work->support.clear();
+    CHECK(check_plan(plan).value_or("nothing") == "nothing");
+  }
+}
+
+TEST_CASE("a plan carries a free mass at rest and at constant speed") {
+  const std::vector<Fault> faults = {
+      {"a step moves a free mass at 1 m/s by 0 m: a plan carries it forward by h",
+       [](StepPlan& p) { p.stages[0].update[0] = {.slots = {1}}; }},
+      {"a free mass at rest at 1 m is at 1.1 m after 1 steps", [](StepPlan& p) { p.start[0].update[0].slots[0] = 1.1; }},
+      {"a free mass at 1 m/s moves by 1.5 h in 1 steps of the plan",
+       [](StepPlan& p) { p.start[0].update[0].slots[1] = 1.5; }},
+      {"velocity: the plan's velocity is 0.5 m/s on a motion at 1 m/s", [](StepPlan& p) { p.velocity.slots[1] = 5; }},
+      // A slot that grows shows in the second step.
+      {"velocity: the plan's velocity is 1.5 m/s", [](StepPlan& p) { p.stages[0].update[1].slots[1] = 1.5; }},
+  };
+  for (const Fault& fault : faults) CHECK_THAT(wrong(full_plan(), fault), Contains(fault.sentence));
+}
+
+TEST_CASE("measures are positions or velocities, and levels stand where what they bound does") {
+  const auto clear = [](Levels& levels) { levels.clear(); };
+  const std::vector<Fault> positions = {
+      {"stage 1: impact bound stands at t + 2h on a motion at constant speed, what it bounds at t + 1h",
+       [](StepPlan& p) {
+         p.stages[0].impact->bound = {{2, 1}};
+       }},
+      {"stage 1: impact bound weights its levels to 1, what it bounds weights positions to 2",
+       [](StepPlan& p) { p.stages[0].impact->value.slots[0] = 2; }},
+      {"stage 1: the impact measure of a mass at rest is 2 times its position",
+       [&](StepPlan& p) {
+         p.stages[0].impact->value.slots[0] = 2;
+         clear(p.stages[0].impact->bound);
+       }},
+      {"stage 1: compliance bound stands at t + 1h",
+       [](StepPlan& p) {
+         p.stages[0].compliance[1]->bound = {{1, 1}};
+       }},
+      {"stage 1: the compliance measure of a mass at rest is 2 times its position",
+       [&](StepPlan& p) {
+         p.stages[0].compliance[1]->displacement.slots[0] = 2;
+         clear(p.stages[0].compliance[1]->bound);
+       }},
+      {"stage 1: compliance rate bound weights its levels to 2, what it bounds is 1 m/s on a motion at 1 m/s",
+       [](StepPlan& p) {
+         p.stages[0].compliance[1]->rate_bound = {{0, 2}};
+       }},
+      {"stage 1: compliance rate is 0.5 m/s on a motion at 1 m/s",
+       [&](StepPlan& p) {
+         p.stages[0].compliance[1]->rate.slots[1] = 5;
+         clear(p.stages[0].compliance[1]->rate_bound);
+       }},
+      {"stage 1: compliance bound before the step stands at t + 0h",
+       [](StepPlan& p) {
+         p.stages[0].compliance[3]->before_bound = {{0, 1}};
+       }},
+      {"stage 1: the displacement before the step is 0.5 steps behind, the test displacement is 1",
+       [&](StepPlan& p) {
+         p.stages[0].compliance[3]->before = Combination{.slots = {1}};
+         clear(p.stages[0].compliance[3]->before_bound);
+       }},
+      {"stage 1: work support stands at t + 0.5h",
+       [](StepPlan& p) {
+         p.stages[0].work->support = {{1, 0.5}, {0, -0.5}};
+       }},
+      {"stage 1: work rate is 0.5 m/s on a motion at 1 m/s", [](StepPlan& p) { p.stages[0].work->rate.slots[1] = 5; }},
+      {"stage 1: the work displacement of a mass at rest is 1 times its position",
+       [&](StepPlan& p) {
+         p.stages[0].compliance = {};
+         p.stages[0].work->displacement.slots[0] = 1;
+         clear(p.stages[0].work->support);
+       }},
+  };
+  for (const Fault& fault : positions) CHECK_THAT(wrong(full_plan(), fault), Contains(fault.sentence));
+  const std::vector<Fault> velocities = {
+      {"stage 1: impact bound weights its levels to 2, what it bounds is 1 m/s on a motion at 1 m/s",
+       [](StepPlan& p) {
+         p.stages[0].impact->bound = {{1, 2}};
+       }},
+      {"stage 1: gate predictor bound stands at t + 1h",
+       [](StepPlan& p) {
+         p.stages[0].impact->gate->predictor_bound = {{1, 1}};
+       }},
+      {"stage 1: gate approach bound weights its levels to 2",
+       [](StepPlan& p) {
+         p.stages[0].impact->gate->approach_bound = {{0, 2}};
+       }},
+      {"stage 1: gate approach is 2 m/s on a motion at 1 m/s",
+       [&](StepPlan& p) {
+         p.stages[0].impact->gate->approach.slots[1] = 20;
+         clear(p.stages[0].impact->gate->approach_bound);
+       }},
+      {"stage 1: impact measure is 2 m/s on a motion at 1 m/s",
+       [&](StepPlan& p) {
+         p.stages[0].impact->value.slots[1] = 20;
+         clear(p.stages[0].impact->bound);
+       }},
+  };
+  for (const Fault& fault : velocities) CHECK_THAT(wrong(gated_plan(), fault), Contains(fault.sentence));
 }
 
 TEST_CASE("a number that is not finite is found wherever it stands") {
@@ -130,7 +257,13 @@ TEST_CASE("a number that is not finite is found wherever it stands") {
       {"stage 1: update", [&](StepPlan& p) { p.stages[0].update[0].slots[1] = bad; }},
       {"stage 1: update", [&](StepPlan& p) { p.stages[0].update[0].z = bad; }},
       {"start: update", [&](StepPlan& p) { p.start[0].update[0].z = bad; }},
-      {"stage 1: increment", [&](StepPlan& p) { p.stages[0].increment.z = bad; }},
+      {"stage 1: loss", [&](StepPlan& p) { p.stages[0].loss[0].coefficient = bad; }},
+      {"stage 1: loss", [&](StepPlan& p) { p.stages[0].loss[0].value.z = bad; }},
+      {"stage 1: impact", [&](StepPlan& p) { p.stages[0].impact->effort[0] = bad; }},
+      {"stage 1: compliance before the step",
+       [&](StepPlan& p) { p.stages[0].compliance[3]->before->slots[1] = bad; }},
+      {"stage 1: compliance bound before the step",
+       [&](StepPlan& p) { p.stages[0].compliance[3]->before_bound[0].at = bad; }},
       {"stage 1: impact measure", [&](StepPlan& p) { p.stages[0].impact->value.z = bad; }},
       {"stage 1: impact bound", [&](StepPlan& p) { p.stages[0].impact->bound[0].at = bad; }},
       {"stage 1: gate predictor", [&](StepPlan& p) { p.stages[0].impact->gate->predictor.z = bad; }},
@@ -175,8 +308,14 @@ TEST_CASE("a plan is printed as the equations with their numbers") {
   CHECK_THAT(text, Contains("S = 100 M + 5 C + 0.25 K"));
   CHECK_THAT(text, Contains("b = (−K) q + (−10 C) d + 0.25 F(t+1h) + 0.5 F(t) + 0.25 F(t−1h)"));
   CHECK_THAT(text, Contains("y = H(q + d + z), bounded by bound(t+1h)"));
-  CHECK_THAT(text, Contains("g (implicit) = H(q + d + z), effort 0.25 p + 0.5 p₋₁ + 0.25 p₋₂"));
-  CHECK_THAT(text, Contains("g (averaged)") && Contains("g (explicit)"));
+  CHECK_THAT(text, Contains("g (implicit) = H(q + 0.5 d + 0.5 z) against 0.5 bound(t+1h) + 0.5 bound(t), effort 0.25 p + "
+                            "0.5 p₋₁ + 0.25 p₋₂"));
+  CHECK_THAT(text, Contains("g (averaged)") && Contains("g (explicit)") && Contains("g (conserving)"));
+  CHECK_THAT(text, Contains("one step before H(q − 0.5 d) against 0.5 bound(t) + 0.5 bound(t−1h)"));
+  CHECK_THAT(text, Contains("rate H(10 d) against bound'(t)"));
+  CHECK_THAT(text, Contains("work: s = d + 0.5 z, r = 10 d, load F(t), effort p, stops move by φ(t+1h) − φ(t)"));
+  CHECK_THAT(text, Contains("dissipated by the scheme: 0.1 |d + z|²_K"));
+  CHECK_THAT(text, Contains("velocity: 10 d, which stands at t+0.5h"));
   CHECK_THAT(text, Contains("q ← q + d + z") && Contains("d ← d + z"));
   CHECK_THAT(text, Contains("scheme energy: 50 |d|²_M + 0.5 |q − 0.5 d|²_K"));
 }
@@ -185,8 +324,8 @@ TEST_CASE("a velocity-level plan is printed with its gap test and rebound") {
   const std::string text = print_plan(gated_plan());
   INFO(text);
   CHECK_THAT(text, Contains("bounded by bound'(t+1h)"));
-  CHECK_THAT(text, Contains("closed where H(q + 0.05 d) passes bound(t+0.5h)"));
-  CHECK_THAT(text, Contains("rebound e = 0.8 of an approaching H(d)"));
+  CHECK_THAT(text, Contains("closed where H(q + 0.5 d) passes bound(t+0.5h)"));
+  CHECK_THAT(text, Contains("rebound e = 0.8 of an approaching H(10 d) against bound'(t)"));
 }
 
 TEST_CASE("what a plan leaves out is not printed") {
@@ -195,9 +334,32 @@ TEST_CASE("what a plan leaves out is not printed") {
   plan.energy.clear();
   plan.stages[0].impact.reset();
   plan.stages[0].compliance = {};
+  plan.stages[0].work.reset();
+  plan.stages[0].loss.clear();
   plan.stages[0].matrix = {0, 0, 0};
+  plan.start_advances = false;
   const std::string text = print_plan(plan);
   INFO(text);
-  CHECK_THAT(text,
-             !Contains("start") && !Contains("energy") && !Contains("y =") && !Contains("g (") && !Contains("S ="));
+  CHECK_THAT(text, !Contains("start") && Contains("scheme energy: none is declared") && !Contains("y =") &&
+                       !Contains("g (") && !Contains("S =") && !Contains("work:") && !Contains("dissipated"));
+}
+
+TEST_CASE("an ill-formed plan is printed as far as it goes, with what is wrong") {
+  const std::vector<Fault> faults = {
+      {"the first slot of a plan", [](StepPlan& p) { p.slots.clear(); }},
+      {"how it starts", [](StepPlan& p) { p.initial.clear(); }},
+      {"one to 6 are marched", [](StepPlan& p) { p.stages.clear(); }},
+      {"update must give one combination per slot", [](StepPlan& p) { p.stages[0].update.clear(); }},
+      {"update must give one combination per slot", [](StepPlan& p) { p.start[0].update.resize(1); }},
+      {"history names more slots", [](StepPlan& p) { p.stages[0].history.resize(3, {1, 1, 1}); }},
+      {"impact measure combines more slots", [](StepPlan& p) { p.stages[0].impact->value.slots.resize(3, 1.0); }},
+      {"energy: more slots", [](StepPlan& p) { p.energy[0].slots.resize(3, 1.0); }},
+      {"120 effort weights", [](StepPlan& p) { p.stages[0].impact->effort.resize(120, 1.0); }},
+      {"is not finite", [](StepPlan& p) { p.stages[0].matrix.M = not_a_number; }},
+  };
+  for (const Fault& fault : faults) {
+    StepPlan plan = full_plan();
+    fault.make(plan);
+    CHECK_THAT(print_plan(plan), Contains("slots: ") && Contains("ill-formed: ") && Contains(fault.sentence));
+  }
 }

@@ -21,6 +21,9 @@ std::vector<Choice> all_schemes() {
   for (const double beta : {0.0, 0.1, 0.25, 0.3})
     for (const double gamma : {0.5, 0.6}) schemes.push_back({"newmark", {{"beta", beta}, {"gamma", gamma}}});
   for (const double theta : {0.5, 0.7, 1.0}) schemes.push_back({"moreau-jean", {{"theta", theta}}});
+  for (const double alpha : {-1.0 / 3, -0.1, 0.0}) schemes.push_back({"hht-alpha", {{"alpha", alpha}}});
+  for (const double rho : {0.0, 0.5, 1.0}) schemes.push_back({"bathe", {{"rho_inf", rho}}});
+  schemes.push_back({"midpoint"});
   return schemes;
 }
 
@@ -72,4 +75,26 @@ TEST_CASE("viscosity damps every mode of a stable step") {
     for (const double frequency : {1.0, 100.0, 3000.0})
       CHECK(std::abs(amplification_roots(step, 1, 1e-4 * frequency * frequency, frequency * frequency)[0]) < 1);
   }
+}
+
+TEST_CASE("the root at infinity is the one that each scheme is known by") {
+  const double h = GENERATE(1e-6, 1e-3, 1.0);
+  const auto root = [&](const Choice& time) { return root_at_infinity(plan(time, h)).value_or(-1); };
+  // Double roots are known by their mean, to round-off of the matrix.
+  const double accuracy = 1e-9;
+  for (const double split : {0.0, 0.3, 0.5}) {
+    CHECK(root({"bathe", {{"split", split}}}) == Approx(0).margin(1e-7));  // a defective zero: its square root
+    for (const double rho : {0.3, 0.8, 1.0})
+      CHECK(root({"bathe", {{"rho_inf", rho}, {"split", split}}}) == Approx(rho).margin(accuracy));
+  }
+  for (const double a : {0.0, 0.1, 0.2, 0.3})
+    CHECK(root({"hht-alpha", {{"alpha", -a}}}) == Approx((1 - a) / (1 + a)).margin(accuracy));
+  CHECK(root({"newmark"}) == Approx(1).margin(accuracy));
+  CHECK(root({"midpoint"}) == Approx(1).margin(accuracy));
+  for (const double theta : {0.5, 0.7, 1.0})
+    CHECK(root({"moreau-jean", {{"theta", theta}}}) == Approx((1 - theta) / theta).margin(accuracy));
+  for (const double beta : {0.25, 0.3, 0.5})
+    CHECK(root({"newmark-dumont-paoli", {{"beta", beta}}}) == Approx(1).margin(accuracy));
+  // Central differences solve nothing with K.
+  CHECK_FALSE(root_at_infinity(plan({"newmark-dumont-paoli", {{"beta", 0.0}}}, h)));
 }

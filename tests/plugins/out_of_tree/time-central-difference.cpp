@@ -41,28 +41,29 @@ class CentralDifference final : public TimeScheme {
   }
 
  private:
-  Levels bound() const { return {{1, 1 / (1 + e_)}, {-1, e_ / (1 + e_)}}; }
-
   Stage step(double h) const {
     Stage stage;
     stage.matrix = {1 / (h * h), 0.5 / h, 0};
     stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
     stage.load = {{0, 1}};
-    stage.impact = {{.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}, bound(), std::nullopt};
+    // When stops and their rates stand is found from the plan: here at t + h and t − h, weighted 1/(1+e) and e/(1+e).
+    stage.impact = {.value = {.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}};
     const Combination rate{.slots = {0, 1 / h}, .z = 0.5 / h};
     // An explicit scheme reads a spring where the step begins; it can also find its force at the end.
-    stage.at(Evaluation::implicit_end) = {{.slots = {1, 1}, .z = 1}, {{1, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
+    stage.at(Evaluation::implicit_end) = {.displacement = {.slots = {1, 1}, .z = 1}, .rate = rate};
+    stage.at(Evaluation::explicit_start) = {.displacement = {.slots = {1}}, .rate = {.slots = {0, 1 / h}}};
     stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-    stage.work = {{.slots = {0, 1}, .z = 0.5}, rate, {{0, 1}}, {1}, {{1, 0.5}, {-1, -0.5}}};
+    stage.work = {.displacement = {.slots = {0, 1}, .z = 0.5}, .rate = rate, .load = {{0, 1}}};
     return stage;
   }
 
-  // q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, z = 2(q₁ − q₀ − h v₀); d holds h v₀.
+  // q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, z = 2(q₁ − q₀ − h v₀); d holds h v₀. A start has no steps before
+  // it that tell when a rate stands: it says so itself.
   Stage start(double h) const {
     Stage stage = step(h);
     stage.matrix = {1 / (h * h), 0, 0};
-    stage.impact->value.z = 0.5;
+    stage.impact = {.value = {.slots = {1, (1 - e_) / (1 + e_)}, .z = 0.5},
+                    .bound = {{1, 1 / (1 + e_)}, {-1, e_ / (1 + e_)}}};
     const Combination end{.slots = {1, 1}, .z = 0.5}, rate{.slots = {0, 1 / h}};
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};

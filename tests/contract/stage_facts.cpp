@@ -1,0 +1,186 @@
+// What is derived of a plan: when its stages stand, the levels of its stops, what momentum its efforts give.
+#include <ricochet/contract/stage_facts.hpp>
+
+#include "tests/composed_plan.hpp"
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+constexpr double h = 1e-3;
+
+StepPlan plan(const Choice& time) {
+  auto made = plan_of(time, h, {});
+  REQUIRE(std::holds_alternative<StepPlan>(made));
+  return std::get<StepPlan>(made);
+}
+
+// The steps alone: the levels of a start rule hold on the motion that it starts, which its numbers do not tell.
+StepPlan steps_of(StepPlan plan) {
+  plan.start.clear();
+  plan.start_advances = false;
+  return plan;
+}
+
+std::vector<Choice> of_second_order() {
+  const std::string weighted = "weighted", middle = "middle", first = "first-order";
+  return {{"newmark"},
+          {"newmark", {{"beta", 0.1}}},
+          {"newmark-dumont-paoli"},
+          {"newmark-dumont-paoli", {{"beta", 0.0}, {"restitution", 0.8}}},
+          {"newmark-dumont-paoli", {{"beta", 0.25}, {"restitution", 1.0}, {"start", first}}},
+          {"moreau-jean"},
+          {"moreau-jean", {{"restitution", 0.8}}},
+          {"midpoint"},
+          {"midpoint", {{"constraint", middle}}},
+          {"hht-alpha"},
+          {"hht-alpha", {{"alpha", -0.3}, {"contact", weighted}}},
+          {"bathe"},
+          {"bathe", {{"rho_inf", 0.8}, {"split", 0.4}}}};
+}
+
+}  // namespace
+
+TEST_CASE("levels of stops that are left out are those that every method of the tree declares") {
+  for (const Choice& time : of_second_order()) {
+    const StepPlan declared = plan(time), bare = without_stop_levels(declared);
+    INFO(time.name);
+    CHECK(check_plan(bare).value_or("nothing") == "nothing");
+    CHECK(print_plan(derive(steps_of(bare)).plan) == print_plan(derive(steps_of(declared)).plan));
+  }
+  // With θ or γ above ½ velocities stand O(h) off the positions, by a rate or by the other: positions are the same.
+  for (const Choice& time :
+       {Choice{"moreau-jean", {{"theta", 0.8}}}, Choice{"newmark", {{"beta", 0.36}, {"gamma", 0.7}}}}) {
+    const Stage declared = derive(plan(time)).plan.stages[0],
+                found = derive(without_stop_levels(plan(time))).plan.stages[0];
+    INFO(time.name);
+    const auto same = [](const Levels& a, const Levels& b) {
+      REQUIRE(a.size() == b.size());
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        CHECK(a[k].at == Approx(b[k].at).margin(1e-12));
+        CHECK(a[k].weight == Approx(b[k].weight).margin(1e-12));
+      }
+    };
+    for (std::size_t k = 0; k < evaluations; ++k)
+      if (declared.compliance[k]) same(found.compliance[k]->bound, declared.compliance[k]->bound);
+    same(found.work->support, declared.work->support.empty() ? Levels{{1, 1}, {0, -1}} : declared.work->support);
+  }
+}
+
+TEST_CASE("a stage stands where it leads the position") {
+  for (const Choice& time : of_second_order()) {
+    INFO(time.name);
+    const DerivedPlan derived = derive(plan(time));
+    CHECK(derived.h == Approx(h).epsilon(1e-9));  // found as a difference of positions of some steps
+    const std::size_t stages = derived.stages.size();
+    CHECK(derived.stages.front().from == Approx(0).margin(1e-12));
+    CHECK(derived.stages.back().to == Approx(1).margin(1e-12));
+    for (std::size_t k = 1; k < stages; ++k) CHECK(derived.stages[k].from == derived.stages[k - 1].to);
+    for (const StageFacts& facts : derived.stages) CHECK(facts.instant == facts.to);
+  }
+  CHECK(derive(plan({"bathe", {{"split", 0.5}}})).stages[0].to == 0.5);
+  CHECK(derive(plan({"bathe"})).stages[0].to == Approx(2 - std::sqrt(2)).epsilon(1e-12));
+  // A start rule that moves time ends at h, one that only finds an acceleration where it began.
+  CHECK(derive(plan({"newmark-dumont-paoli"})).start[0].to == Approx(1).margin(1e-12));
+  CHECK(derive(plan({"newmark"})).start[0].to == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("a stage that does not move the position asks when its stop is looked at") {
+  // A projection after the step: the position is there already, and stays on a free motion.
+  StepPlan projected = plan({"midpoint"});
+  Stage projection;
+  projection.matrix = {1 / (h * h), 0, 0};
+  projection.impact = {.value = {.slots = {1}, .z = 1}};
+  projection.update = {{.slots = {1}, .z = 1}, {.slots = {0, 1}}};
+  projected.stages.push_back(projection);
+  CHECK(check_plan(projected).value_or("nothing") == "nothing");
+  const DerivedPlan derived = derive(projected);
+  CHECK(derived.stages[1].from == 1);
+  CHECK(derived.stages[1].to == 1);
+  CHECK(derived.stages[1].instant == 1);
+  const auto momentum = momentum_weights(derived.plan, stage_efforts(derived.plan.stages, std::nullopt));
+  CHECK(momentum[0] == Approx(h));
+  CHECK(momentum[1] == 0);  // it changes no velocity
+}
+
+TEST_CASE("the position moves by its increment, found without the digits that a difference loses") {
+  for (const Choice& time : of_second_order())
+    for (const StageFacts& facts : derive(plan(time)).stages) CHECK(facts.increment.slots[0] == 0);
+  const Combination increment = derive(plan({"newmark-dumont-paoli"})).stages[0].increment;
+  CHECK(increment.slots == std::vector<double>{0, 1});
+  CHECK(increment.z == 1);
+}
+
+TEST_CASE("momenta of one effort: h in a plan of one stage whatever its weights, shares of h where there are more") {
+  const auto momentum = [](const StepPlan& plan, std::optional<Evaluation> evaluation) {
+    return momentum_weights(plan, stage_efforts(plan.stages, evaluation));
+  };
+  std::vector<Choice> times = of_second_order();
+  times.push_back({"newmark", {{"beta", 0.36}, {"gamma", 0.7}}});
+  times.push_back({"moreau-jean", {{"theta", 0.8}}});
+  for (const Choice& time : times) {
+    if (time.name == "bathe") continue;
+    for (const std::optional<Evaluation>& evaluation :
+         {std::optional<Evaluation>(), std::optional(Evaluation::implicit_end), std::optional(Evaluation::averaged)}) {
+      INFO(time.name << (evaluation ? evaluation_word(*evaluation) : " rigid"));
+      CHECK(momentum(plan(time), evaluation)[0] == Approx(h).epsilon(1e-9));
+      for (const double share : momentum(composed(plan(time), 3), evaluation))
+        CHECK(share == Approx(h).epsilon(1e-9));
+    }
+  }
+  const auto thirds = momentum(plan({"bathe", {{"split", 0.5}}}), std::nullopt);
+  CHECK(thirds[0] == Approx(h / 3).epsilon(1e-12));
+  CHECK(thirds[1] == Approx(2 * h / 3).epsilon(1e-12));
+  for (const double rho : {0.0, 0.3, 0.8, 1.0})
+    for (const double split : {0.3, 0.5, 0.7}) {
+      const double q1 = (rho + 1) / (2 * split * (rho - 1) + 4);
+      const auto shares = momentum(plan({"bathe", {{"rho_inf", rho}, {"split", split}}}), std::nullopt);
+      CHECK(shares[0] == Approx(h * q1).epsilon(1e-9));
+      CHECK(shares[1] == Approx(h * (1 - q1)).epsilon(1e-9));  // q₂ + q₀, as q₀ + q₁ + q₂ = 1
+    }
+}
+
+TEST_CASE("the start rule's efforts give what they give to a mass that starts") {
+  const auto given = [](const StepPlan& plan, std::size_t stage, std::optional<Evaluation> evaluation) {
+    return start_momentum(plan, stage, stage_efforts(plan.start, evaluation), stage_efforts(plan.stages, evaluation));
+  };
+  // Half a step: of the first trapezium, and of the symmetric start q₁ − q₋₁ = 2h v₀.
+  CHECK(given(plan({"newmark"}), 0, std::nullopt) == Approx(h / 2).epsilon(1e-9));
+  CHECK(given(plan({"newmark-dumont-paoli"}), 0, std::nullopt) == Approx(h / 2).epsilon(1e-9));
+  for (const double beta : {0.25, 0.5})
+    for (const std::optional<Evaluation>& evaluation :
+         {std::optional<Evaluation>(), std::optional(Evaluation::averaged)}) {
+      const StepPlan one = plan({"newmark-dumont-paoli", {{"beta", beta}}}), three = composed(one, 3);
+      REQUIRE(three.start.size() == 3);
+      CHECK(given(three, 0, evaluation) == Approx(given(one, 0, evaluation)).epsilon(1e-9));
+      CHECK(given(three, 1, evaluation) == Approx(h).epsilon(1e-9));
+      CHECK(given(three, 2, evaluation) == Approx(h).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("velocities stand at the end of a step, or in the middle of what they are the mean of") {
+  for (const Choice& time : of_second_order()) {
+    INFO(time.name);
+    const bool mean = time.name == "newmark-dumont-paoli";  // its first-order start included
+    CHECK(derive(plan(time)).velocity_offset == (mean ? -0.5 : 0.0));
+  }
+  CHECK(derive(plan({"moreau-jean", {{"theta", 1.0}}})).velocity_offset == 0);
+  CHECK(derive(plan({"newmark", {{"beta", 0.36}, {"gamma", 0.7}}})).velocity_offset == 0);
+  // Of the last of two sub-steps.
+  CHECK(derive(composed(plan({"newmark-dumont-paoli"}), 2)).velocity_offset == -0.25);
+}
+
+TEST_CASE("without inertia nothing tells where a stage stands: everything is asked at the end of the step") {
+  StepPlan massless = without_stop_levels(plan({"midpoint"}));
+  massless.stages[0].matrix.M = 0;
+  CHECK(inconsistent_motion(massless).empty());
+  const DerivedPlan derived = derive(massless);
+  CHECK(derived.h == 0);
+  CHECK(derived.stages[0].to == 1);
+  CHECK(derived.plan.stages[0].impact->bound.size() == 1);
+  CHECK(derived.plan.stages[0].impact->bound[0].at == 1);
+  CHECK(std::isnan(momentum_weights(massless, stage_efforts(massless.stages, std::nullopt))[0]));
+  CHECK(print_plan(massless).find("stage 1") != std::string::npos);
+}
