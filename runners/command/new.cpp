@@ -44,7 +44,8 @@ void check_name(const Wish& wish, const Arguments& arguments) {
     throw UsageError("\"" + name +
                      "\" cannot be the name of a method: expected small letters, digits and '-', and no "
                      "'-' at its beginning");
-  for (const Provided& method : Catalogue::standard(arguments.plugins).provided())
+  const Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  for (const Provided& method : catalogue.provided())
     if (method.role == wish.role && method.name == name)
       throw UsageError(
           fmt::format("there is a {} method \"{}\" already, in {}: the first that is found wins, and yours "
