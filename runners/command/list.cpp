@@ -11,16 +11,20 @@ namespace {
 
 std::vector<Role> roles_asked(const Arguments& arguments) {
   if (arguments.operands.empty()) return {all_roles.begin(), all_roles.end()};
-  const std::string& word = arguments.operands.front();
-  for (const Role role : all_roles)
-    if (word == role_name(role)) return {role};
-  std::vector<std::string> names;
-  for (const Role role : all_roles) names.emplace_back(role_name(role));
-  throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) + " (roles: " + quoted_list(names) +
-                   ")");
+  return {role_called(arguments.operands.front())};
 }
 
 }  // namespace
+
+Role role_called(const std::string& word) {
+  std::vector<std::string> names;
+  for (const Role role : all_roles) {
+    if (word == role_name(role)) return role;
+    names.emplace_back(role_name(role));
+  }
+  throw UsageError("there is no role \"" + word + "\"" + did_you_mean(word, names) + " (roles: " + quoted_list(names) +
+                   ")");
+}
 
 int command_list(const Arguments& arguments, std::ostream& out) {
   const std::vector<Role> roles = roles_asked(arguments);

@@ -54,11 +54,15 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
 /// The help of one command, its options included.
 std::string help_text(const Subcommand& command);
 
+/// The role that a word names. Throws UsageError (nearest name) for a word that names none.
+Role role_called(const std::string& word);
+
 // The commands themselves; each returns its exit code.
 int command_run(const Arguments& arguments, std::ostream& out);
 int command_plan(const Arguments& arguments, std::ostream& out);
 int command_list(const Arguments& arguments, std::ostream& out);
 int command_describe(const Arguments& arguments, std::ostream& out);
+int command_new(const Arguments& arguments, std::ostream& out);
 int command_report(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
 int command_point(const Arguments& arguments, std::ostream& out);

@@ -1,0 +1,116 @@
+// A time scheme in one file: central differences. Every number that a scheme consists of stands here once, with what it
+// means; put yours in their place.
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// The step S z = b + Hᵀp, with d_n = q_n − q_{n−1} and the unknown z = q_{n+1} − 2q_n + q_{n−1} (kept, not q_{n−1}:
+/// differences of positions would lose 1/h² in round-off):
+///
+///     (M/h² + C/(2h)) z = F(t) − C d_n/h − K q_n + Hᵀp,     q_{n+1} = q_n + d_n + z,     d_{n+1} = d_n + z
+///     y = H(q_{n+1} + e q_{n−1})/(1+e) = H[q_n + (1−e)/(1+e) d_n + z/(1+e)]
+///
+/// Stable up to hω = 2. Invariant (undamped, free): ½|d/h|²_M + ½|q_n − d_n/2|²_K − ⅛|d_n|²_K after the step, which the
+/// test displacement (q_{n+1} − q_{n−1})/2 = d_n + z/2 balances.
+class Scheme final : public TimeScheme {
+ public:
+  explicit Scheme(double restitution) : e_(restitution) {}
+
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    // What cannot work is refused, with the cause and what to take instead: the case becomes a row `refused`.
+    if (facts.mass_kernel_dimension > 0)
+      return Refusal{
+          "central differences need a regular mass matrix: without inertia nothing holds the kernel of this "
+          "one; take a consistent or a lumped mass, or an implicit scheme"};
+    StepPlan plan;
+    // The vectors that are kept from step to step; the first is always the position.
+    plan.slots = {"q", "d"};
+    // Each of them at t = 0, {a, b}: a q₀ + b v₀.
+    plan.initial = {{1, 0}, {0, h}};
+    // What makes the motion begin, once, and whether time has moved by h after it. Empty: nothing to do.
+    plan.start = {start(h)};
+    plan.start_advances = true;
+    // The solves of a step, one after the other. A scheme of two solves has two.
+    plan.stages = {step(h)};
+    // The velocity, over the slots after a step; where in the step it stands is found from the plan.
+    plan.velocity = {.slots = {0, 1 / h}};
+    // The scheme's own invariant, Σ coefficient·|Σ weight·slot|²_A after a step. Empty: it has none.
+    plan.energy = {
+        {EnergyMatrix::M, 0.5 / (h * h), {0, 1}}, {EnergyMatrix::K, 0.5, {1, -0.5}}, {EnergyMatrix::K, -0.125, {0, 1}}};
+    // What the scheme claims; `ricochet check` measures each.
+    plan.facts.order = 2;                              // in h, without contact, with this start
+    plan.facts.contact_order = std::nullopt;           // in h, at rigid stops: not known
+    plan.facts.restitution = Restitution::asymptotic;  // e is met as h → 0 (exact: at any h; ignored: it has no e)
+    plan.facts.needs_regular_mass = true;              // as refused above
+    plan.facts.stability_limit = 2;                    // largest h·ω; none: any step is stable
+    plan.facts.contact_never_gains = e_ == 0;          // whether a stop at rest can never add to plan.energy
+    return plan;
+  }
+
+ private:
+  Stage step(double h) const {
+    Stage stage;
+    // S = M/h² + C/(2h).
+    stage.matrix = {.M = 1 / (h * h), .C = 0.5 / h, .K = 0};
+    // b = Σ over the slots of (… M + … C + … K) x_j: −K q − C d/h …
+    stage.history = {{.K = -1}, {.C = -1 / h}};
+    // … + Σ weight·F(t + at·h): F(t).
+    stage.load = {{.at = 0, .weight = 1}};
+    // y, what a rigid law holds between the stops. Left out: `bound`, the times at which it reads the stops (found from
+    // y: 1/(1+e) at t + h, e/(1+e) at t − h); `gate`, for laws at velocity level; `effort`, the weights of p, p₋₁, … in
+    // the equation ({1}).
+    stage.impact = ImpactMeasure{.value = {.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}};
+    // g and u, what a compliant law reads: displacement and rate at the end of the step, or where the step begins. The
+    // ways `averaged` and `conserving` are not offered: a law that asks for them is refused with a sentence.
+    const Combination end{.slots = {1, 1}, .z = 1}, central_rate{.slots = {0, 1 / h}, .z = 0.5 / h};
+    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = end, .rate = central_rate};
+    stage.at(Evaluation::explicit_start) =
+        ComplianceMeasure{.displacement = {.slots = {1}}, .rate = {.slots = {0, 1 / h}}};
+    // Each slot after the stage, over the slots before it and z.
+    stage.update = {end, {.slots = {0, 1}, .z = 1}};
+    // The balance of plan.energy: its change is s·F − s·C r + s·Hᵀp, with s and r these. None: the balance is unknown.
+    stage.work = WorkForm{.displacement = {.slots = {0, 1}, .z = 0.5}, .rate = central_rate, .load = stage.load};
+    // stage.loss: what the scheme itself dissipates, as squares. Central differences dissipate nothing.
+    return stage;
+  }
+
+  // The same equation with q₋₁ = q₁ − 2h v₀: z = 2(q₁ − q₀ − h v₀), while d holds h v₀.
+  Stage start(double h) const {
+    Stage stage = step(h);
+    stage.matrix = {.M = 1 / (h * h)};
+    stage.impact->value.z = 0.5;
+    const Combination end{.slots = {1, 1}, .z = 0.5}, rate{.slots = {0, 1 / h}};
+    // Times of the stops may also be given: v₀ stands where the step begins.
+    const Levels now{{.at = 0, .weight = 1}};
+    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = end, .rate = rate, .rate_bound = now};
+    stage.at(Evaluation::explicit_start) =
+        ComplianceMeasure{.displacement = {.slots = {1}}, .rate = rate, .rate_bound = now};
+    stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
+    stage.work.reset();
+    return stage;
+  }
+
+  double e_;
+};
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "central-difference",
+       .summary = "explicit three-level scheme, stable up to hω = 2",
+       .text =
+           "Central differences: one solve with M (and C), none with K. Of second order, conditionally stable, for a "
+           "regular mass only. At a rigid stop the combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: for e > 0 "
+           "q_{n+1} itself may pass the stop by O(h).",
+       .source = "Courant, Friedrichs and Lewy (1928); Paoli and Schatzman (2002) for the constrained combination",
+       // Key, unit, default (std::nullopt: the study must give it), range, meaning.
+       .parameters = {real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient")}},
+      // Makes the scheme from checked values.
+      [](const Parameters& p) { return std::make_unique<Scheme>(p.real("restitution")); });
+}
+
+}  // namespace
+
+// Role, name ('-' written '_'), and the function above.
+RICOCHET_PLUGIN(time, central_difference, register_all)

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+
+#include "runners/command/command.hpp"
+#include "runners/command/examples.hpp"
+#include "runners/command/subcommand.hpp"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What `new` was asked for.
+struct Wish {
+  Role role;
+  std::string name;
+  fs::path program;  ///< this one
+  fs::path prefix() const { return program.parent_path().parent_path(); }
+};
+
+std::string underscored(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+void check_name(const Wish& wish, const Arguments& arguments) {
+  const auto admissible = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; };
+  const std::string& name = wish.name;
+  if (name.empty() || name.front() == '-' || !std::all_of(name.begin(), name.end(), admissible))
+    throw UsageError("\"" + name +
+                     "\" cannot be the name of a method: expected small letters, digits and '-', and no "
+                     "'-' at its beginning");
+  const Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  for (const Provided& method : catalogue.provided())
+    if (method.role == wish.role && method.name == name)
+      throw UsageError(
+          fmt::format("there is a {} method \"{}\" already, in {}: the first that is found wins, and yours "
+                      "would be shadowed by it; choose another name",
+                      role_name(wish.role), name, method.file.string()));
+  std::error_code ignored;
+  if (fs::symlink_status(name, ignored).type() != fs::file_type::not_found)
+    throw UsageError("\"" + name + "\" is here already: choose another name, or another folder to make it in");
+}
+
+/// The files of the example of a role, and its name: that of its source.
+struct Example {
+  std::string name;
+  std::vector<ExampleFile> files;
+};
+
+Example example_of(Role role) {
+  Example example;
+  for (const ExampleFile& file : example_files()) {
+    if (file.role != role_name(role)) continue;
+    example.files.push_back(file);
+    if (const fs::path path(file.name); path.extension() == ".cpp") example.name = path.stem().string();
+  }
+  return example;
+}
+
+std::string renamed(std::string text, const std::string& from, const Wish& wish) {
+  replace_all(text, from, wish.name);
+  replace_all(text, underscored(from), underscored(wish.name));
+  // The example knows the installation by where it lies in it.
+  std::string prefix;
+  for (const char c : wish.prefix().string()) {
+    if (c == '\\' || c == '"' || c == '$') prefix += '\\';
+    prefix += c;
+  }
+  replace_all(text, "${CMAKE_CURRENT_LIST_DIR}/../../../..", prefix);
+  return text;
+}
+
+/// A folder that is removed again unless it is given its name.
+class Draft {
+ public:
+  explicit Draft(const std::string& name) : path_(fmt::format(".{}.{}", name, ::getpid())) {
+    if (!fs::create_directory(path_)) throw fs::filesystem_error("cannot create", path_, {});
+  }
+  ~Draft() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream file(path_ / name, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw fs::filesystem_error("cannot write", path_ / name, {});
+  }
+  void give(const std::string& name) {
+    fs::rename(path_, name);
+    path_.clear();
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::vector<std::string> make(const Wish& wish, const Example& example) {
+  std::vector<std::string> names;
+  try {
+    Draft draft(wish.name);
+    for (const ExampleFile& file : example.files) {
+      std::string name(file.name);
+      replace_all(name, example.name, wish.name);
+      draft.write(name, renamed(std::string(file.text), example.name, wish));
+      names.push_back(name);
+    }
+    draft.give(wish.name);
+  } catch (const fs::filesystem_error& error) {
+    throw UsageError("the folder \"" + wish.name + "\" cannot be made here: " + error.what());
+  }
+  return names;
+}
+
+/// How the user may call this program from anywhere: by its name where the shell finds it, else by its path.
+std::string called(const fs::path& program) {
+  std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+  std::error_code ignored;
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path found = fs::path(folder) / program.filename();
+    if (!fs::exists(found, ignored)) continue;
+    if (fs::equivalent(found, program, ignored)) return program.filename().string();
+    break;
+  }
+  std::string path = program.string();
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._+-", c); };
+  if (std::all_of(path.begin(), path.end(), plain)) return path;
+  replace_all(path, "'", "'\\''");
+  return "'" + path + "'";
+}
+
+}  // namespace
+
+int command_new(const Arguments& arguments, std::ostream& out) {
+  const Wish wish{role_called(arguments.operands[0]), arguments.operands[1], boost::dll::program_location().string()};
+  check_name(wish, arguments);
+  const Example example = example_of(wish.role);
+  std::string files;
+  for (const std::string& file : make(wish, example)) files += (files.empty() ? "" : ", ") + file;
+  const std::string ricochet = called(wish.program);
+  const std::string plugin = fmt::format("{0}/build/plugins/{1}-{0}.so", wish.name, role_name(wish.role));
+  out << fmt::format(
+      "{0}/ holds {1}: the example {2} under your name, which works as it stands. Build it, check it, run its "
+      "study:\n\n"
+      "    cmake -S {0} -B {0}/build && cmake --build {0}/build\n"
+      "    {3} check {4}\n"
+      "    {3} run {0}/study.json --plugin {4}\n",
+      wish.name, files, example.name, ricochet, plugin);
+  std::error_code ignored;
+  const fs::path page = wish.prefix() / "share/doc/ricochet/plugins.md";
+  if (fs::exists(page, ignored)) out << "\nWhat the loop does with each field: " << page.string() << "\n";
+  return exit_done;
+}
+
+}  // namespace ricochet
