@@ -13,6 +13,7 @@
 #include "runners/execution/crash_record.hpp"
 #include "runners/execution/derive.hpp"
 #include "runners/execution/environment.hpp"
+#include "runners/execution/minimal_study.hpp"
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/progress.hpp"
 #include "runners/execution/say.hpp"
@@ -106,6 +107,7 @@ class FolderRun {
     for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
     kept_ = settled_ = store_.begin(header(study_), expected);
     take_over();
+    announce();
     if (runner_.open) open();
     if (stop_) return interrupted();
     if (!run_missing()) return interrupted();
@@ -142,6 +144,8 @@ class FolderRun {
       record.status = "failed";
       record.reason = crash->reason();
       settle(record);
+    } else if (crash && crash->case_id.empty()) {
+      tell(crash->reason() + ", before any case");
     }
     std::vector<std::string> left = store_.left_under_way();
     std::erase_if(left, [&](const std::string& id) { return settled_.count(id) != 0 || !find_case(study_, id); });
@@ -150,6 +154,14 @@ class FolderRun {
                        left.size() == 1 ? "was" : "were"));
     store_.nothing_under_way();
     remove_crash_record(folder_);
+  }
+
+  /// Before any code of a plugin runs: from now on the cost of these cases is predicted, and what they share computed.
+  void announce() {
+    std::vector<std::string> ids;
+    for (const StudyCase& one : study_.cases)
+      if (!one.excluded && settled_.count(one.id) == 0) ids.push_back(one.id);
+    if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
   }
 
   TicketPointer ticket(const StudyCase& one) const {
@@ -253,9 +265,6 @@ class FolderRun {
     CaseEvents events;
     events.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
     events.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
-    std::vector<std::string> ids;
-    for (const PendingCase& one : pending) ids.push_back(one.study_case->id);
-    store_.begins(ids, Store::Stage::plan);
     for (const CaseRecord& record : predict_cases(runner_, pending, jobs_, stop_, events)) settle(record);
     if (stop_) return false;
     return pending.empty() || run_pending(std::move(pending));
@@ -326,10 +335,11 @@ class FolderRun {
         fmt::format("{}\n{} ({} run now in {}, {} kept)\nreport: {}\n", case_table(results), totals_text(results),
                     fresh_.size(), duration_text(seconds), kept_.size(), (folder_ / "report.html").string()));
     if (code != 0)
-      say(runner_.out,
-          fmt::format(
-              "exit code {}: some cases diverged or failed, the others are usable; {} holds a study of each alone\n",
-              code, (folder_ / "failures").string()));
+      say(runner_.out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
+                           ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
+                                         "a study of each alone\n",
+                                         code, (folder_ / "failures").string())
+                           : fmt::format("exit code {}: the methods of some cases are in error\n", code));
     return code;
   }
 
