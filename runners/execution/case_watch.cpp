@@ -127,7 +127,7 @@ double seconds_of(clockid_t clock) {
 
 bool CaseTicket::give_up() {
   const std::unique_lock lock(store_, std::try_to_lock);
-  if (!lock) return false;
+  if (!lock || closed_) return false;
   given_up_ = true;
   return true;
 }

@@ -21,8 +21,12 @@ class CaseTicket {
   const std::string id, fingerprint;
   const double budget;
 
-  /// Takes the case away from its threads. False, and nothing changes, while one of them uses the store.
+  /// Takes the case away from its threads. False, and nothing changes, while one of them uses the store, and once it is
+  /// closed.
   bool give_up();
+  /// The case has come back and is about to be recorded: it can no longer be given up. Only in its turn at the store.
+  void close() { closed_ = true; }
+  bool closed() const { return closed_; }
   bool given_up() const { return given_up_; }
   /// The case's turn at the store, for as long as the lock lives. For a case that was given up it never comes: the
   /// thread stays here until the program ends.
@@ -30,7 +34,7 @@ class CaseTicket {
 
  private:
   std::mutex store_;
-  std::atomic<bool> given_up_{false};
+  std::atomic<bool> given_up_{false}, closed_{false};
 };
 using TicketPointer = std::shared_ptr<CaseTicket>;
 

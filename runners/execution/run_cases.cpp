@@ -80,6 +80,7 @@ void work(CaseQueue& queue, const StudyRunner& runner, std::atomic<bool>& stop, 
       if (!announced) events.begins(one);
       const CaseRecord record = run_guarded(runner, *one.study_case, stop);
       const auto turn = ticket->turn();
+      ticket->close();
       at = stop ? std::nullopt : queue.take();
       if (queue.settle(record.id)) events.finished(record, at ? &queue[*at] : nullptr);
       announced = true;
@@ -193,6 +194,7 @@ std::vector<CaseRecord> predict_cases(const StudyRunner& runner, std::vector<Pen
             // A prediction that cannot be made says nothing about the case: running it will.
           }
           const auto turn = ticket->turn();
+          ticket->close();
           all->cases[i].predicted_seconds = seconds;
         }
       },

@@ -25,6 +25,8 @@ std::vector<double> steps_of(const StudyCase& study_case) {
   const Json& range = study_case.settings.at("steps");
   const double from = range.at("from").get<double>(), to = range.at("to").get<double>();
   const int count = range.at("count").get<int>();
+  if (!std::isfinite(to / from) || !std::isnormal(from))
+    throw InputError("/steps/from", fmt::format("steps from {:g} to {:g} s span more than numbers can hold", from, to));
   std::vector<double> steps;
   // Twelve digits: 1e-05 rather than 9.999999999999999e-06.
   for (int i = 0; i < count; ++i)

@@ -106,14 +106,14 @@ class Watcher {
     if (hooks_.waiting) hooks_.waiting(waiting);
     if (!stop_) return;
     if (!stopped_) stopped_ = Clock::now();
-    if (since(*stopped_) > kAfterStop) leave(waiting, seen);
+    if (since(*stopped_) > kAfterStop) leave(calls, seen);
   }
 
   std::vector<Call> follow(const std::vector<SeenThread>& seen) {
     std::vector<Call> calls;
     std::map<pthread_t, Followed> now;
     for (const SeenThread& one : seen) {
-      if (one.serial == 0 || one.ticket->given_up()) continue;
+      if (one.serial == 0) continue;
       const auto before = followed_.find(one.thread);
       const bool same = before != followed_.end() && before->second.serial == one.serial;
       const Followed& known = now[one.thread] =
@@ -139,9 +139,10 @@ class Watcher {
     });
   }
 
-  // Waits for a turn at the store that has begun.
-  static void take_away(CaseTicket& ticket) {
-    while (!ticket.give_up()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // Waits for a turn at the store that has begun; false for a case that has come back meanwhile.
+  static bool take_away(CaseTicket& ticket) {
+    while (!ticket.give_up() && !ticket.closed()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return ticket.given_up();
   }
 
   void abandon(std::list<Worker>::iterator worker) {
@@ -156,7 +157,7 @@ class Watcher {
     TicketPointer outer = call.ticket;
     for (const SeenThread& one : seen)
       if (::pthread_equal(one.thread, worker->thread.native_handle()) != 0) outer = one.outermost;
-    if (!outer->give_up()) return;  // a thread that helps it is at the store: at the next look
+    if (!outer->give_up()) return;  // at the store, or come back: at the next look
     take_away(*call.ticket);
     abandon(worker);
     hooks_.given_up(call, outer);
@@ -164,15 +165,18 @@ class Watcher {
   }
 
   // Once every worker that is left sits in a call, all of them are left there.
-  void leave(const std::vector<LongCall>& calls, const std::vector<SeenThread>& seen) {
+  void leave(const std::vector<Call>& calls, const std::vector<SeenThread>& seen) {
     std::vector<std::list<Worker>::iterator> stuck;
-    for (const LongCall& call : calls)
-      if (const auto worker = worker_of(call.ticket, seen); worker != workers_.end())
+    std::vector<LongCall> left;
+    for (const Call& call : calls)
+      if (const auto worker = worker_of(call.ticket, seen); call.seconds > kLeast && worker != workers_.end()) {
+        left.push_back(call);
         if (std::find(stuck.begin(), stuck.end(), worker) == stuck.end()) stuck.push_back(worker);
+      }
     if (stuck.size() < workers_.size()) return;
     for (const SeenThread& one : seen)
-      for (const TicketPointer& ticket : {one.ticket, one.outermost}) take_away(*ticket);
-    if (hooks_.left_behind) hooks_.left_behind(calls);
+      if (!take_away(*one.outermost) || !take_away(*one.ticket)) return;
+    if (hooks_.left_behind) hooks_.left_behind(left);
     for (const auto& worker : stuck) abandon(worker);
   }
 

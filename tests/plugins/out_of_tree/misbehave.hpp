@@ -1,7 +1,6 @@
 #pragma once
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
 #include <ricochet/contract/plugin.hpp>
 #include <stdexcept>
@@ -11,8 +10,8 @@
 inline const std::vector<std::string> misdeeds = {"none", "segv", "abort", "exit", "overflow", "loop", "throw"};
 
 [[gnu::noinline]] inline int without_end(int depth) {
-  volatile std::array<int, 1000> room{};
-  room[static_cast<std::size_t>(depth % 1000)] = depth;
+  volatile int room[1000] = {};
+  room[depth % 1000] = depth;
   return depth < 0 ? 0 : without_end(depth + 1) + room[7];
 }
 
