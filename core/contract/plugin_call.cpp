@@ -5,6 +5,7 @@ namespace {
 
 // constinit and trivially destructible: a signal handler may read it before and after everything else.
 constinit thread_local PluginCall call;
+constinit thread_local std::uint64_t calls = 0;
 
 }  // namespace
 
@@ -17,7 +18,7 @@ const PluginCall& current_plugin_call() {
 }
 
 PluginCallScope::PluginCallScope(const PluginIdentity& plugin, const char* function) : before_(call) {
-  call = {&plugin, function};
+  call = {&plugin, function, ++calls};
 }
 PluginCallScope::~PluginCallScope() {
   call = before_;

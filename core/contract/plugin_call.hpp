@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <ricochet/contract/errors.hpp>
 #include <string>
 
@@ -14,6 +15,7 @@ struct PluginIdentity {
 struct PluginCall {
   const PluginIdentity* plugin = nullptr;
   const char* function = nullptr;  ///< "plan", "solve", "build", …
+  std::uint64_t serial = 0;        ///< of this thread's calls: equal at two moments, the call never returned between
 };
 
 /// The call under way in this thread; `plugin` is null between calls.

@@ -205,6 +205,7 @@ void check_scene(const SceneSpec& shared, int elements) {
   std::visit([](const auto& structure) { check_structure(structure); }, scene.structure);
   const auto space = make_space(scene.structure, elements);
   check_support(scene.support);
+  check_magnitudes(scene, elements);
   check_variables(scene);
   check_positions(scene);
   if (const auto* bar = std::get_if<BarSpec>(&scene.structure))

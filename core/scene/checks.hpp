@@ -22,6 +22,10 @@ std::vector<double> contact_positions(const SceneSpec& scene, int elements);
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what);
 
+/// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold: the
+/// stiffness and the mass of an element, their ratio, damping, the acceleration of the support.
+void check_magnitudes(const SceneSpec& scene, int elements);
+
 /// φ and its first three derivatives at t = 0: m, m/s, m/s², m/s³.
 struct SupportMotion {
   double position = 0, velocity = 0, acceleration = 0, jerk = 0;

@@ -214,8 +214,24 @@ bool of_the_motion(const std::string& measure) {
   static const std::set<std::string> others = {
       "microseconds_per_step", "timed_seconds", "timed_low",         "timed_high",
       "declared_order",        "horizon",       "reference_of_mesh", "exponent_seconds",
-      "lane_steps_per_second", "orbits"};
+      "lane_steps_per_second", "orbits",        "contradictions"};
   return others.count(measure) == 0 && !measure.starts_with("floor.");
+}
+
+// Whether the cases of some level that were run to their end never have this measure while those of another do: then
+// the method (or the step, the mesh) has none, and what is absent may neither be filled in nor taken for zero.
+bool absent_by_level(const StudyResults& results, const std::vector<Factor>& factors,
+                     const std::vector<std::optional<double>>& values) {
+  for (const Factor& factor : factors) {
+    std::vector<int> done(factor.levels.size(), 0), present(factor.levels.size(), 0);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      done[factor.level[c]] += results.cases[c].status == "done" ? 1 : 0;
+      present[factor.level[c]] += values[c] ? 1 : 0;
+    }
+    for (std::size_t l = 0; l < done.size(); ++l)
+      if (done[l] > 0 && present[l] == 0) return true;
+  }
+  return false;
 }
 
 DerivedTable effects_table(const StudyResults& results) {
@@ -237,6 +253,7 @@ DerivedTable effects_table(const StudyResults& results) {
     std::vector<std::optional<double>> values;
     for (const CaseRecord& record : results.cases)
       values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
+    if (absent_by_level(results, factors, values)) continue;
     const Effects effects = effects_of(name, factors, values);
     for (const EffectShare& share : effects.shares)
       table.rows.push_back(

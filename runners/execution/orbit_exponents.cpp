@@ -12,6 +12,7 @@
 #include <ricochet/measure/stability.hpp>
 
 #include "runners/execution/bytes.hpp"
+#include "runners/execution/case_watch.hpp"
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/run_case.hpp"
 
@@ -162,7 +163,9 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
+  const TicketPointer ticket = current_ticket();
   const auto work = [&] {
+    const CaseScope scope(ticket);
     const double began = thread_seconds();
     try {
       for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 
+#include "runners/execution/case_watch.hpp"
 #include "runners/execution/prepare_case.hpp"
 #include "runners/execution/run_case.hpp"
 
@@ -299,7 +300,9 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
   std::stable_partition(shared.ready.begin(), shared.ready.end(),
                         [&](int number) { return task(number).follower >= 0 || task(number).after >= 0; });
   std::mutex total;
+  const TicketPointer ticket = current_ticket();
   const auto body = [&](int worker) {
+    const CaseScope scope(ticket);
     const double began = thread_seconds();
     try {
       work(shared, worker);

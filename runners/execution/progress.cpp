@@ -15,6 +15,8 @@ constexpr double kLineEverySeconds = 2;
 constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
 // A case in flight counts as its prediction says, but never as finished.
 constexpr double kAlmost = 0.95;
+// s beyond twice the prediction after which a case is waited for.
+constexpr double kPatience = 5;
 
 double seconds_since(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -50,6 +52,7 @@ std::string progress_text(const ProgressState& state) {
     const double rate = state.done / state.elapsed;
     text += rate >= 1 ? fmt::format(", {:.1f} cases/s", rate) : fmt::format(", {:.1f} cases/min", 60 * rate);
   }
+  if (!state.waits_for.empty()) return text + ", waiting for " + state.waits_for;
   if (fraction > 0 && fraction < 1 && state.elapsed > 1)
     text += fmt::format(", {} left", duration_text(state.elapsed * (1 - fraction) / fraction));
   return text;
@@ -107,13 +110,33 @@ void Progress::note(const std::string& line) {
   draw();
 }
 
+void Progress::waiting(std::map<std::string, std::string> calls) {
+  const std::lock_guard guard(mutex_);
+  calls_ = std::move(calls);
+}
+
+// The case that is most beyond what was predicted of it, "" where none is by far.
+std::string Progress::overdue(double slowness) const {
+  double most = kPatience;
+  std::string text;
+  for (const auto& [id, flight] : in_flight_) {
+    const double seconds = seconds_since(flight.since), predicted = slowness * flight.predicted;
+    if (seconds - 2 * predicted < most) continue;
+    most = seconds - 2 * predicted;
+    const auto call = calls_.find(id);
+    text = fmt::format("case {}, {} so far, {} predicted{}", id, duration_text(seconds), duration_text(predicted),
+                       call == calls_.end() ? "" : ": " + call->second);
+  }
+  return text;
+}
+
 ProgressState Progress::state() const {
   // Predictions are in seconds of another machine at worst: what finished says by how much they are off.
   const double slowness = work_done_ > 0 ? std::max(measured_ / work_done_, 1e-6) : 1.0;
   double flying = 0;
   for (const auto& [id, flight] : in_flight_)
     flying += std::min(seconds_since(flight.since) / slowness, kAlmost * flight.predicted);
-  return {done_, total_, work_done_ + flying, work_total_, seconds_since(begin_)};
+  return {done_, total_, work_done_ + flying, work_total_, seconds_since(begin_), overdue(slowness)};
 }
 
 void Progress::draw() {

@@ -16,6 +16,7 @@ struct ProgressState {
   double work_done = 0;     ///< includes the cases in flight
   double work_total = 0;
   double elapsed = 0;
+  std::string waits_for;  ///< a case that takes far longer than predicted; then no time is promised
 };
 
 /// Fraction of the work done, in [0, 1]; by cases where no cost was predicted.
@@ -41,6 +42,8 @@ class Progress {
 
   void started(const std::string& id, double predicted_seconds);
   void finished(const std::string& id);
+  /// Cases that sit in a plugin's function, and in which: said where they take far longer than predicted.
+  void waiting(std::map<std::string, std::string> calls);
   /// A line of its own, the bar below it.
   void note(const std::string& line);
 
@@ -51,6 +54,7 @@ class Progress {
     double predicted;
   };
   ProgressState state() const;
+  std::string overdue(double slowness) const;
   void draw();
   void erase();
   void refresh();
@@ -62,6 +66,7 @@ class Progress {
   double work_done_ = 0, work_total_, measured_ = 0;
   Clock::time_point begin_ = Clock::now(), last_line_ = begin_;
   std::map<std::string, InFlight> in_flight_;
+  std::map<std::string, std::string> calls_;
   bool ended_ = false, stop_told_ = false;
   mutable std::mutex mutex_;
   std::condition_variable wake_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <ricochet/measure/motion_errors.hpp>
 #include <ricochet/measure/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
@@ -113,30 +115,36 @@ References::References(const Study& study, const Registry& registry, MotionShelf
 }
 
 template <class Value>
-Value References::once(std::map<std::string, std::shared_future<Value>>& known, const std::string& key,
-                       const std::function<Value()>& make) {
+Value References::once(std::map<std::string, Promised<Value>>& known, const std::string& key,
+                       const std::atomic<bool>& stop, const std::function<Value()>& make) {
+  constexpr auto look_every = std::chrono::milliseconds(100), at_once = std::chrono::milliseconds(0);
   std::promise<Value> promise;
-  std::shared_future<Value> future;
-  bool ours = false;
-  {
-    const std::lock_guard guard(mutex_);
-    const auto found = known.find(key);
-    if (found != known.end()) {
-      future = found->second;
-    } else {
-      future = promise.get_future().share();
-      known.emplace(key, future);
-      ours = true;
+  for (;;) {
+    std::shared_future<Value> future;
+    {
+      const std::lock_guard guard(mutex_);
+      const auto [found, fresh] = known.try_emplace(key);
+      Promised<Value>& entry = found->second;
+      // The thread of a case that was given up does not come back with its answer.
+      const bool lost = !fresh && entry.owner && entry.owner->given_up() &&
+                        entry.value.wait_for(at_once) != std::future_status::ready;
+      if (fresh || lost) {
+        entry = {promise.get_future().share(), current_ticket()};
+        break;
+      }
+      future = entry.value;
     }
+    if (future.wait_for(look_every) == std::future_status::ready) return future.get();
+    if (stop) throw Interrupted{};
   }
-  if (ours) {
-    try {
-      promise.set_value(make());
-    } catch (...) {
-      promise.set_exception(std::current_exception());
-    }
+  try {
+    Value value = make();
+    promise.set_value(value);
+    return value;
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+    throw;
   }
-  return future.get();
 }
 
 std::string References::key(const StudyCase& study_case, const MethodChoice& choice) const {
@@ -241,7 +249,7 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
 ReferencePointer References::find(const StudyCase& study_case, const MethodChoice& choice,
                                   const std::atomic<bool>& stop) {
   const std::string name = key(study_case, choice);
-  return once<ReferencePointer>(known_, name, [&]() -> ReferencePointer {
+  return once<ReferencePointer>(known_, name, stop, [&]() -> ReferencePointer {
     if (shelf_.find)
       if (const std::string stored = shelf_.find(name); !stored.empty()) {
         const bool marched = choice.name == marched_reference;
@@ -259,23 +267,31 @@ References::Twin References::twin_horizon(const StudyCase& study_case, const std
   // One pair of nearby runs per scene and mesh: the first case of them, at its own step.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
   const auto first = std::find_if(study_.cases.begin(), study_.cases.end(), [&](const StudyCase& other) {
-    return !other.excluded && other.scene_json == study_case.scene_json && other.elements == study_case.elements;
+    return !other.excluded && other.scene_json == study_case.scene_json && other.elements == study_case.elements &&
+           !(shelf_.failed && shelf_.failed(other.id));
   });
   const StudyCase& chosen = first == study_.cases.end() ? study_case : *first;
-  return once<Twin>(twins_, name.dump(), [&]() -> Twin {
+  return once<Twin>(twins_, name.dump(), stop, [&]() -> Twin {
+    std::optional<CaseScope> blamed;
+    if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
     constexpr double offset = 1e-6, share = 1e-2;
     SampleGrid grid = comparison_grid(chosen.scene, chosen.duration, chosen.samples);
     grid.places.clear();
     grid.weights.clear();
-    const Marched one = march(chosen, registry_, grid, nullptr, stop);
-    const Marched other = march(
-        chosen, registry_, grid,
-        [&](LaneSpec& lane) {
-          lane.position *= 1 + offset;
-          lane.velocity *= 1 + offset;
-          lane.amplitude *= 1 + offset;
-        },
-        stop);
+    const auto offset_by = [](LaneSpec& lane) {
+      lane.position *= 1 + offset;
+      lane.velocity *= 1 + offset;
+      lane.amplitude *= 1 + offset;
+    };
+    Marched one, other;
+    try {
+      one = march(chosen, registry_, grid, nullptr, stop);
+      other = march(chosen, registry_, grid, offset_by, stop);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (...) {
+      // The first case says in its own row what is wrong with it; the others are compared to their ends.
+    }
     if (!one.motion || !other.motion) return {chosen.duration, "the end of the run"};
     const double horizon = common_horizon(*one.motion, *other.motion, grid, share);
     if (horizon >= chosen.duration) return {chosen.duration, "the end of the run"};

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/execution/case_watch.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
@@ -21,6 +22,10 @@ struct MotionShelf {
   std::function<void(const std::string& key, const std::string& content)> keep;
   /// Shows what a case under way has so far; empty where nobody looks.
   std::function<void(const CaseRecord&)> show;
+  /// A case in whose stead something is computed that others need too: what its plugins do wrong is its own fault.
+  std::function<TicketPointer(const StudyCase&)> ticket;
+  /// Whether a case has failed: nothing is computed with its methods for others.
+  std::function<bool(const std::string& id)> failed;
 };
 
 /// A reference as cases are compared with it.
@@ -68,8 +73,14 @@ class References {
   KnownReference march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const;
   std::string key(const StudyCase& study_case, const MethodChoice& choice) const;
   Twin twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop);
+  /// What one thread computes and the others wait for; `owner`: the case of that thread.
   template <class Value>
-  Value once(std::map<std::string, std::shared_future<Value>>& known, const std::string& key,
+  struct Promised {
+    std::shared_future<Value> value;
+    TicketPointer owner;
+  };
+  template <class Value>
+  Value once(std::map<std::string, Promised<Value>>& known, const std::string& key, const std::atomic<bool>& stop,
              const std::function<Value()>& make);
 
   const Study& study_;
@@ -78,8 +89,8 @@ class References {
   double smallest_step_ = 0;
   int coarsest_ = 0, finest_ = 0;  // elements
   std::mutex mutex_;
-  std::map<std::string, std::shared_future<ReferencePointer>> known_;
-  std::map<std::string, std::shared_future<Twin>> twins_;
+  std::map<std::string, Promised<ReferencePointer>> known_;
+  std::map<std::string, Promised<Twin>> twins_;
 };
 
 /// The grid on which a study's motions are compared: `samples` + 1 times from 0 to `duration`, 128 places.

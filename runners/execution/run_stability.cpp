@@ -16,6 +16,8 @@ namespace {
 
 using Cell = nlohmann::ordered_json;
 
+// A growth per step that 3000 steps without contact show beyond doubt: by a factor of twenty.
+constexpr double plain_growth = 1e-3;
 // Scenes march this many steps at most, whatever their duration, and free structures always 3000.
 constexpr long long most_scene_steps = 200000, least_scene_steps = 200, free_steps = 3000;
 
@@ -23,6 +25,8 @@ std::vector<double> steps_of(const StudyCase& study_case) {
   const Json& range = study_case.settings.at("steps");
   const double from = range.at("from").get<double>(), to = range.at("to").get<double>();
   const int count = range.at("count").get<int>();
+  if (!std::isfinite(to / from) || !std::isnormal(from))
+    throw InputError("/steps/from", fmt::format("steps from {:g} to {:g} s span more than numbers can hold", from, to));
   std::vector<double> steps;
   // Twelve digits: 1e-05 rather than 9.999999999999999e-06.
   for (int i = 0; i < count; ++i)
@@ -51,6 +55,19 @@ struct Side {
   StepLimit predicted;
   ObservedLimit observed;
 
+  /// Marched somewhere, and stable nowhere.
+  bool never_stable() const {
+    const auto stable = [](const auto& cell) { return cell && cell->stable(); };
+    const auto marched = [](const auto& cell) { return cell.has_value(); };
+    return std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), stable);
+  }
+  /// Without contact a step is linear: it does what its spectrum says, or the plan is not what is marched.
+  bool contradicts(std::size_t i) const {
+    const StepSpectrum* known = spectrum(i);
+    if (closed || !known || cells.size() <= i || !cells[i]) return false;
+    if (cells[i]->stable()) return known->radius > 1 + plain_growth && cells[i]->steps >= free_steps;
+    return known->stable() && known->marginal.empty();
+  }
   const StepSpectrum* spectrum(std::size_t i) const {
     return spectra[i] ? std::get_if<StepSpectrum>(&*spectra[i]) : nullptr;
   }
@@ -289,6 +306,19 @@ class StabilityRun {
     record_.tables.push_back(std::move(table));
     if (observed) record_.tables.push_back(std::move(seen));
     for (const Side& side : sides) say_limits(sides, side, observed);
+    if (observed) say_contradictions(sides.front());
+  }
+
+  void say_contradictions(const Side& open) {
+    std::vector<double> where;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (open.contradicts(i)) where.push_back(steps_[i]);
+    if (where.empty()) return;
+    record_.measures.emplace_back("contradictions", static_cast<double>(where.size()));
+    record_.notes.push_back(fmt::format(
+        "open: spectrum and march disagree without contact at {} of {} steps, first at h = {:g} s: an error of the "
+        "method, not of the step",
+        where.size(), steps_.size(), where.front()));
   }
 
   // The smaller of what is predicted for the contact state and, for scenes, for the open structure.
@@ -313,6 +343,8 @@ class StabilityRun {
                       *side.observed.step / *limit));
     else if (side.observed.step)
       say(fmt::format("observed up to h = {:.4g} s, where the spectrum sees no limit", *side.observed.step));
+    else if (side.never_stable())
+      say("unstable at every step marched");
     else if (side.observed.below_range)
       say("unstable already at the smallest step of the range");
     else if (limit && *limit < steps_.back() && !side.predicted.below_range)

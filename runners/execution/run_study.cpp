@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -19,13 +20,25 @@ namespace ricochet {
 namespace {
 
 // A study none of whose scenes has a reference is told so before anything runs.
-void require_reference(const Study& study, References& references, const std::atomic<bool>& stop) {
+void require_reference(const Study& study, References& references, const MotionShelf& shelf,
+                       const std::atomic<bool>& stop) {
   std::set<std::string> scenes, refusals;
   for (const StudyCase& one : study.cases) {
     if (one.excluded || !scenes.insert(one.scene_json.dump()).second) continue;
-    const ReferenceSet set = references.of(one, stop);
-    if (!set.applicable.empty()) return;
-    refusals.insert(set.refusals.begin(), set.refusals.end());
+    if (shelf.failed && shelf.failed(one.id)) return;
+    std::optional<CaseScope> named;
+    if (shelf.ticket) named.emplace(shelf.ticket(one));
+    try {
+      const ReferenceSet set = references.of(one, stop);
+      if (!set.applicable.empty()) return;
+      refusals.insert(set.refusals.begin(), set.refusals.end());
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const InputError&) {
+      throw;
+    } catch (...) {
+      return;  // a method or a reference that fails is told in the rows of its cases
+    }
   }
   if (refusals.empty()) return;
   throw InputError("/reference", fmt::format("no reference applies to this scene: {}; \"{}\" applies wherever the "
@@ -50,8 +63,8 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   std::unique_ptr<References> references;
   if (study.resolved.contains("reference")) {
     runner.open = [&](MotionShelf shelf, const std::atomic<bool>& stop) {
-      references = std::make_unique<References>(study, registry, std::move(shelf));
-      require_reference(study, *references, stop);
+      if (!references) references = std::make_unique<References>(study, registry, shelf);
+      require_reference(study, *references, shelf, stop);
     };
     runner.run = [&](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return run_comparison(study_case, registry, *references, stop);

@@ -42,6 +42,23 @@ std::string signed_percent(double ratio) {
   return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
 }
 
+// Marched at some steps, and stable at none of them.
+bool never_stable(const CaseRecord& record) {
+  for (const DerivedTable& table : record.tables) {
+    if (table.name != "stability_observed" || table.rows.empty()) continue;
+    const auto column = std::find(table.columns.begin(), table.columns.end(), "behaviour") - table.columns.begin();
+    return std::none_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+      const auto& cell = row.at(static_cast<std::size_t>(column));
+      return cell == "stable" || cell == "marginal";
+    });
+  }
+  return false;
+}
+
+bool contradicts_itself(const CaseRecord& record) {
+  return measure(record, "contradictions").value_or(0) > 0;
+}
+
 // What a comparing or a stability case has to say: its first errors, its step limits.
 std::string kind_text(const CaseRecord& record) {
   std::vector<std::string> parts;
@@ -54,6 +71,10 @@ std::string kind_text(const CaseRecord& record) {
   if (observed) parts.push_back(fmt::format("observed {:.4g} s", *observed));
   if (const auto radius = measure(record, "largest_radius"); radius && !predicted)
     parts.push_back(fmt::format("largest spectral radius {:.6g}", *radius));
+  if (never_stable(record)) parts.emplace_back("unstable at every step marched");
+  if (const auto steps = measure(record, "contradictions"))
+    parts.push_back(fmt::format("spectrum and march disagree without contact at {:.0f} step{}: an error of the method",
+                                *steps, *steps == 1 ? "" : "s"));
   return parts.empty() ? "" : fmt::format("done: {}", fmt::join(parts, ", "));
 }
 
@@ -131,6 +152,8 @@ std::string totals_text(const StudyResults& results) {
   const std::size_t cases = results.cases.size();
   std::string text = fmt::format("{} case{}", cases, cases == 1 ? "" : "s");
   if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
+  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(), contradicts_itself))
+    text += fmt::format("; in {} spectrum and march disagree without contact", number);
   if (const int missing = results.expected_cases - static_cast<int>(cases); missing > 0)
     text += fmt::format("; {} not run yet", missing);
   return text;
@@ -138,7 +161,8 @@ std::string totals_text(const StudyResults& results) {
 
 int results_exit_code(const StudyResults& results) {
   constexpr int some_failed = 3;
-  return count(results, "diverged") + count(results, "failed") > 0 ? some_failed : 0;
+  const bool wrong = std::any_of(results.cases.begin(), results.cases.end(), contradicts_itself);
+  return wrong || count(results, "diverged") + count(results, "failed") > 0 ? some_failed : 0;
 }
 
 }  // namespace ricochet

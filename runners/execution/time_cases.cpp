@@ -25,7 +25,8 @@ double median(std::vector<double> values) {
 }  // namespace
 
 std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
-                                   int repeats, const std::atomic<bool>& stop) {
+                                   int repeats, const std::function<TicketPointer(const StudyCase&)>& ticket,
+                                   const std::atomic<bool>& stop) {
   std::map<std::string, const StudyCase*> cases;
   for (const StudyCase& one : study.cases) cases[one.id] = &one;
   std::vector<CaseRecord> records;
@@ -43,10 +44,14 @@ std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study
   for (int round = 0; round < repeats; ++round)
     for (std::size_t i = 0; i < records.size(); ++i) {
       if (stop) return {};
+      const StudyCase& one = *cases.at(records[i].id);
+      const CaseScope scope(ticket(one));
       try {
-        if (const auto time = runner.time(*cases.at(records[i].id), stop)) seconds[i].push_back(*time);
+        if (const auto time = runner.time(one, stop)) seconds[i].push_back(*time);
       } catch (const Interrupted&) {
         return {};
+      } catch (...) {
+        // It ran before: what fails now is its time alone.
       }
     }
   // One busy thread of ours: the rest of the wall time went to others.

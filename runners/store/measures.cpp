@@ -78,6 +78,8 @@ const std::vector<MeasureInfo>& further_measures() {
       {"limit_observed", "s", "Largest stable step of the range, found by marching and bisection."},
       {"largest_radius", "1", "Largest spectral radius of the step over the range."},
       {"agreement", "1", "Observed over predicted step limit."},
+      {"contradictions", "1",
+       "Steps of the range at which spectrum and march disagree without contact: an error of the method."},
       {"orbits", "1", "Orbits that were marched to the end of their kept periods."},
       {"share_periodic", "1", "Share of these orbits that repeat, contact-free ones not counted."},
       {"share_chaotic", "1", "Share of these orbits that are chaotic."},

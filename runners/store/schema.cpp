@@ -60,6 +60,13 @@ CREATE TABLE case_numbers(
   PRIMARY KEY(case_id, position, part));
 )sql";
 
+// What version 4 adds: the cases whose code may be running, until their row is there. stage: 'plan' (their cost is
+// being predicted), 'run'.
+constexpr const char* kBegunTable = R"sql(
+CREATE TABLE begun(
+  case_id TEXT PRIMARY KEY, stage TEXT NOT NULL CHECK(stage IN ('plan', 'run')), since TEXT NOT NULL);
+)sql";
+
 [[noreturn]] void not_ours(const std::filesystem::path& file) {
   throw StoreError(fmt::format(
       "{}: this file is not a Ricochet store; move it away or choose another folder with --out", file.string()));
@@ -123,13 +130,15 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
       database.exec(kTables);
       database.exec(kLaterTables);
       database.exec(kNumberTables);
+      database.exec(kBegunTable);
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
-    } else if (version == 1 || version == 2) {
+    } else if (version >= 1 && version < kStoreVersion) {
       SQLite::Transaction transaction(database);
-      if (version == 1) database.exec(kLaterTables);
-      database.exec(kNumberTables);
+      if (version < 2) database.exec(kLaterTables);
+      if (version < 3) database.exec(kNumberTables);
+      database.exec(kBegunTable);
       database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
       transaction.commit();
     } else if (version != kStoreVersion) {

@@ -3,10 +3,12 @@
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
+#include <ctime>
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"
@@ -122,11 +124,56 @@ void Store::save_environment(const Environment& environment) {
   });
 }
 
-void Store::save(std::span<const CaseRecord> records) {
+void Store::note_begin(const std::string& id, Stage stage) {
+  SQLite::Statement add(*database_, "INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)");
+  insert(add, id, std::string(stage == Stage::run ? "run" : "plan"),
+         fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
+}
+
+void Store::begins(const std::vector<std::string>& ids, Stage stage) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
     SQLite::Transaction transaction(*database_);
-    for (const CaseRecord& record : records) save_one(record, false);
+    for (const std::string& id : ids) note_begin(id, stage);
+    transaction.commit();
+  });
+}
+
+std::vector<std::string> Store::left_under_way() const {
+  const std::lock_guard guard(mutex_);
+  std::vector<std::string> ids;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement begun(*database_, "SELECT case_id FROM begun WHERE stage = 'run'");
+    while (begun.executeStep()) ids.push_back(begun.getColumn(0).getString());
+  });
+  return ids;
+}
+
+std::set<std::string> Store::failed() const {
+  const std::lock_guard guard(mutex_);
+  std::set<std::string> ids;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement failed(*database_, "SELECT id FROM cases WHERE status = 'failed' AND fingerprint != ''");
+    while (failed.executeStep()) ids.insert(failed.getColumn(0).getString());
+  });
+  return ids;
+}
+
+void Store::nothing_under_way() {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] { database_->exec("DELETE FROM begun"); });
+}
+
+void Store::save(std::span<const CaseRecord> records, const std::string& next) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    SQLite::Statement ended(*database_, "DELETE FROM begun WHERE case_id = ?");
+    for (const CaseRecord& record : records) {
+      save_one(record, false);
+      insert(ended, record.id);
+    }
+    if (!next.empty()) note_begin(next, Stage::run);
     transaction.commit();
   });
 }

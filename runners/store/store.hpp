@@ -41,8 +41,20 @@ class Store {
   /// Replaces the environment.
   void save_environment(const Environment& environment);
 
-  /// Adds finished cases. Measures that are not finite are left out, with a note. May be called from several threads.
-  void save(std::span<const CaseRecord> records);
+  /// States that code of these cases is about to run: all of them, to predict their cost (`plan`), or one. What a
+  /// killed run leaves of this is what it was at.
+  enum class Stage { plan, run };
+  void begins(const std::vector<std::string>& ids, Stage stage);
+  /// The cases that were under way when the last run of this folder was killed, in no order.
+  std::vector<std::string> left_under_way() const;
+  /// The cases that failed.
+  std::set<std::string> failed() const;
+  /// No case is under way any more: the run ends in order.
+  void nothing_under_way();
+
+  /// Adds finished cases, which are no longer under way; in the same transaction `next` begins, unless it is "".
+  /// Measures that are not finite are left out, with a note. May be called from several threads.
+  void save(std::span<const CaseRecord> records, const std::string& next = "");
 
   /// Adds what a running case has so far, to be shown and to be replaced by save(): begin() does not keep it, load()
   /// marks it as partial. May be called from several threads.
@@ -57,6 +69,7 @@ class Store {
   StudyResults load() const;
 
  private:
+  void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
 

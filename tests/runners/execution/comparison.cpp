@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "runners/execution/derive.hpp"
 #include "runners/execution/minimal_study.hpp"
@@ -182,6 +183,35 @@ TEST_CASE("a budget stops a case, which counts as failed and leaves a study of i
   CHECK(alone["methods"]["time"]["name"] == "moreau-jean");
   const Study again = parse_study(alone.dump(), run.catalogue, run.registry);
   CHECK(again.cases.size() == 1);
+}
+
+TEST_CASE("a measure that some method never has is left out of the effects, neither zero nor filled in") {
+  StudyResults results;
+  results.kind = "trajectory";
+  results.columns = {"mass", "time"};
+  for (const char* mass : {"consistent", "lumped"})
+    for (const char* time : {"newmark", "hht", "moreau-jean"}) {
+      CaseRecord record;
+      record.axes = {{"mass", mass}, {"time", time}};
+      record.status = "done";
+      const double value = static_cast<double>(results.cases.size());
+      record.measures = {{"impulse", 1 + value}};
+      if (std::string(time) != "hht") record.measures.emplace_back("work_of_damping", 2 + value * value);
+      // One that a single case lacks is filled in as before.
+      if (value != 4) record.measures.emplace_back("first_impact", 3 + value);
+      results.cases.push_back(std::move(record));
+    }
+  const auto measures = [&] {
+    derive_tables(results);
+    std::set<std::string> found;
+    for (const auto& row : table(results, "effects").rows) found.insert(row.front().get<std::string>());
+    return found;
+  };
+  CHECK(measures() == std::set<std::string>{"impulse", "first_impact"});
+  // A method of which no case came to its end says nothing of what it declares.
+  for (CaseRecord& record : results.cases)
+    if (record.axes[1].second == "hht") record.status = "failed";
+  CHECK(measures() == std::set<std::string>{"impulse", "first_impact", "work_of_damping"});
 }
 
 TEST_CASE("effects stand beside the cases wherever two choices vary, and sum to the whole") {

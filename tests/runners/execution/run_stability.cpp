@@ -212,6 +212,66 @@ TEST_CASE("where marches and spectrum disagree the row says so") {
   CHECK(seen);
 }
 
+namespace {
+
+/// Newmark's scheme, which after `honest` questions makes velocities grow by 1 % per step.
+class Moody final : public TimeScheme {
+ public:
+  explicit Moody(const Registry& registry) : newmark_(registry.time("newmark")->make(newmark_parameters(registry))) {}
+  static inline long long questions = 0, honest = 0;
+
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    PlanOrRefusal made = newmark_->plan(h, facts);
+    if (++questions <= honest) return made;
+    for (Stage& stage : std::get<StepPlan>(made).stages) {
+      for (double& weight : stage.update.at(1).slots) weight *= 1.01;
+      stage.update[1].z *= 1.01;
+    }
+    return made;
+  }
+
+ private:
+  static Parameters newmark_parameters(const Registry& registry) {
+    Parameters defaults;
+    for (const ParameterSpec& spec : registry.manual(Role::time, "newmark")->parameters)
+      if (spec.fallback) defaults.set(spec.key, *spec.fallback);
+    return defaults;
+  }
+  std::unique_ptr<TimeScheme> newmark_;
+};
+
+}  // namespace
+
+TEST_CASE("a march that is not what its spectrum says, without contact, is an error of the method") {
+  Json text = study_text("consistent", "none", {{"name", "newmark"}}, 1e-4, 1e-3, 3);
+  Study study;
+  Registry& registry = opened(text, study);
+  if (!registry.time("moody"))
+    registry.add_time({"moody", "A scheme.", "It changes its mind.", "none", {}},
+                      [&](const Parameters&) { return std::make_unique<Moody>(registry); });
+  text["methods"]["time"] = "moody";
+  Moody::honest = 1000000;
+  Moody::questions = 0;
+  text["observe"] = false;
+  CHECK_FALSE(run(text).measure("contradictions"));
+  // The same questions first, then those of the marches.
+  Moody::honest = Moody::questions;
+  Moody::questions = 0;
+  text["observe"] = true;
+  const Result result = run(text);
+  CHECK(result.record.status == "done");
+  CHECK(*result.measure("largest_radius") == Approx(1).epsilon(1e-6));
+  REQUIRE(result.measure("contradictions"));
+  CHECK(*result.measure("contradictions") == 3);
+  CHECK(result.noted("spectrum and march disagree without contact at 3 of 3 steps, first at h = 0.0001 s"));
+  CHECK(result.noted("open: unstable at every step marched"));
+
+  Moody::honest = 1000000;
+  const Result sound = run(text);
+  CHECK_FALSE(sound.measure("contradictions"));
+  CHECK_FALSE(sound.noted("unstable at every step"));
+}
+
 TEST_CASE("oscillators and free masses have their cells") {
   for (const double stiffness : {0.0, 100.0}) {
     Json text = Json::parse(R"({

@@ -55,6 +55,26 @@ TEST_CASE("summary: a study without axes names its case") {
   CHECK(case_table(results) == "case        outcome\n0123456789  done\n");
 }
 
+TEST_CASE("summary: a stability case whose march contradicts its spectrum is said, counted and no success") {
+  StudyResults results;
+  CaseRecord record = ended("done", "");
+  record.measures = {{"largest_radius", 1.0}};
+  record.tables = {
+      {"stability_observed", {"step", "contact", "behaviour"}, {{1e-4, "open", "stable"}, {1e-3, "open", "unstable"}}}};
+  results.cases = {record};
+  CHECK(outcome_text(record) == "done: largest spectral radius 1");
+  CHECK(results_exit_code(results) == 0);
+
+  record.tables.front().rows.front()[2] = "diverged";
+  record.measures.emplace_back("contradictions", 2);
+  results.cases.push_back(record);
+  CHECK(outcome_text(record) ==
+        "done: largest spectral radius 1, unstable at every step marched, spectrum and march disagree without contact "
+        "at 2 steps: an error of the method");
+  CHECK(totals_text(results) == "2 cases: 2 done; in 1 spectrum and march disagree without contact");
+  CHECK(results_exit_code(results) == 3);
+}
+
 TEST_CASE("summary: totals and exit code") {
   StudyResults results;
   results.expected_cases = 3;

@@ -167,7 +167,7 @@ TEST_CASE("store: another version is refused with what was found, expected and t
   SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
   using Catch::Contains;
   CHECK_THAT(open_error(folder.path()),
-             Contains("results.sqlite") && Contains("version 99") && Contains("version 3") && Contains("--fresh"));
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 4") && Contains("--fresh"));
   CHECK_THROWS_AS(read_store(folder.path()), StoreError);
   CHECK(open_error(folder.path(), true).empty());
 }
@@ -175,17 +175,17 @@ TEST_CASE("store: another version is refused with what was found, expected and t
 TEST_CASE("store: what earlier versions wrote is read, and gets the tables that came later") {
   const ScratchFolder folder;
   fill(folder.path());
+  const int version = GENERATE(1, 2, 3);
   {
     SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
-    database.exec("DROP TABLE case_numbers; PRAGMA user_version=2");
-    SECTION("version 2") {}
-    SECTION("version 1") {
-      database.exec("DROP TABLE case_tables; DROP TABLE motions; PRAGMA user_version=1");
-    }
+    database.exec("DROP TABLE begun");
+    if (version < 3) database.exec("DROP TABLE case_numbers");
+    if (version < 2) database.exec("DROP TABLE case_tables; DROP TABLE motions");
+    database.exec("PRAGMA user_version=" + std::to_string(version));
   }
   const StudyResults before = read_store(folder.path());
   REQUIRE(before.cases.size() == 2);
-  CHECK(before.cases[0].numbers.empty());
+  CHECK(before.cases[0].numbers.empty() == (version < 3));
   CHECK_FALSE(before.cases[0].partial);
   {
     Store store(folder.path(), false);
@@ -194,6 +194,29 @@ TEST_CASE("store: what earlier versions wrote is read, and gets the tables that 
     store.save_motion("key", "content");
   }
   check_equal(read_store(folder.path()).cases[0], sample_results().cases[0]);
+}
+
+TEST_CASE("store: a case that begins is there before it ends, and gone once its row is") {
+  const ScratchFolder folder;
+  const StudyResults results = sample_results();
+  const std::string &first = results.cases[0].id, &second = results.cases[1].id;
+  using Ids = std::vector<std::string>;
+  {
+    Store store(folder.path(), false);
+    store.begin(results, kExpected);
+    store.begins({first, second}, Store::Stage::plan);
+    CHECK(store.left_under_way().empty());  // none of them runs yet
+    store.begins({first}, Store::Stage::run);
+    CHECK(store.left_under_way() == Ids{first});
+    store.save({results.cases.data(), 1}, second);
+    CHECK(store.left_under_way() == Ids{second});
+    CHECK(count(folder.path(), "begun") == 1);
+  }
+  Store store(folder.path(), false);
+  CHECK(store.begin(results, kExpected) == std::set<std::string>{first});
+  CHECK(store.left_under_way() == Ids{second});
+  store.nothing_under_way();
+  CHECK(store.left_under_way().empty());
 }
 
 TEST_CASE("store: what a running case has so far is shown, marked, replaced, and never taken for finished") {
