@@ -253,7 +253,19 @@ void Catalogue::open_all(Registry& registry) {
   }
 }
 
+void Catalogue::provide(const fs::path& file, Registry methods, bool first) {
+  std::vector<Provided> provided;
+  for (const Role role : all_roles)
+    for (const std::string& name : methods.names(role)) provided.push_back({role, name, file});
+  provided_.insert(first ? provided_.begin() : provided_.end(), provided.begin(), provided.end());
+  read_.insert_or_assign(file, std::move(methods));
+}
+
 void Catalogue::open(const fs::path& file, Registry& registry) {
+  if (const auto read = read_.find(file); read != read_.end()) {
+    if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
+    return adopt(file, read->second, registry);
+  }
   const KeepFloatControl control;  // -ffast-math in a plugin would be everyone's
   if (foreign(file) && !is_loaded(file)) try_to_load(file);
   if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);

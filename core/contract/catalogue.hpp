@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <ricochet/contract/registry.hpp>
 #include <string>
 #include <utility>
@@ -49,6 +50,12 @@ class Catalogue {
   /// The unusable file that is meant to provide the method, or null.
   const Unusable* unusable_provider(Role role, const std::string& name) const;
 
+  /// Adds a file that is no library, with what its reader found in it: after the files known so far, or before them all.
+  /// require() takes its methods from there.
+  void provide(const std::filesystem::path& file, Registry methods, bool first = false);
+  /// Adds a file that its reader could not make anything of.
+  void cannot_serve(Unusable file) { unusable_.push_back(std::move(file)); }
+
   /// Opens the library that provides the method and lets it register what it provides first, unless the method is there
   /// already. Returns false when no file provides it. Throws PluginError (naming the file) when it does not load,
   /// throws while it registers, or does not register exactly what it says; the registry is then as it was before. A
@@ -69,6 +76,7 @@ class Catalogue {
   std::vector<Provided> provided_;
   std::vector<Unusable> unusable_;
   std::vector<std::filesystem::path> opened_;
+  std::map<std::filesystem::path, Registry> read_;  // of files that are no libraries
 };
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/formula.hpp>
+#include <ricochet/scene/formula_errors.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -22,37 +23,10 @@ std::string variables_in_words(const std::string& variables) {
   return "the variables are x and t";
 }
 
-/// muParser reads "x = 3" as an assignment, which would change the variable behind our back.
-bool has_assignment(const std::string& text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '=') continue;
-    if (i + 1 < text.size() && text[i + 1] == '=') {
-      ++i;
-    } else if (i == 0 || std::string("<>!").find(text[i - 1]) == std::string::npos) {
-      return true;
-    }
-  }
-  return false;
-}
-
-[[noreturn]] void explain(const mu::Parser& parser, const mu::ParserError& error, const std::string& text,
-                          const std::string& pointer, const std::string& variables) {
-  if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-    std::vector<std::string> known{"pi", "e"};
-    for (char variable : variables) known.emplace_back(1, variable);
-    for (const auto& function : parser.GetFunDef()) known.push_back(function.first);
-    // A single letter is near every other one: no guess.
-    const std::string nearest = error.GetToken().size() > 1 ? nearest_name(error.GetToken(), known) : "";
-    throw InputError(pointer, fmt::format("unknown name \"{}\" in the formula \"{}\"; {}, the constants are pi and e{}",
-                                          error.GetToken(), text, variables_in_words(variables),
-                                          nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
-  }
-  std::string message = error.GetMsg();
-  while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
-  const bool product = error.GetCode() == mu::ecUNEXPECTED_VAR || error.GetCode() == mu::ecUNEXPECTED_FUN ||
-                       error.GetCode() == mu::ecUNEXPECTED_VAL || error.GetCode() == mu::ecUNEXPECTED_PARENS;
-  throw InputError(pointer, fmt::format("the formula \"{}\" does not parse: {}{}", text, message,
-                                        product ? "; a product is written with *" : ""));
+std::vector<std::string> letters(const std::string& variables) {
+  std::vector<std::string> names;
+  for (const char variable : variables) names.emplace_back(1, variable);
+  return names;
 }
 
 /// Derivative at s of the Lagrange polynomials on the nodes −3 … 3.
@@ -123,16 +97,11 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
   state_->text = text;
   state_->pointer = pointer;
   state_->variables = variables;
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-    throw InputError(pointer, "the formula is empty; expected a number or a formula such as \"0.04*x^2\"");
-  if (has_assignment(text))
-    throw InputError(
-        pointer,
-        fmt::format("the formula \"{}\" assigns with =; expected an expression, comparisons are written ==", text));
+  require_expression(text, pointer);
   try {
     state_->compile();
   } catch (const mu::ParserError& error) {
-    explain(*state_->parser, error, text, pointer, variables);
+    explain_formula(*state_->parser, error, text, pointer, letters(variables), variables_in_words(variables));
   }
   if (state_->varies()) return;
   if (!std::isfinite(state_->constant))

@@ -10,6 +10,7 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/command/table.hpp"
 #include "runners/study/check_object.hpp"
+#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {
@@ -216,10 +217,25 @@ bool print_manual(Role role, const PluginManual& manual, const Catalogue& catalo
   return true;
 }
 
+// A plan that stands in a file, wherever it is.
+int describe_plan(const std::filesystem::path& file, std::ostream& out) {
+  const PlanSource source = read_plan_file(file);
+  Registry registry;
+  try {
+    register_plan(source, registry);
+  } catch (const InputError& error) {
+    throw StudyError(source.explain(error));
+  }
+  const std::string name = registry.names(Role::time).front();
+  print_manual(Role::time, *registry.manual(Role::time, name), registry, out);
+  return exit_done;
+}
+
 }  // namespace
 
 int command_describe(const Arguments& arguments, std::ostream& out) {
-  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  if (arguments.operands.front().ends_with(".json")) return describe_plan(arguments.operands.front(), out);
+  Catalogue catalogue = standard_catalogue(arguments.plugins);
   Registry registry;
   const std::string& name = arguments.operands.front();
   std::vector<std::string> names;

@@ -11,6 +11,7 @@
 #include "runners/command/table.hpp"
 #include "runners/execution/environment.hpp"
 #include "runners/report/assets.hpp"
+#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {
@@ -89,7 +90,7 @@ void print_plugins(const Catalogue& catalogue, const std::vector<fs::path>& extr
 
 int command_doctor(const Arguments& arguments, std::ostream& out) {
   print_program(out);
-  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  Catalogue catalogue = standard_catalogue(arguments.plugins);
   Registry registry;
   catalogue.open_all(registry);
   print_plugins(catalogue, arguments.plugins, out);

@@ -5,6 +5,7 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/command/table.hpp"
 #include "runners/study/check_object.hpp"
+#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {
@@ -28,7 +29,7 @@ Role role_called(const std::string& word) {
 
 int command_list(const Arguments& arguments, std::ostream& out) {
   const std::vector<Role> roles = roles_asked(arguments);
-  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  Catalogue catalogue = standard_catalogue(arguments.plugins);
   Registry registry;
   // Only the libraries of the roles asked for are opened; one that fails is told, and the others are listed.
   std::vector<Unusable> failed;

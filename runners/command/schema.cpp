@@ -2,12 +2,13 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/study/stated_plan.hpp"
 #include "runners/study/study_schema.hpp"
 
 namespace ricochet {
 
 int command_schema(const Arguments& arguments, std::ostream& out) {
-  Catalogue catalogue = Catalogue::standard(arguments.plugins);
+  Catalogue catalogue = standard_catalogue(arguments.plugins);
   Registry registry;
   catalogue.open_all(registry);
   out << study_schema(registry).dump(2) << "\n";

@@ -9,6 +9,7 @@
 
 #include "runners/store/csv.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {
@@ -60,7 +61,7 @@ std::string StoredRows::regime(std::size_t row) const {
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const Arguments& arguments)
-    : catalogue(Catalogue::standard(arguments.plugins)),
+    : catalogue(standard_catalogue(arguments.plugins)),
       study(parse_study(results.study.dump(), catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {

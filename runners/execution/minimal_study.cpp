@@ -38,6 +38,12 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
     else
       scene[scene_pointer(column)] = value;
   }
+  // A scheme that the study states itself goes along.
+  const Json::json_pointer times("/methods/time");
+  if (results.study.contains(times) && results.study.at(times).is_array())
+    for (const Json& method : results.study.at(times))
+      if (method.is_object() && method.contains("plan") && method.at("name") == methods["time"].value("name", ""))
+        methods["time"]["plan"] = method.at("plan");
   Json study = {
       {"name", fmt::format("{}-{}", results.name, record.id)},
       {"question", fmt::format("Why did this case of {} end as {}? {}", results.name, record.status, record.reason)},

@@ -24,6 +24,7 @@ constexpr int cells = 64;
 Json method_json(const MethodChoice& choice) {
   Json json = {{"name", choice.name}};
   for (const auto& [key, value] : choice.parameters.values()) json[key] = to_json(value);
+  if (choice.plan) json["plan"] = *choice.plan;
   return json;
 }
 

@@ -20,7 +20,9 @@ Json method_json(const MethodChoice& method) {
   Json parameters = Json::object();
   for (const auto& [key, value] : method.parameters.values())
     std::visit([&, name = key](const auto& v) { parameters[name] = v; }, value);
-  return {{"name", method.name}, {"parameters", std::move(parameters)}};
+  Json json = {{"name", method.name}, {"parameters", std::move(parameters)}};
+  if (method.plan) json["plan"] = *method.plan;
+  return json;
 }
 
 /// The core library as the loader mapped it; the program itself where the core is linked into it.

@@ -189,7 +189,8 @@ void add_columns(const Axes& axes, std::vector<std::string>& columns) {
 
 }  // namespace
 
-Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry) {
+Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry,
+                  const std::filesystem::path& folder) {
   std::vector<Axis> axes;
   Study study;
   const Json given = parse_json(text);
@@ -217,7 +218,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   std::vector<MethodOptions> methods;
   for (const Role role : {Role::mass, Role::contact, Role::time}) {
     const std::string key = role_name(role);
-    methods.push_back(read_methods(role, resolved["methods"][key], "/methods/" + key, catalogue, registry));
+    methods.push_back(read_methods(role, resolved["methods"][key], "/methods/" + key, catalogue, registry, folder));
     refuse_repeated(methods.back().options, role);
     resolved["methods"][key] = methods.back().resolved;
   }
@@ -290,7 +291,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 }
 
 Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry) {
-  return parse_study(read_text(file), catalogue, registry);
+  return parse_study(read_text(file), catalogue, registry, file.parent_path());
 }
 
 std::string explain(const InputError& error, const std::filesystem::path& file) {

@@ -12,8 +12,9 @@ namespace ricochet {
 /// is there but does not serve.
 Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry);
 
-/// The same from text already read (`file` only for messages).
-Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry);
+/// The same from text already read; files that it names are relative to `folder`.
+Study parse_study(const std::string& text, Catalogue& catalogue, Registry& registry,
+                  const std::filesystem::path& folder = {});
 
 /// The error as a person reads it: "FILE:LINE: at /json/pointer: what is wrong; what was expected".
 std::string explain(const InputError& error, const std::filesystem::path& file);

@@ -5,6 +5,7 @@
 #include "runners/study/check_object.hpp"
 #include "runners/study/json_text.hpp"
 #include "runners/study/product.hpp"
+#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {
@@ -88,7 +89,7 @@ ParameterValue to_value(const ParameterSpec& spec, const Json& value) {
 }  // namespace
 
 MethodOptions read_methods(Role role, const Json& value, const std::string& pointer, Catalogue& catalogue,
-                           Registry& registry) {
+                           Registry& registry, const std::filesystem::path& folder) {
   MethodOptions result;
   result.resolved = Json::array();
   const bool list = value.is_array();
@@ -98,12 +99,19 @@ MethodOptions read_methods(Role role, const Json& value, const std::string& poin
   for (std::size_t i = 0; i < count; ++i) {
     const std::string here = list ? pointer_to(pointer, i) : pointer;
     const Json& given = list ? value[i] : value;
-    const Json entry = as_object(given, here);
+    Json entry = as_object(given, here);
+    std::optional<PlanSource> plan;
+    if (role == Role::time) plan = take_stated_plan(entry, here, folder, result.resolved, catalogue, registry);
     const std::string name = name_of(entry, here);
     const PluginManual& manual =
         require_method(role, name, given.is_object() ? pointer_to(here, "name") : here, catalogue, registry);
     std::vector<Axis> axes;
-    const Json complete = check_object(method_form(manual), entry, here, axes);
+    Json complete = check_object(method_form(manual), entry, here, axes);
+    std::shared_ptr<const std::string> content;
+    if (plan) {
+      content = std::make_shared<const std::string>(plan->plan.dump());
+      complete["plan"] = std::move(plan->plan);
+    }
     result.resolved.push_back(complete);
 
     Product product;
@@ -112,6 +120,7 @@ MethodOptions read_methods(Role role, const Json& value, const std::string& poin
     for (; !product.ended(); product.next()) {
       MethodOption option;
       option.choice.name = name;
+      option.choice.plan = content;
       option.places.push_back(here);
       option.axes.emplace_back(role_name(role), name);
       Json scalars = complete;

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
@@ -14,6 +15,7 @@ using Json = nlohmann::ordered_json;
 struct MethodChoice {
   std::string name;
   Parameters parameters;
+  std::shared_ptr<const std::string> plan = {};  ///< the plan that the study states for it; null for a plugin
 };
 
 /// One combination of the study: everything that one run needs.

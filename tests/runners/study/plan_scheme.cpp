@@ -1,0 +1,354 @@
+// A scheme without C++: what a plan says in formulas is the step that a plugin writes in numbers, and whatever is wrong
+// with it is told with its place.
+#include "runners/study/plan_scheme.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/contract/stage_facts.hpp>
+#include <thread>
+
+#include "runners/study/json_text.hpp"
+#include "tests/runners/scratch_folder.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+const std::filesystem::path plans = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/plugins/plan_files";
+
+Parameters complete(const PluginManual& manual, const std::map<std::string, double>& values) {
+  Parameters result;
+  for (const ParameterSpec& spec : manual.parameters) {
+    const auto given = values.find(spec.key);
+    if (given != values.end())
+      result.set(spec.key, given->second);
+    else
+      result.set(spec.key, *spec.fallback);
+  }
+  return result;
+}
+
+Registry registered(const std::filesystem::path& file) {
+  Registry registry;
+  register_plan(read_plan_file(file), registry);
+  return registry;
+}
+
+PlanOrRefusal plan_of(const Registry& registry, const std::string& name, const std::map<std::string, double>& values,
+                      double h, const ProblemFacts& facts) {
+  const auto* entry = registry.time(name);
+  REQUIRE(entry);
+  return entry->make(complete(entry->manual, values))->plan(h, facts);
+}
+
+// The numbers of a plan in one row, sizes included; missing trailing slots are the zeros that they stand for. Terms
+// whose coefficient is 0 say nothing.
+class Numbers {
+ public:
+  explicit Numbers(const StepPlan& given) : plan_(derive(given).plan), slots_(plan_.slots.size()) {
+    for (const auto& pair : plan_.initial) add({pair[0], pair[1]});
+    stages(plan_.start);
+    stages(plan_.stages);
+    add({plan_.start_advances ? 1.0 : 0.0});
+    for (const QuadraticTerm& term : plan_.energy) {
+      add({term.matrix == EnergyMatrix::M ? 0.0 : 1.0, term.coefficient});
+      combination({term.slots, 0});
+    }
+    combination(plan_.velocity);
+    const SchemeFacts& facts = plan_.facts;
+    add({facts.order, facts.contact_order.value_or(-1), static_cast<double>(facts.restitution),
+         facts.needs_regular_mass ? 1.0 : 0.0, facts.stability_limit.value_or(-1),
+         facts.contact_never_gains ? 1.0 : 0.0});
+  }
+  const std::vector<double>& all() const { return numbers_; }
+
+ private:
+  void add(const std::vector<double>& values) { numbers_.insert(numbers_.end(), values.begin(), values.end()); }
+  void list(const std::vector<double>& values) {
+    add({static_cast<double>(values.size())});
+    add(values);
+  }
+  void combination(const Combination& c) {
+    std::vector<double> padded = c.slots;
+    padded.resize(slots_, 0.0);
+    add(padded);
+    add({c.z});
+  }
+  void levels(const Levels& levels) {
+    add({static_cast<double>(levels.size())});
+    for (const Level& level : levels) add({level.at, level.weight});
+  }
+  void compliance(const ComplianceMeasure& measure) {
+    combination(measure.displacement);
+    levels(measure.bound);
+    combination(measure.rate);
+    levels(measure.rate_bound);
+    list(measure.effort);
+    add({measure.before ? 1.0 : 0.0});
+    if (measure.before) combination(*measure.before);
+    levels(measure.before_bound);
+  }
+  void stages(const std::vector<Stage>& all) {
+    add({static_cast<double>(all.size())});
+    for (const Stage& stage : all) {
+      add({stage.matrix.M, stage.matrix.C, stage.matrix.K});
+      std::vector<OperatorWeights> rows = stage.history;
+      rows.resize(slots_);
+      for (const OperatorWeights& row : rows) add({row.M, row.C, row.K});
+      levels(stage.load);
+      add({stage.impact ? 1.0 : 0.0});
+      if (stage.impact) {
+        combination(stage.impact->value);
+        levels(stage.impact->bound);
+        list(stage.impact->effort);
+        add({stage.impact->gate ? 1.0 : 0.0});
+        if (const auto& gate = stage.impact->gate) {
+          combination(gate->predictor);
+          levels(gate->predictor_bound);
+          combination(gate->approach);
+          levels(gate->approach_bound);
+          add({gate->restitution});
+        }
+      }
+      for (const auto& measure : stage.compliance) {
+        add({measure ? 1.0 : 0.0});
+        if (measure) compliance(*measure);
+      }
+      for (const Combination& row : stage.update) combination(row);
+      add({stage.work ? 1.0 : 0.0});
+      if (stage.work) {
+        combination(stage.work->displacement);
+        combination(stage.work->rate);
+        levels(stage.work->load);
+        list(stage.work->effort);
+        levels(stage.work->support);
+      }
+      for (const LossTerm& term : stage.loss) {
+        if (term.coefficient == 0) continue;
+        add({term.matrix == EnergyMatrix::M ? 0.0 : 1.0, term.coefficient});
+        combination(term.value);
+      }
+    }
+  }
+
+  StepPlan plan_;
+  std::size_t slots_;
+  std::vector<double> numbers_;
+};
+
+Registry plugins() {
+  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Registry registry;
+  catalogue.open_all(registry);
+  return registry;
+}
+
+// The whole step, or the sentence of the refusal, is that of the plugin to the last bit.
+void require_twins(const std::string& file, const std::string& name, const std::string& twin,
+                   const std::vector<std::map<std::string, double>>& choices) {
+  const Registry stated = registered(plans / file), compiled = plugins();
+  for (const double h : {1e-2, 3.1e-5, 0.7e-7})
+    for (const auto& values : choices)
+      for (const int kernel : {0, 3}) {
+        ProblemFacts facts;
+        facts.dofs = 20;
+        facts.mass_kernel_dimension = kernel;
+        facts.damped = facts.contact = true;
+        const PlanOrRefusal mine = plan_of(stated, name, values, h, facts);
+        const PlanOrRefusal theirs = plan_of(compiled, twin, values, h, facts);
+        REQUIRE(mine.index() == theirs.index());
+        if (const auto* refusal = std::get_if<Refusal>(&mine)) {
+          CHECK(refusal->sentence == std::get<Refusal>(theirs).sentence);
+          continue;
+        }
+        const auto& step = std::get<StepPlan>(mine);
+        CHECK_FALSE(check_plan(step));
+        CHECK(step.slots == std::get<StepPlan>(theirs).slots);
+        CHECK(Numbers(step).all() == Numbers(std::get<StepPlan>(theirs)).all());
+      }
+}
+
+const std::string& smallest() {
+  static const std::string text = R"({
+  "name": "mine",
+  "parameters": {"theta": {"default": 0.5, "range": [0.5, 1]}},
+  "let": {"next": "q + (1-theta)*h*v + theta*h*z"},
+  "refuse": [{"when": "massless && theta == 0.5", "because": "theta = {theta} on a singular mass"}],
+  "slots": {"q": [1, 0], "v": [0, 1]},
+  "stages": [{
+    "matrix": {"M": 1, "C": "theta*h", "K": "theta*theta*h*h"},
+    "history": {"q": {"K": "-h"}, "v": {"M": 1, "C": "-(1-theta)*h", "K": "-(1-theta)*theta*h*h"}},
+    "load": {"theta": "h"},
+    "update": {"q": "next", "v": "z"}
+  }],
+  "facts": {"order": "theta == 0.5 ? 2 : 1"}
+})";
+  return text;
+}
+
+// The message of a plan in which one place of the text above is another.
+std::string message(const std::string& from, const std::string& to) {
+  std::string text = smallest();
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  text.replace(at, from.size(), to);
+  const ScratchFolder folder;
+  write_text(folder / "mine.json", text);
+  try {
+    const PlanSource source = read_plan_file(folder / "mine.json");
+    try {
+      check_plan_source(source);
+    } catch (const InputError& error) {
+      return source.explain(error).substr(folder.path().string().size() + 1);
+    }
+  } catch (const InputError& error) {
+    return std::string(error.what()).substr(folder.path().string().size() + 1);
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("Newmark as a plan has the bits of its plugin", "[plan-file]") {
+  require_twins("newmark.json", "newmark-as-plan", "newmark",
+                {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.0}, {"gamma", 0.7}}});
+}
+
+TEST_CASE("a plan is checked when it is read, and every error has its place", "[plan-file]") {
+  CHECK(message("\"mine\"", "\"mine\"").empty());
+  const std::string place = "mine.json:8: at /stages/0/matrix";
+  CHECK(message("\"theta*h\", \"K\"", "\"thta*h\", \"K\"") ==
+        place + "/C: unknown name \"thta\" in the formula \"thta*h\"; the names are contact, damped, h, massless, theta, "
+                "the constants are pi and e; did you mean \"theta\"?");
+  CHECK(message("\"theta*h\", \"K\"", "\"theta h\", \"K\"").find("a product is written with *") != std::string::npos);
+  CHECK(message("\"theta*h\", \"K\"", "[1], \"K\"") == place + "/C: expected a number or a formula, found [1]");
+  CHECK(message("{\"M\": 1, \"C\": \"theta*h\", \"K\": \"theta*theta*h*h\"}", "\"M + theta*h*C*K\"") ==
+        place + ": the formula \"M + theta*h*C*K\" is not linear in \"M\", \"C\", \"K\"; expected a sum of terms, each a "
+                "coefficient times one of them");
+  CHECK(message("\"matrix\"", "\"matrx\"").find("/stages/0/matrx: unknown key \"matrx\"; did you mean \"matrix\"?") !=
+        std::string::npos);
+  CHECK(message("\"history\": {\"q\"", "\"history\": {\"w\"").find("/stages/0/history/w: unknown key \"w\"") !=
+        std::string::npos);
+  CHECK(message("\"v\": \"z\"", "\"v\": \"z*v\"").find("is not linear in \"q\", \"v\", \"z\"") != std::string::npos);
+  CHECK(message("\"v\": \"z\"", "\"v\": \"z + 1\"").find("is not linear in") != std::string::npos);
+  CHECK(message("\"v\": \"z\"", "\"v\": \"abs(z)\"").find("is not linear in") != std::string::npos);
+  CHECK(message("\"update\"", "\"updat\"").find("did you mean \"update\"?") != std::string::npos);
+  CHECK(message("{\"q\": [1, 0]", "{\"v\": [0, 1], \"q\": [1, 0]").find("given twice") != std::string::npos);
+  CHECK(message("{\"q\": [1, 0], \"v\": [0, 1]}", "{\"v\": [0, 1], \"q\": [1, 0]}") ==
+        "mine.json:6: at /slots: expected the position \"q\" as the first slot, found \"v\"");
+  CHECK(message("\"v\": [0, 1]", "\"v\": [0]").find("/slots/v: expected the slot's weights of q₀ and v₀") !=
+        std::string::npos);
+  CHECK(message("\"order\"", "\"oder\"").find("did you mean \"order\"?") != std::string::npos);
+  CHECK(message("\"facts\": {", "\"facts\": {\"restitution\": \"exactly\", ")
+            .find("/facts/restitution: expected one of \"exact\", \"asymptotic\", \"ignored\", found \"exactly\"") !=
+        std::string::npos);
+  CHECK(message("\"name\": \"mine\",", "").find("at /name: missing; a plan has a name") != std::string::npos);
+  CHECK(message("\"mine\"", "\"My scheme\"").find("at /name: expected a name made of a-z, 0-9 and '-'") !=
+        std::string::npos);
+  CHECK(message("\"mine\"", "\"plan\"").find("at /name: expected a name of its own") != std::string::npos);
+  CHECK(message("{theta}", "{thetas}").find("/refuse/0/because: unknown name \"thetas\"") != std::string::npos);
+  CHECK(message("{theta}", "{theta").find("none closes it") != std::string::npos);
+  CHECK(message("\"mine\",", "\"mine\"").starts_with("mine.json:3:"));
+}
+
+TEST_CASE("names of a plan are told apart, and those that formulas know are taken", "[plan-file]") {
+  CHECK(message("\"let\": {", "\"let\": {\"h\": 2, ").find("the name \"h\" is taken") != std::string::npos);
+  CHECK(message("\"let\": {", "\"let\": {\"theta\": 2, ").find("is that of a parameter already") != std::string::npos);
+  CHECK(message("\"let\": {", "\"let\": {\"v\": 2, ").find("is that of a slot already") != std::string::npos);
+  CHECK(message("\"let\": {", "\"let\": {\"2x\": 2, ").find("cannot stand in a formula") != std::string::npos);
+  CHECK(message("\"let\": {", "\"let\": {\"sin\": 2, ").find("the name \"sin\" is taken") != std::string::npos);
+  CHECK(message("\"parameters\": {", "\"parameters\": {\"pi\": {}, ").find("the name \"pi\" is taken") !=
+        std::string::npos);
+  CHECK(message("\"parameters\": {", "\"parameters\": {\"file\": {}, ").find("has the key \"file\" already") !=
+        std::string::npos);
+  CHECK(message("\"parameters\": {", "\"parameters\": {\"Beta\": {}, ").find("made of a-z, 0-9 and '_'") !=
+        std::string::npos);
+  CHECK(message("\"v\": [0, 1]}", "\"v\": [0, 1], \"z\": [0, 0]}").find("the name \"z\" is taken") != std::string::npos);
+  CHECK(message("\"v\": [0, 1]}", "\"v\": [0, 1], \"pi\": [0, 0]}").find("the name \"pi\" is taken") !=
+        std::string::npos);
+  // A name of let is known to those after it.
+  CHECK(message("\"let\": {", "\"let\": {\"a\": \"b\", \"b\": 1, ").find("unknown name \"b\"") != std::string::npos);
+}
+
+TEST_CASE("parameters of a plan have the ranges of any plugin's", "[plan-file]") {
+  CHECK(message("0.5, \"range\"", "0.4, \"range\"") ==
+        "mine.json:3: at /parameters/theta/default: the default 0.4 does not fit: 0.4 is outside [0.5, 1]");
+  CHECK(message("[0.5, 1]}", "\"]0.5, 1]\"}").find("0.5 is outside ]0.5, 1]") != std::string::npos);
+  CHECK(message("[0.5, 1]}", "\"0.5 to 1\"}").find("/parameters/theta/range: expected a range such as") !=
+        std::string::npos);
+  CHECK(message("[0.5, 1]}", "[1, 0.5]}").find("whose low end is not above its high end") != std::string::npos);
+  CHECK(message("[0.5, 1]}", "[0.5, null]}").empty());
+  CHECK(message("[0.5, 1]}", "\"[0.5, ∞[\"}").empty());
+  CHECK(message("0.5, \"range\"", "0.5, \"type\": \"integer\", \"range\"").find("expected a whole number") !=
+        std::string::npos);
+  // Without a default a study must give one, and the formulas are read all the same.
+  CHECK(message("\"default\": 0.5, ", "").empty());
+  const std::string both = message("\"default\": 0.5, \"range\": [0.5, 1]}}", "\"range\": [0.5, 1]}, \"x\": {}, \"x\": {}}");
+  CHECK(both.find("given twice") != std::string::npos);
+}
+
+TEST_CASE("a plan that is no step is told so with the default parameters", "[plan-file]") {
+  // The mass is not carried forward by h.
+  const std::string wrong = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"q + theta*h*z\"");
+  CHECK(wrong.find("with the default parameters and h = 0.001 s the plan is ill-formed: ") != std::string::npos);
+  CHECK(message("\"theta*h\", \"K\"", "\"theta*h/0\", \"K\"").find("gives an infinite value where h = 0.001, theta = 0.5") !=
+        std::string::npos);
+}
+
+TEST_CASE("what only a choice of parameters makes wrong is told with the place in the file", "[plan-file]") {
+  const ScratchFolder folder;
+  std::string text = smallest();
+  const std::string from = "\"K\": \"theta*theta*h*h\"";
+  text.replace(text.find(from), from.size(), "\"K\": \"theta*theta*h*h/(1-theta)*(1-theta)\"");
+  write_text(folder / "mine.json", text);
+  const Registry registry = registered(folder / "mine.json");
+  CHECK_THROWS_WITH(plan_of(registry, "mine", {{"theta", 1.0}}, 0.1, {}),
+                    Catch::Contains("mine.json:8: at /stages/0/matrix/K: the formula") &&
+                        Catch::Contains("where h = 0.1, theta = 1; expected a finite number"));
+  CHECK(std::holds_alternative<StepPlan>(plan_of(registry, "mine", {{"theta", 0.5}}, 0.1, {})));
+}
+
+TEST_CASE("a refusal is a sentence with the values in it", "[plan-file]") {
+  const ScratchFolder folder;
+  write_text(folder / "mine.json", smallest());
+  const Registry registry = registered(folder / "mine.json");
+  ProblemFacts facts;
+  facts.mass_kernel_dimension = 1;
+  const PlanOrRefusal answer = plan_of(registry, "mine", {}, 0.1, facts);
+  REQUIRE(std::holds_alternative<Refusal>(answer));
+  CHECK(std::get<Refusal>(answer).sentence == "theta = 0.5 on a singular mass");
+  CHECK(std::holds_alternative<StepPlan>(plan_of(registry, "mine", {{"theta", 0.75}}, 0.1, facts)));
+}
+
+TEST_CASE("weights, formulas and names of combinations are three spellings of one thing", "[plan-file]") {
+  const ScratchFolder folder;
+  std::string weights = smallest();
+  const std::string formula = "\"q + (1-theta)*h*v + theta*h*z\"";
+  weights.replace(weights.find(formula), formula.size(), R"({"q": 1, "v": "(1-theta)*h", "z": "theta*h"})");
+  write_text(folder / "a.json", smallest());
+  write_text(folder / "b.json", weights);
+  const Registry one = registered(folder / "a.json"), other = registered(folder / "b.json");
+  const auto numbers = [&](const Registry& registry) {
+    return Numbers(std::get<StepPlan>(plan_of(registry, "mine", {{"theta", 0.7}}, 0.01, {}))).all();
+  };
+  CHECK(numbers(one) == numbers(other));
+}
+
+TEST_CASE("one scheme makes its plans on several threads at once", "[plan-file]") {
+  const Registry registry = registered(plans / "newmark.json");
+  const auto* entry = registry.time("newmark-as-plan");
+  const auto scheme = entry->make(complete(entry->manual, {}));
+  const std::vector<double> expected = Numbers(std::get<StepPlan>(scheme->plan(1e-3, {}))).all();
+  int wrong = 0;
+  std::vector<std::thread> threads;
+  std::vector<int> differences(4, 0);
+  for (int& different : differences)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20; ++i)
+        different += Numbers(std::get<StepPlan>(scheme->plan(1e-3, {}))).all() != expected ? 1 : 0;
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const int different : differences) wrong += different;
+  CHECK(wrong == 0);
+}
