@@ -1,11 +1,12 @@
+#include <algorithm>
 #include <cmath>
 #include <ricochet/engine/marcher_state.hpp>
 
 namespace ricochet {
 namespace {
 
-// Of a point in contact whose force does not answer: nothing moves it.
-constexpr double infinite_compliance = 1e300;
+// An answer this small against what moves the point is none: I/κ then leaves only what is known, to round-off.
+constexpr double least_answer = 1e-17;
 
 }  // namespace
 
@@ -60,17 +61,11 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
     const int i = system.points[a];
     double target = 0;
     if (program.compliance) {
-      // (base·W + I/κ) δp = −(D δg° + D_u δu° + D₋ δg⁻)/κ, with κ = (D η + D_u η_u)/base the slope of the whole.
       const ContactSlopes slopes = program_.law->slopes(i, lane);
-      if (slopes.viscosity == 0 && slopes.before == 0) {
-        system.right[a] = -state.free.at(i, tangent);
-        continue;
-      }
-      const double stiffness = system.slopes[a];
       double push = slopes.stiffness * state.free.at(i, tangent);
       if (state.rate.rows() > 0) push += slopes.viscosity * state.rate.at(i, tangent);
       if (state.before.rows() > 0) push += slopes.before * state.before.at(i, tangent);
-      system.right[a] = stiffness != 0 ? -push / stiffness : 0.0;
+      system.right[a] = -push / system.slopes[a];
       continue;
     }
     if (program.gate) {
@@ -86,8 +81,10 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
 }
 
 // Derivatives of the efforts of every lane that was looked at: with the active set A of the lane,
-//     rigid:      reach·W_AA δp = target − δy°            compliant:  (base·W_AA + I/κ) δp = −(D δg° + D_u δu° + D₋
-//     δg⁻)/κ
+//     rigid:      base·W_AA δp = target − δy°
+//     compliant:  (base·W_AA + I/κ) δp = −(D δg° + D_u δu° + D₋ δg⁻)/κ,    κ = (D η + D_u η_u)/base
+//
+// where base is η, or η_u where the effort moves the rate alone; where it moves neither, δp = −(…), and κ is 1.
 void Marcher::tangent_contact(StageProgram& program, StageState& state) {
   ActiveSystem& system = state.tangents;
   const double reach = program.measure_z * program.effort[0];
@@ -112,16 +109,17 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     const double base = reach != 0 || !program.compliance ? reach : rate_reach;
     for (std::size_t a = 0; a < system.points.size(); ++a) {
       double compliance = 0;
+      const double* column = base != 0 ? state.delassus->column(system.points[a]) : nullptr;
       if (program.compliance) {
+        const double mobility = column ? base * column[system.points[a]] : 0.0;
         const ContactSlopes slopes = program_.law->slopes(system.points[a], lane);
         double& stiffness = system.slopes[a];
-        stiffness = slopes.stiffness;
-        if (slopes.viscosity != 0 || slopes.before != 0)
-          // An effort that no displacement of its own step moves follows from what is known.
-          stiffness = base != 0 ? (slopes.stiffness * reach + slopes.viscosity * rate_reach) / base : 1.0;
-        compliance = stiffness != 0 ? 1 / stiffness : infinite_compliance;
+        stiffness = 1;
+        if (mobility > 0)
+          stiffness =
+              std::max((slopes.stiffness * reach + slopes.viscosity * rate_reach) / base, least_answer / mobility);
+        compliance = 1 / stiffness;
       }
-      const double* column = base != 0 ? state.delassus->column(system.points[a]) : nullptr;
       for (std::size_t b = 0; b < system.points.size(); ++b)
         system.at(b, a) = (column ? base * column[system.points[b]] : 0.0) + (a == b ? compliance : 0.0);
     }

@@ -179,8 +179,11 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
     state.force = 0;
   }
   const LaneOutcome& outcome = view.outcome[lane];
-  if ((view.touched_lanes >> lane) & 1u)
+  if ((view.touched_lanes >> lane) & 1u) {
     contact.most_iterations = std::max(contact.most_iterations, outcome.iterations);
+    // Also where no effort is left: a damped law lets go while its spring is still pressed.
+    state.step_law += view.program->momentum * outcome.dissipation;
+  }
   if ((view.contact_lanes >> lane) & 1u) {
     const double momentum = view.program->momentum;
     for (int j = 0; j < model_.problem().points(); ++j) {
@@ -192,7 +195,6 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
       contact.impulse += momentum * std::abs(p);
     }
     contact.residual = std::max(contact.residual, outcome.residual);
-    state.step_law += momentum * outcome.dissipation;
     state.in_contact = true;
   }
   if (view.program->closes_instant) close_instant(view, state);

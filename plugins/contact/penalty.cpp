@@ -1,15 +1,10 @@
 #include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/contract/plugin.hpp>
+
+#include "power_law.hpp"
 
 namespace {
 
 using namespace ricochet;
-
-Evaluation evaluation_of(const std::string& word) {
-  if (word == "averaged") return Evaluation::averaged;
-  if (word == "explicit") return Evaluation::explicit_start;
-  return Evaluation::implicit_end;
-}
 
 /// Linear springs behind the stops: p = κ (lower − g)₊ − κ (g − upper)₊. With g = g° + reach·W p this is the box
 /// problem lower ≤ g + p/κ ⊥ p ≤ upper: a shifted diagonal, closed form when reach = 0.
@@ -45,11 +40,28 @@ class Penalty final : public ContactLaw {
   std::vector<double> stiffness_;
 };
 
+/// The same springs by the difference of their energy over the step: p = [U(δ) − U(δ⁻)]/(δ − δ⁻), U = ½κδ₊². Within
+/// contact that is the mean of both ends; where it begins or ends it is not linear any more.
+class ConservingPenalty final : public PointwiseContact {
+ public:
+  ConservingPenalty() : PointwiseContact(Evaluation::conserving) {}
+  std::optional<double> constant_stiffness(int lane) const override { return law(lane).stiffness; }
+
+ private:
+  void set_lanes(std::span<const Parameters> lanes) override {
+    laws_.clear();
+    for (const Parameters& lane : lanes) laws_.push_back({lane.real("stiffness"), 1});
+  }
+  PointForce force(const ContactState& state) const override {
+    return law(state.lane).between(state.depth, state.before);
+  }
+  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
+  const PowerLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+
+  std::vector<PowerLaw> laws_;
+};
+
 void register_all(Registry& registry) {
-  ParameterSpec stiffness = real_parameter("stiffness", "N/m", std::nullopt, {.low = 0, .low_open = true},
-                                           "κ, stiffness of the spring at each contact point");
-  stiffness.per_lane = true;
-  stiffness.role = ParameterRole::stiffness;
   registry.add_contact(
       {.name = "penalty",
        .summary = "linear springs behind the stops",
@@ -57,13 +69,20 @@ void register_all(Registry& registry) {
            "A point that passes a stop by δ is pushed back with κ δ. Where in the step δ is measured is `evaluation`: "
            "implicit at the end of the step, averaged over the levels over which the scheme averages the elastic "
            "force, "
-           "explicit at what is known when the step begins (then the step is limited by √(m/κ)). The restitution of "
-           "the time scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the "
+           "explicit at what is known when the step begins (then the step is limited by √(m/κ)), conserving by the "
+           "difference of the springs' energy over the step, which the energy of the scheme then gives and takes back "
+           "to round-off. The restitution of the time scheme has no part in it. The stiffness is per contact point: "
+           "with stops at all nodes, the "
            "stop's stiffness per metre grows as the mesh is refined.",
-       .source = "Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli (2006)",
-       .parameters = {stiffness, word_parameter("evaluation", {"implicit", "averaged", "explicit"}, "implicit",
-                                                "the level at which the spring force is evaluated")}},
-      [](const Parameters& p) { return std::make_unique<Penalty>(evaluation_of(p.word("evaluation"))); });
+       .source = "Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli (2006); "
+                 "conserving: Simo and Tarnow (1992), Armero and Petocz (1998)",
+       .parameters = {with_role(stiffness_parameter("N/m", "κ, stiffness of the spring at each contact point"),
+                                ParameterRole::stiffness),
+                      evaluation_parameter(true)}},
+      [](const Parameters& p) -> std::unique_ptr<ContactLaw> {
+        if (evaluation_of(p) == Evaluation::conserving) return std::make_unique<ConservingPenalty>();
+        return std::make_unique<Penalty>(evaluation_of(p));
+      });
 }
 
 }  // namespace

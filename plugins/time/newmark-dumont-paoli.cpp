@@ -61,6 +61,10 @@ class NewmarkDumontPaoli final : public TimeScheme {
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, central_rate, {{0, 1}}, {1}};
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, central_rate, {{0, 1}}, {beta_, 1 - 2 * beta_, beta_}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
+    // Mid-step displacements: their difference is the test displacement, and E + U(g) is kept.
+    stage.at(Evaluation::conserving) = {
+        {.slots = {1, 0.5}, .z = 0.5},   {{0, 0.5}, {1, 0.5}}, central_rate, {{0, 1}}, {1},
+        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
     stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
     stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}, {{1, 0.5}, {-1, -0.5}}};
     return stage;
@@ -78,6 +82,9 @@ class NewmarkDumontPaoli final : public TimeScheme {
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};
+    // q₋₁ is taken as q₀ − h v₀: the difference is the first order's, and a start beyond a stop has no past anyway.
+    stage.at(Evaluation::conserving) = {{.slots = {1, 0.5}, .z = 0.25},  {{0, 0.5}, {1, 0.5}}, rate, {{0, 1}}, {1},
+                                        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
     stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
     return stage;
   }

@@ -18,6 +18,8 @@ std::vector<double> flat(const LaneState& state) {
     all.push_back(static_cast<double>(part->size()));
   for (const auto* part : {&state.slots, &state.efforts, &state.fastest})
     all.insert(all.end(), part->begin(), part->end());
+  // What the law remembers stands last: the count of the others says where.
+  all.insert(all.end(), state.memory.begin(), state.memory.end());
   return all;
 }
 
@@ -33,6 +35,7 @@ LaneState lane_state(const std::vector<double>& all) {
     parts[k]->assign(first, first + static_cast<std::ptrdiff_t>(count));
     at += static_cast<std::size_t>(count);
   }
+  state.memory.assign(all.begin() + static_cast<std::ptrdiff_t>(at), all.end());
   return state;
 }
 

@@ -12,7 +12,8 @@ constexpr std::size_t most_entry_numbers = 2000000;
 
 /// Numbers `entries` (not exported): parameter, start, index, value: the state of each complete orbit when its kept
 /// periods began, from which "ricochet point" marches them again: how many slots, efforts and fastest speeds, then
-/// these one after the other (see LaneState). Absent, with a note, where they would take too much room.
+/// these one after the other, then what the law remembers (see LaneState). Absent, with a note, where they would take
+/// too much room.
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts);
 
 /// The entry of one orbit of a stored case; none where the case keeps none. Throws std::runtime_error for numbers that

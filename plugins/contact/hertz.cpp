@@ -1,0 +1,48 @@
+#include "power_law.hpp"
+
+namespace {
+
+using namespace ricochet;
+
+/// p = k δ₊ⁿ at each point and side, U = k δ₊ⁿ⁺¹/(n+1); conserving: p = [U(δ) − U(δ⁻)]/(δ − δ⁻).
+class Hertz final : public PointwiseContact {
+ public:
+  using PointwiseContact::PointwiseContact;
+  std::optional<double> constant_stiffness(int lane) const override {
+    if (law(lane).exponent != 1) return std::nullopt;
+    return law(lane).stiffness;
+  }
+
+ private:
+  void set_lanes(std::span<const Parameters> lanes) override { laws_ = power_laws(lanes); }
+  PointForce force(const ContactState& state) const override {
+    const PowerLaw& law = this->law(state.lane);
+    return evaluation() == Evaluation::conserving ? law.between(state.depth, state.before) : law.at(state.depth);
+  }
+  double stored(double depth, int lane) const override { return law(lane).stored(depth); }
+  const PowerLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
+
+  std::vector<PowerLaw> laws_;
+};
+
+void register_all(Registry& registry) {
+  registry.add_contact(
+      {.name = "hertz",
+       .summary = "elastic contact whose force grows with a power of the depth",
+       .text =
+           "A point that passes a stop by δ is pushed back with k δⁿ, as a sphere on a plane is for n = 3/2; n = 1 is "
+           "the penalty. Nothing is lost: a mass m that arrives at speed v goes in by ((n+1) m v²/(2k))^(1/(n+1)) and "
+           "leaves at v. Where in the step δ is measured is `evaluation`: implicit at the end of the step, averaged "
+           "over the levels over which the scheme averages the elastic force, explicit at what is known when the step "
+           "begins, conserving by the difference of the stored energy over the step, which the energy of the scheme "
+           "then gives and takes back to round-off. The restitution of the time scheme has no part in it.",
+       .source = "Hertz (1881), Über die Berührung fester elastischer Körper; conserving: Simo and Tarnow (1992), "
+                 "Gonzalez (2000)",
+       .parameters = {stiffness_parameter("N/m^n", "k, force at a depth of 1 m at each contact point"),
+                      exponent_parameter(), evaluation_parameter(true)}},
+      [](const Parameters& p) { return std::make_unique<Hertz>(evaluation_of(p)); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(contact, hertz, register_all)

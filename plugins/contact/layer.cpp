@@ -1,0 +1,55 @@
+#include "power_law.hpp"
+
+namespace {
+
+using namespace ricochet;
+
+/// p = k (δ + D)₊, δ the depth beyond the stop and D the thickness of a layer in front of it.
+class Layer final : public PointwiseContact {
+ public:
+  using PointwiseContact::PointwiseContact;
+  double layer(int lane) const override { return thickness_[static_cast<std::size_t>(lane)]; }
+  // With a thickness the force is no multiple of the depth beyond the stop.
+  std::optional<double> constant_stiffness(int lane) const override {
+    if (layer(lane) != 0) return std::nullopt;
+    return laws_[static_cast<std::size_t>(lane)].stiffness;
+  }
+
+ private:
+  void set_lanes(std::span<const Parameters> lanes) override {
+    laws_.clear();
+    thickness_.clear();
+    for (const Parameters& lane : lanes) {
+      laws_.push_back({lane.real("stiffness"), 1});
+      thickness_.push_back(lane.real("thickness"));
+    }
+  }
+  PointForce force(const ContactState& state) const override {
+    return laws_[static_cast<std::size_t>(state.lane)].at(state.depth);
+  }
+  double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
+
+  std::vector<PowerLaw> laws_;
+  std::vector<double> thickness_;
+};
+
+void register_all(Registry& registry) {
+  ParameterSpec thickness = real_parameter("thickness", "m", 1e-3, {.low = 0},
+                                           "D, distance before the stop at which the layer is first touched");
+  thickness.per_lane = true;
+  registry.add_contact(
+      {.name = "layer",
+       .summary = "a compliant layer in front of each stop",
+       .text = "Each stop is covered by a layer of thickness D that pushes back with k times its compression: from D "
+               "before the stop on, and beyond it with the same stiffness. Penetration is measured at the stop, and is "
+               "zero as long as the layer holds. With D = 0 it is the penalty. With stops at all nodes the stiffness "
+               "per metre grows as the mesh is refined. The restitution of the time scheme has no part in it.",
+       .source = "Winkler (1867), elastic foundation, one spring per contact point",
+       .parameters = {stiffness_parameter("N/m", "k, stiffness of the layer at each contact point"), thickness,
+                      evaluation_parameter(false)}},
+      [](const Parameters& p) { return std::make_unique<Layer>(evaluation_of(p)); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(contact, layer, register_all)

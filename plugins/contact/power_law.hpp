@@ -1,0 +1,82 @@
+#pragma once
+#include <cmath>
+#include <ricochet/algebra/pointwise_contact.hpp>
+#include <ricochet/contract/plugin.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// p = k δⁿ for δ > 0, U = k δⁿ⁺¹/(n+1): what the laws of this folder have in common.
+struct PowerLaw {
+  double stiffness = 0;  ///< k, N/mⁿ
+  double exponent = 1;   ///< n ≥ 1
+
+  double stored(double depth) const { return depth > 0 ? force(depth) * depth / (exponent + 1) : 0.0; }
+  double force(double depth) const {
+    if (!(depth > 0)) return 0;
+    return exponent == 1 ? stiffness * depth : stiffness * std::pow(depth, exponent);
+  }
+  double slope(double depth) const {
+    if (!(depth > 0)) return 0;
+    return exponent == 1 ? stiffness : stiffness * exponent * std::pow(depth, exponent - 1);
+  }
+  PointForce at(double depth) const { return {.value = force(depth), .stiffness = slope(depth)}; }
+
+  /// The discrete gradient [U(δ) − U(δ⁻)]/(δ − δ⁻), whose work over the step is U(δ) − U(δ⁻) whatever the step; the
+  /// force half-way where both depths are equal to 1e-9. Written with expm1, so that it does not cancel in between.
+  PointForce between(double depth, double before) const;
+};
+
+inline PointForce PowerLaw::between(double depth, double before) const {
+  constexpr double equal = 1e-9;
+  const double change = depth - before;
+  if (std::abs(change) <= equal * std::max(std::abs(depth), std::abs(before))) {
+    const double half = 0.5 * (depth + before);
+    return {.value = force(half), .stiffness = 0.5 * slope(half), .before = 0.5 * slope(half)};
+  }
+  PointForce mean;
+  if (depth > 0 && before > 0) {
+    const double ratio = change / before, power = exponent + 1;
+    mean.value = stored(before) * std::expm1(power * std::log1p(ratio)) / change;
+  } else {
+    mean.value = (stored(depth) - stored(before)) / change;
+  }
+  mean.stiffness = (force(depth) - mean.value) / change;
+  mean.before = (mean.value - force(before)) / change;
+  return mean;
+}
+
+/// The evaluation that the word parameter `evaluation` names.
+inline Evaluation evaluation_of(const Parameters& parameters) {
+  const std::string& word = parameters.word("evaluation");
+  for (int e = 0; e < evaluations; ++e)
+    if (word == evaluation_word(static_cast<Evaluation>(e))) return static_cast<Evaluation>(e);
+  return Evaluation::implicit_end;
+}
+
+inline ParameterSpec evaluation_parameter(bool conserving) {
+  std::vector<std::string> words = {"implicit", "averaged", "explicit"};
+  if (conserving) words.push_back("conserving");
+  return word_parameter("evaluation", words, "implicit", "the level at which the contact force is evaluated");
+}
+
+inline ParameterSpec stiffness_parameter(const char* unit, const char* text) {
+  ParameterSpec stiffness = real_parameter("stiffness", unit, std::nullopt, {.low = 0, .low_open = true}, text);
+  stiffness.per_lane = true;
+  return stiffness;
+}
+
+inline ParameterSpec exponent_parameter() {
+  ParameterSpec exponent = real_parameter("exponent", "1", 1.5, {.low = 1, .high = 5},
+                                          "n, exponent of the depth: 1.5 for a sphere on a plane, 1 for a spring");
+  exponent.per_lane = true;
+  return exponent;
+}
+
+inline std::vector<PowerLaw> power_laws(std::span<const Parameters> lanes) {
+  std::vector<PowerLaw> laws;
+  for (const Parameters& lane : lanes) laws.push_back({lane.real("stiffness"), lane.real("exponent")});
+  return laws;
+}
+
+}  // namespace ricochet
