@@ -3,6 +3,7 @@
 #include <ostream>
 #include <ricochet/contract/child.hpp>
 #include <ricochet/measure/amplification.hpp>
+#include <ricochet/measure/plan_restitution.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <sstream>
 
@@ -117,6 +118,11 @@ std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
   }
   const auto& plan = std::get<StepPlan>(answer);
   print_facts(plan.facts, out);
+  if (const auto range = restitution_range(plan, step))
+    out << fmt::format(
+        "  a free mass leaves a rigid stop with {:.3g} to {:.3g} times its speed over the phases of a step, {:.3g} "
+        "in the mean\n",
+        range->least, range->most, range->mean);
   const auto root = root_at_infinity(plan);
   out << "  highest frequencies: "
       << (root ? fmt::format("a step leaves {:.4g} of them (ρ∞)", *root) : std::string("beyond an explicit step"))
@@ -145,15 +151,25 @@ std::string facts_of(const PluginManual& manual, const MassStrategy& mass) {
 }
 
 std::string facts_of(const PluginManual& manual, ContactLaw& law, const Parameters& parameters) {
-  static const char* evaluations[] = {"at the end of the step", "averaged over its levels", "where the step begins"};
   std::string text = fmt::format("facts of {} with its default parameters:\n", manual.name);
   if (law.absent()) return text + "  no contact at all\n";
   law.prepare(1, {&parameters, 1});
-  const auto reads = law.reads();
-  return text + "  reads " +
-         (reads ? std::string("the displacement ") + evaluations[static_cast<int>(*reads)]
-                : std::string("the impact measure: rigid")) +
-         (law.reads_rate() ? ", and its rate" : "") + "\n";
+  if (const auto reads = law.reads()) {
+    text += fmt::format("  reads the displacement, evaluated {}{}\n", evaluation_word(*reads),
+                        law.reads_rate() ? ", and its rate" : "");
+    const auto stiffness = law.constant_stiffness(0);
+    text += stiffness ? fmt::format("  linear: {:g} N/m whatever the depth\n", *stiffness)
+                      : std::string("  not linear: spectra of closed contact and linear references leave it out\n");
+    text += law.offers_slopes() ? "  exponents by tangents\n" : "  exponents by twins: it offers no slopes\n";
+    if (const double layer = law.layer(0); layer > 0)
+      text += fmt::format("  acts from {:g} m before the stop\n", layer);
+    if (const int kept = law.memory_per_point(); kept > 0)
+      text += fmt::format("  keeps {} number{} per point from step to step\n", kept, kept == 1 ? "" : "s");
+  } else {
+    text += "  reads the impact measure: rigid\n";
+  }
+  if (const std::string how = law.how_solved(); !how.empty()) text += "  solved: " + how + "\n";
+  return text;
 }
 
 // What a method says when it is asked. Throws whatever its plugin does wrong.
@@ -227,8 +243,9 @@ int describe_plan(const std::filesystem::path& file, std::ostream& out) {
     throw StudyError(source.explain(error));
   }
   const std::string name = registry.names(Role::time).front();
-  print_manual(Role::time, *registry.manual(Role::time, name), registry, out);
-  return exit_done;
+  const Catalogue catalogue({}, {}, {});
+  return print_manual(Role::time, *registry.manual(Role::time, name), catalogue, registry, out) ? exit_done
+                                                                                                : exit_some_failed;
 }
 
 }  // namespace
