@@ -69,6 +69,7 @@ PointwiseSolver::Answer PointwiseSolver::Lane::answer(int i, double x) const {
 
 // Of F, through the numbers that it is made of.
 double PointwiseSolver::Lane::round_off(int i, double terms, double p, const Answer& answer) const {
+  if (!answer.finite()) return 0;
   const std::size_t k = at(i);
   double sum = std::abs(p) + std::abs(answer.force);
   sum += answer.stiffness * (std::abs(problem.free[k]) + answer.bound + problem.reach * terms);
@@ -260,13 +261,14 @@ LaneOutcome PointwiseSolver::finish(const Lane& lane, bool converged, int iterat
     slopes_[static_cast<std::size_t>(i) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane.lane)] = {
         answer.stiffness, answer.viscosity, answer.before};
     if (wrong == 0) continue;
-    double apart = 0;
-    if (converged && wrong > lane.round_off(i, terms_[i], p, answer))
-      apart = problem.reach * lane.slack(i, terms_[i], answer);
-    else if (problem.reach > 0)
-      apart = wrong / (answer.stiffness + 1 / (problem.reach * problem.delassus->column(i)[i]));
-    else if (answer.stiffness > 0)
-      apart = wrong / answer.stiffness;
+    const bool bridged = converged && wrong > lane.round_off(i, terms_[i], p, answer);
+    const double mobility = problem.delassus->column(i)[i];
+    // By how much the measure, or where no effort moves it the depth, is off.
+    double apart = wrong / (1 + lane.weight(answer) * mobility);
+    if (problem.reach > 0)
+      apart = problem.reach * (bridged ? lane.slack(i, terms_[i], answer) : mobility * apart);
+    else
+      apart = answer.stiffness > 0 && !bridged ? apart / answer.stiffness : 0.0;
     outcome.residual = std::max(outcome.residual, apart);
   }
   if (!std::isfinite(outcome.residual)) outcome = {false, iterations, infinity};
