@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy_audit.hpp>
@@ -87,6 +88,11 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   put("active_set_changes", static_cast<double>(contact.active_set_changes));
   put("impulse", contact.impulse);
   put("complementarity_residual", contact.residual);
+  put("law_iterations", contact.most_iterations);
+  if (marcher.law().reads()) put("dissipated_by_law", energy.work_of_law);
+  const std::vector<Stage>& stages = marcher.program().plan.stages;
+  if (std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return !stage.loss.empty(); }))
+    put("dissipated_by_scheme", energy.work_of_scheme);
   if (contact.first_impact >= 0) put("first_impact", contact.first_impact);
   if (contact.first_release >= 0) put("first_release", contact.first_release);
   if (marcher.status(0).running) put("tip_displacement_end", marcher.tip(0));

@@ -44,6 +44,14 @@ const std::vector<MeasureInfo>& trajectory_measures() {
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity)."},
+      {"law_iterations", "1", "Most iterations that one solve of the contact law took."},
+      {"dissipated_by_law", "J",
+       "Energy that a compliant law itself took out over the run, by the power that it reports: the share of a damper "
+       "in what is dissipated at contact."},
+      {"dissipated_by_scheme", "J",
+       "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
+       "the "
+       "scheme declares its losses."},
       {"first_impact", "s", "Time at which a contact point first closed."},
       {"first_release", "s", "Time at which a contact point first opened again."},
       {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run."},

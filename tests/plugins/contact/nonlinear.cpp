@@ -27,7 +27,7 @@ std::string word(const char* text) {
 }
 
 struct Bounce {
-  double speed = 0, deepest = 0, contact = 0, taken = 0;
+  double speed = 0, place = 0, deepest = 0, contact = 0, taken = 0;
   EnergyTotals energy;
 };
 
@@ -38,7 +38,8 @@ Bounce bounce(const Choice& law, double h, double duration = 0.25, const SceneSp
   REQUIRE(mass.status(0).running);
   const ContactTotals& contact = audit.contact(0);
   REQUIRE(contact.impacts == 1);
-  return {audit.tip_velocity(0), contact.deepest_penetration, contact.first_release - contact.first_impact,
+  return {audit.tip_velocity(0),       mass.tip(0),
+          contact.deepest_penetration, contact.first_release - contact.first_impact,
           audit.totals(0).work_of_law, audit.totals(0)};
 }
 
@@ -101,10 +102,11 @@ TEST_CASE("Hertz: depth, duration and speed of an impact in closed form") {
     CHECK(b.speed == Approx(1).margin(scale * scale));
     CHECK(b.taken == 0);
     steps.push_back(std::log(h));
-    errors.push_back(std::log(std::abs(b.deepest - deepest)));
+    // Where a mass is that left at 1 m/s: the duration of the contact, free of the grid of steps.
+    errors.push_back(std::log(std::abs(b.place - (0.25 - 0.0123 - lasting * deepest))));
   }
-  // Depths are read at steps, up to h²/8 of the deceleration beside the deepest: order two, unsteadily.
-  CHECK(fitted_slope(steps, errors) > 1.5);
+  INFO("errors " << std::exp(errors[0]) << " to " << std::exp(errors.back()));
+  CHECK(fitted_slope(steps, errors) == Approx(2).margin(0.3));
 }
 
 TEST_CASE("Hertz with exponent 1 is the penalty") {
@@ -135,7 +137,8 @@ TEST_CASE("Hunt and Crossley: the restitution follows from χv alone") {
     const Bounce b = bounce(
         {"hunt-crossley", {{"stiffness", 1e4}, {"exponent", n}, {"damping", chi}, {"evaluation", evaluation}}}, h);
     // What the law reports is what the mass lost, to the order of the scheme.
-    CHECK(b.taken == Approx(0.5 * (1 - b.speed * b.speed)).margin(100 * h));
+    // The end of the step is later than its middle by h/2: a loss of its own, 115 h at n = 1.
+    CHECK(b.taken == Approx(0.5 * (1 - b.speed * b.speed)).margin(150 * h));
     return std::abs(b.speed - damped_restitution(chi));
   };
   INFO("χv " << chi << ", n " << n << ", " << evaluation);
@@ -227,12 +230,54 @@ TEST_CASE("a layer acts before the stop, and penetration is measured at the stop
   CHECK(mass.law().potential(-D, 0) == 0);
 }
 
+TEST_CASE("tangents of nonlinear laws are the derivative of the step, by all three slopes") {
+  const auto law = GENERATE(Choice{"hunt-crossley", {{"stiffness", 300.0}, {"damping", 0.4}}},
+                            Choice{"hertz", {{"stiffness", 300.0}}});
+  const auto evaluation = GENERATE(word("implicit"), word("averaged"), word("explicit"), word("conserving"));
+  const auto place = GENERATE(StopsSpec::Place::tip, StopsSpec::Place::nodes);
+  if (law.name == "hunt-crossley" && evaluation == "conserving") return;
+  Choice choice = law;
+  choice.values["evaluation"] = evaluation;
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = 1e-4;
+  scene.stops.place = place;
+  CompileOptions options;
+  options.tangents = 1;
+  const auto three = [](const LaneSpec& lane) { return std::vector<LaneSpec>(3, lane); };
+  Marcher beam = marcher(scene, 4, {{"consistent"}, choice, {"newmark-dumont-paoli"}}, 1e-4, options, three);
+  beam.start();
+  const LaneState base = beam.lane_state(0);
+  const auto shifted = [](LaneState state, const LaneState& way, double by) {
+    for (std::size_t i = 0; i < state.slots.size(); ++i) state.slots[i] += by * way.slots[i];
+    return state;
+  };
+  LaneState way = base;
+  std::fill(way.efforts.begin(), way.efforts.end(), 0.0);
+  const double offset = 1e-5;
+  beam.set_tangent(0, 0, way);
+  beam.set_lane(1, beam.program().lanes[0], shifted(base, way, offset));
+  beam.set_lane(2, beam.program().lanes[0], shifted(base, way, -offset));
+  EnergyAudit audit(beam);
+  // Into the first contact and out of it, with free flight behind.
+  beam.march(1500, &audit);
+  REQUIRE(audit.contact(0).contact_steps > 100);
+  const LaneState tangent = beam.tangent(0, 0), ahead = beam.lane_state(1), behind = beam.lane_state(2);
+  double wrong = 0, size = 0;
+  for (std::size_t i = 0; i < tangent.slots.size(); ++i) {
+    const double difference = (ahead.slots[i] - behind.slots[i]) / (2 * offset);
+    wrong += std::pow(tangent.slots[i] - difference, 2);
+    size += difference * difference;
+  }
+  INFO(law.name << ", " << evaluation << ", relative error " << std::sqrt(wrong / size));
+  // offset² from the curvature, round-off over the offset, and steps at the edge of contact, where slopes are small.
+  CHECK(std::sqrt(wrong / size) < 1e-6);
+}
+
 TEST_CASE("tangents and twins of nonlinear laws agree, and a law without slopes has no tangents") {
   const auto law = GENERATE(
       Choice{"hunt-crossley", {{"stiffness", 300.0}, {"damping", 0.4}, {"evaluation", std::string("implicit")}}},
       Choice{"hunt-crossley", {{"stiffness", 300.0}, {"damping", 0.4}, {"evaluation", std::string("averaged")}}},
       Choice{"hunt-crossley", {{"stiffness", 300.0}, {"damping", 0.4}, {"evaluation", std::string("explicit")}}},
-      Choice{"hertz", {{"stiffness", 300.0}, {"evaluation", std::string("conserving")}}},
       Choice{"layer", {{"stiffness", 100.0}, {"thickness", 0.05}}});
   const int steps = 400, periods = 200;
   const double pulsation = 2.2, h = 2 * std::numbers::pi / pulsation / steps;
