@@ -104,8 +104,10 @@ void register_all(Registry& registry) {
            "regular mass only. At a rigid stop the combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: for e > 0 "
            "q_{n+1} itself may pass the stop by O(h).",
        .source = "Courant, Friedrichs and Lewy (1928); Paoli and Schatzman (2002) for the constrained combination",
-       // Key, unit, default (std::nullopt: the study must give it), range, meaning.
-       .parameters = {real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient")}},
+       // Key, unit, default (std::nullopt: the study must give it), range, meaning; references find e by its role.
+       .parameters = {with_role(
+           real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+           ParameterRole::restitution)}},
       // Makes the scheme from checked values.
       [](const Parameters& p) { return std::make_unique<Scheme>(p.real("restitution")); });
 }
