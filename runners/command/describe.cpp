@@ -134,7 +134,9 @@ std::string facts_of(const PluginManual& manual, const TimeScheme& scheme) {
 std::string facts_of(const PluginManual& manual, const MassStrategy& mass) {
   constexpr int elements = 4;
   std::string text = fmt::format("facts of {} with its default parameters, on {} elements:\n", manual.name, elements);
-  for (const StructureSpec& structure : {StructureSpec(BeamSpec{}), StructureSpec(BarSpec{})}) {
+  BeamSpec beam;
+  beam.section = {.type = Section::Type::given, .EI = 1, .rhoS = 1};
+  for (const StructureSpec& structure : {StructureSpec(beam), StructureSpec(BarSpec{})}) {
     const FiniteElementSpace space = make_space(structure, elements);
     const InertiaOrRefusal answer = mass.build(space);
     if (const auto* refusal = std::get_if<Refusal>(&answer)) {

@@ -105,11 +105,15 @@ TEST_CASE("a declared kernel is the real one") {
 }
 
 TEST_CASE("the masses of this tree pass on meshes coarse and fine") {
-  const int elements = GENERATE(1, 2, 3, 50, 1000);
+  const int elements = GENERATE(1, 2, 3, 50, 500);
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
   Registry registry;
   catalogue.open_all(registry);
-  for (const StructureSpec& structure : {StructureSpec(BeamSpec{}), StructureSpec(BarSpec{})})
+  REQUIRE(registry.names(Role::mass).size() >= 4);
+  BeamSpec beam;
+  beam.length = 1.501;
+  beam.section = {.type = Section::Type::given, .EI = 1, .rhoS = 1};
+  for (const StructureSpec& structure : {StructureSpec(beam), StructureSpec(BarSpec{})})
     for (const std::string& name : registry.names(Role::mass)) {
       const auto* entry = registry.mass(name);
       std::vector<Parameters> choices(1);

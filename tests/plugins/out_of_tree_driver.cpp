@@ -30,7 +30,7 @@ const std::map<std::string, std::string> broken = {
     {"one-more-field", "built for another ABI: layout: Stage: expected " + std::to_string(sizeof(ricochet::Stage)) +
                            " bytes, found " + std::to_string(sizeof(ricochet::Stage) + sizeof(double)) +
                            "; rebuild it against this version of Ricochet"},
-    {"undefined", "cannot be loaded: undefined symbol: nowhere(double)\n"},
+    {"undefined", "cannot be loaded: undefined symbol: nowhere(double)"},
     {"parameter-name", "declares the parameter 'name', a key that every method has already; choose another"},
 };
 

@@ -5,6 +5,10 @@
 
 #include "stand_in.hpp"
 
+[[maybe_unused]] static void stay() {
+  for (;;) pause();
+}
+
 [[gnu::constructor]] static void at_load() {
   ENDING;
 }
