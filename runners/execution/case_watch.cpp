@@ -30,17 +30,25 @@ struct FixedText {
   }
 };
 
-struct Slot {
-  pthread_t thread{};
-  clockid_t clock{};
-  const PluginCall* call = nullptr;  // found beforehand: a handler may not be the first to ask for a thread's variable
-  TicketPointer ticket, outermost;
-  unsigned asked = 0;
-  std::atomic<unsigned> answered{0};
+// What a thread says of itself, all of one moment.
+struct Answer {
+  const CaseTicket* ticket = nullptr;
+  double processor_seconds = 0;
   unsigned long long serial = 0;
   FixedText<32> role, function;
   FixedText<256> name;
   FixedText<1024> file;
+};
+
+struct Slot {
+  pthread_t thread{};
+  const PluginCall* call = nullptr;  // found beforehand: a handler may not be the first to ask for a thread's variable
+  TicketPointer ticket, outermost;
+  unsigned asked = 0;
+  std::atomic<unsigned> answered{0};
+  Answer answer;    // the thread's own
+  SeenThread last;  // and what is known of it
+  bool known = false;
 };
 
 std::mutex slots_mutex;
@@ -51,16 +59,21 @@ std::list<Slot>& slots() {
 constinit thread_local Slot* my_slot = nullptr;
 constinit thread_local const CaseTicket* my_ticket = nullptr;
 
-extern "C" void answer(int) {
+extern "C" void on_question(int) {
   Slot* const slot = my_slot;
   if (!slot) return;
   const PluginCall call = *slot->call;
-  slot->serial = call.plugin ? call.serial : 0;
+  Answer& answer = slot->answer;
+  answer.ticket = my_ticket;
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  answer.processor_seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  answer.serial = call.plugin ? call.serial : 0;
   if (call.plugin) {
-    slot->role.set(call.plugin->role.c_str());
-    slot->name.set(call.plugin->name.c_str());
-    slot->file.set(call.plugin->file.c_str());
-    slot->function.set(call.function);
+    answer.role.set(call.plugin->role.c_str());
+    answer.name.set(call.plugin->name.c_str());
+    answer.file.set(call.plugin->file.c_str());
+    answer.function.set(call.function);
   }
   slot->answered.fetch_add(1, std::memory_order_release);
 }
@@ -68,7 +81,7 @@ extern "C" void answer(int) {
 void listen_to_questions() {
   static const bool once = [] {
     struct sigaction action {};
-    action.sa_handler = answer;
+    action.sa_handler = on_question;
     action.sa_flags = SA_RESTART | SA_ONSTACK;
     return ::sigaction(kAsk, &action, nullptr) == 0;
   }();
@@ -106,7 +119,6 @@ void enter_thread() {
   const std::lock_guard guard(slots_mutex);
   Slot& slot = slots().emplace_back();
   slot.thread = ::pthread_self();
-  ::pthread_getcpuclockid(slot.thread, &slot.clock);
   slot.call = &current_plugin_call();
   my_slot = &slot;
 }
@@ -117,10 +129,26 @@ void leave_thread() {
   slots().remove_if([&](const Slot& one) { return &one == slot; });
 }
 
-double seconds_of(clockid_t clock) {
-  timespec now{};
-  return ::clock_gettime(clock, &now) == 0 ? static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec)
-                                           : 0;
+bool answered(const Slot& slot) {
+  return slot.answered.load(std::memory_order_acquire) == slot.asked;
+}
+
+// Takes note of an answer; what was said in an earlier case is none.
+void note_answer(Slot& slot) {
+  const Answer& said = slot.answer;
+  slot.known = slot.asked > 0 && slot.ticket && said.ticket == slot.ticket.get();
+  if (!slot.known) return;
+  SeenThread& seen = slot.last = SeenThread{};
+  seen.thread = slot.thread;
+  seen.ticket = slot.ticket;
+  seen.outermost = slot.outermost;
+  seen.processor_seconds = said.processor_seconds;
+  seen.serial = said.serial;
+  if (said.serial == 0) return;
+  const PluginIdentity plugin{said.role.text.data(), said.name.text.data(), said.file.text.data()};
+  seen.role = plugin.role;
+  seen.plugin = plugin.text();
+  seen.function = said.function.text.data();
 }
 
 }  // namespace
@@ -177,30 +205,22 @@ std::vector<SeenThread> look_at_threads() {
   using std::chrono::steady_clock;
   listen_to_questions();
   const std::lock_guard guard(slots_mutex);
-  const auto answered = [](const Slot& slot) { return slot.answered.load(std::memory_order_acquire) == slot.asked; };
   for (Slot& slot : slots())
-    // One that still owes an answer is not asked again: it may be writing it.
+    // One that still owes an answer is not asked again: it may be writing it. Its last one stands, on a machine that is
+    // so loaded that a thread does not come to its turn.
     if (slot.ticket && answered(slot)) {
+      note_answer(slot);
       ++slot.asked;
       ::pthread_kill(slot.thread, kAsk);
     }
-  const auto give_up = steady_clock::now() + std::chrono::milliseconds(50);
-  while (!std::all_of(slots().begin(), slots().end(), answered) && steady_clock::now() < give_up)
+  const auto late = steady_clock::now() + std::chrono::milliseconds(50);
+  while (!std::all_of(slots().begin(), slots().end(), answered) && steady_clock::now() < late)
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   std::vector<SeenThread> seen;
-  for (const Slot& slot : slots()) {
-    if (!slot.ticket || !answered(slot)) continue;
-    SeenThread& one = seen.emplace_back();
-    one.thread = slot.thread;
-    one.ticket = slot.ticket;
-    one.outermost = slot.outermost;
-    one.processor_seconds = seconds_of(slot.clock);
-    one.serial = slot.serial;
-    if (slot.serial == 0) continue;
-    const PluginIdentity plugin{slot.role.text.data(), slot.name.text.data(), slot.file.text.data()};
-    one.role = plugin.role;
-    one.plugin = plugin.text();
-    one.function = slot.function.text.data();
+  for (Slot& slot : slots()) {
+    if (!slot.ticket) continue;
+    if (answered(slot)) note_answer(slot);
+    if (slot.known && slot.last.ticket == slot.ticket) seen.push_back(slot.last);
   }
   return seen;
 }

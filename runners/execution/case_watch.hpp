@@ -68,7 +68,7 @@ struct SeenThread {
   std::string role, plugin, function;  ///< "contact", "contact 'x' (file)", "solve"
 };
 
-/// Asks every thread that works for a case. A thread that does not answer within some milliseconds is left out.
+/// Asks every thread that works for a case. What a thread said last stands until it answers again.
 std::vector<SeenThread> look_at_threads();
 
 }  // namespace ricochet
