@@ -163,10 +163,51 @@ void require_twins(const std::string& file, const std::string& name, const std::
           continue;
         }
         const auto& step = std::get<StepPlan>(mine);
-        CHECK_FALSE(check_plan(step));
+        CHECK(check_plan(step) == check_plan(std::get<StepPlan>(theirs)));
         CHECK(step.slots == std::get<StepPlan>(theirs).slots);
         CHECK(Numbers(step).all() == Numbers(std::get<StepPlan>(theirs)).all());
       }
+}
+
+// Two sub-steps written as numbers: trapezium to t + gh, then v₁ = v_n + h(q₀a_n + q₁a_g + q₂z) and the same for q₁.
+StepPlan two_sub_steps(double rho, double split, double h, bool singular_mass) {
+  const double g = split > 0 ? split : (rho == 1 ? 0.5 : (2 - std::sqrt(2 + 2 * rho)) / (1 - rho));
+  const double q1 = (rho + 1) / (2 * g * (rho - 1) + 4), q2 = 0.5 - g * q1, q0 = 1 - q1 - q2;
+  const double d = g * h, half = d / 2, curve = d * d / 4, w = q2 * h;
+  const double later = q1 * h - d / 2, earlier = q0 * h - d / 2, shared = d * d / 4 - 0.5 * q0 * h * d;
+  const auto ask = [](Stage& stage, double at, const Combination& end, const Combination& rate) {
+    stage.load = {{at, 1}};
+    stage.impact = {.value = end, .bound = {{at, 1}}};
+    stage.at(Evaluation::implicit_end) = {end, {{at, 1}}, rate, {{at, 1}}};
+    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
+    stage.at(Evaluation::explicit_start) = {{.slots = end.slots}, {{at, 1}}, {.slots = rate.slots}, {{at, 1}}};
+  };
+  Stage start, first, second;
+  start.matrix = {1, 0, singular_mass ? curve : 0};
+  start.history = {{0, 0, -1}, {0, -1, 0}};
+  start.load = {{0, 1}};
+  start.impact = {.value = {.slots = {1, d}, .z = 0.5 * d * d}, .bound = {{g, 1}}};
+  for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+    start.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}};
+  start.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
+  const Combination middle{{1, d, curve}, curve}, middle_rate{{0, 1, half}, half};
+  first.matrix = {1, half, curve};
+  first.history = {{0, 0, -1}, {0, -1, -d}, {0, -half, -curve}};
+  first.update = {middle, middle_rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 1}}};
+  ask(first, g, middle, middle_rate);
+  const Combination end{{1, h - d, shared + w * later, shared + w * earlier}, w * w}, rate{{0, 1, later, earlier}, w};
+  second.matrix = {1, w, w * w};
+  for (std::size_t j = 0; j < 4; ++j) second.history.push_back({0, -rate.slots[j], -end.slots[j]});
+  second.update = {end, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
+  ask(second, 1, end, rate);
+  StepPlan plan;
+  plan.slots = {"q", "v", "a", "b"};
+  plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
+  plan.start = {start};
+  plan.stages = {first, second};
+  plan.velocity = {.slots = {0, 1}};
+  plan.facts.order = 2;
+  return plan;
 }
 
 const std::string& smallest() {
@@ -213,6 +254,20 @@ std::string message(const std::string& from, const std::string& to) {
 TEST_CASE("Newmark as a plan has the bits of its plugin", "[plan-file]") {
   require_twins("newmark.json", "newmark-as-plan", "newmark",
                 {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.0}, {"gamma", 0.7}}});
+}
+
+TEST_CASE("Bathe's two sub-steps as a plan have the bits of the same sums in C++", "[plan-file]") {
+  const Registry stated = registered(plans / "bathe.json");
+  for (const auto& [rho, split] : {std::pair(0.0, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {0.3, 0.25}})
+    for (const double h : {1e-2, 3.1e-5})
+      for (const int kernel : {0, 2}) {
+        ProblemFacts facts;
+        facts.mass_kernel_dimension = kernel;
+        const PlanOrRefusal mine = plan_of(stated, "bathe-as-plan", {{"rho_inf", rho}, {"split", split}}, h, facts);
+        REQUIRE(std::holds_alternative<StepPlan>(mine));
+        CHECK_FALSE(check_plan(std::get<StepPlan>(mine)));
+        CHECK(Numbers(std::get<StepPlan>(mine)).all() == Numbers(two_sub_steps(rho, split, h, kernel > 0)).all());
+      }
 }
 
 TEST_CASE("a plan is checked when it is read, and every error has its place", "[plan-file]") {
@@ -292,6 +347,10 @@ TEST_CASE("a plan that is no step is told so with the default parameters", "[pla
   // The mass is not carried forward by h.
   const std::string wrong = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"q + theta*h*z\"");
   CHECK(wrong.find("with the default parameters and h = 0.001 s the plan is ill-formed: ") != std::string::npos);
+  CHECK(wrong.find("a step moves a free mass at 1 m/s by 0.0005 m") != std::string::npos);
+  const std::string gains = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"1.01*q + (1-theta)*h*v + theta*h*z\"");
+  CHECK(gains.find("at /: ") == std::string::npos);
+  CHECK(gains.find("ill-formed: a free mass at rest at 1 m is at") != std::string::npos);
   CHECK(message("\"theta*h\", \"K\"", "\"theta*h/0\", \"K\"").find("gives an infinite value where h = 0.001, theta = 0.5") !=
         std::string::npos);
 }
