@@ -241,7 +241,8 @@ std::string PlanValues::sentence(const JsonPlace& place) {
     const std::size_t close = text.find('}', open);
     if (close == std::string::npos)
       throw InputError(place.pointer(), "a brace opens a formula and none closes it; expected {formula}");
-    result += fmt::format("{:g}", number(text.substr(open + 1, close - open - 1), place.pointer()));
+    numbers_.read(text.substr(open + 1, close - open - 1), place.pointer());
+    result += fmt::format("{:g}", numbers_.value());
     at = close + 1;
   }
   return result;
