@@ -38,7 +38,8 @@ Json combination() {
   return {{"anyOf", Json::array({{{"type", "string"}}, named(number())})}};
 }
 Json matrices() {
-  return {{"anyOf", Json::array({{{"type", "string"}}, closed({{"M", number()}, {"C", number()}, {"K", number()}}, {})})}};
+  return {
+      {"anyOf", Json::array({{{"type", "string"}}, closed({{"M", number()}, {"C", number()}, {"K", number()}}, {})})}};
 }
 
 Json compliance() {
@@ -96,12 +97,13 @@ Json stage() {
 }
 
 Json plan() {
-  const Json parameter = closed({{"default", described({{"type", Json::array({"number", "boolean"})}}, "None: required.")},
-                                 {"range", described({{"type", Json::array({"array", "string"})}}, "[0, 1], \"]0, 1[\".")},
-                                 {"unit", described(text(), "SI; \"1\" without one.")},
-                                 {"text", described(text(), "One sentence.")},
-                                 {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")}},
-                                {});
+  const Json parameter =
+      closed({{"default", described({{"type", Json::array({"number", "boolean"})}}, "None: required.")},
+              {"range", described({{"type", Json::array({"array", "string"})}}, "[0, 1], \"]0, 1[\".")},
+              {"unit", described(text(), "SI; \"1\" without one.")},
+              {"text", described(text(), "One sentence.")},
+              {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")}},
+             {});
   const Json refusal = closed({{"when", described(truth(), "The formula that decides.")},
                                {"because", described(text(), "Why, and what to do.")}},
                               {"when", "because"});

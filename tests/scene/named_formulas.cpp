@@ -22,7 +22,7 @@ TEST_CASE("a formula has the bits of the same expression in C++") {
     for (const double b : {0.3, 0.25, 0.1}) {
       formulas.set("h", h);
       formulas.set("b", b);
-      // The last two are among those that a merging parser rounds otherwise.
+      // The last is among those that a merging parser rounds otherwise.
       CHECK(value(formulas, "(0.5-b)*h*h") == (0.5 - b) * h * h);
       CHECK(value(formulas, "0.5*(b-h/2)*h*h") == 0.5 * (b - h / 2) * h * h);
       CHECK(value(formulas, "h*3*b*3") == h * 3 * b * 3);
@@ -54,7 +54,8 @@ TEST_CASE("what is no formula is told with its place, an unknown name with the n
   NamedFormulas formulas;
   CHECK_THROWS_WITH(formulas.read("h", "/here"), Contains("no name may appear"));
   formulas.set("gamma", 1);
-  CHECK_THROWS_WITH(formulas.read("gama*2", "/here"), Contains("the names are gamma") && Contains("did you mean \"gamma\"?"));
+  CHECK_THROWS_WITH(formulas.read("gama*2", "/here"),
+                    Contains("the names are gamma") && Contains("did you mean \"gamma\"?"));
   CHECK_THROWS_WITH(formulas.read("2 gamma", "/here"), Contains("a product is written with *"));
   CHECK_THROWS_WITH(formulas.read("gamma = 2", "/here"), Contains("assigns"));
   CHECK_THROWS_WITH(formulas.read(" ", "/here"), Contains("empty"));

@@ -141,7 +141,8 @@ TEST_CASE("within a study a name stands for one scheme", "[plan-file]") {
   write_text(here / "c.json", theta_plan("yours").dump());
   write_text(here / "d.json", theta_plan("three-level").dump());
   const auto both = [](const char* one, const char* other, double theta) {
-    return study_with(Json::array({{{"name", "plan"}, {"file", one}}, {{"name", "plan"}, {"file", other}, {"theta", theta}}}));
+    return study_with(
+        Json::array({{{"name", "plan"}, {"file", one}}, {{"name", "plan"}, {"file", other}, {"theta", theta}}}));
   };
   CHECK(refusal_in(here.path(), both("a.json", "c.json", 1)).empty());
   CHECK(refusal_in(here.path(), both("a.json", "a.json", 1)).empty());
@@ -193,8 +194,9 @@ TEST_CASE("a plan beside the plugins is a scheme with the name it states", "[pla
   CHECK(reading.catalogue.names(Role::time) == std::vector<std::string>{"mine"});
   REQUIRE(reading.catalogue.unusable().size() == 2);
   CHECK(reading.catalogue.unusable()[0].file == here / "broken.json");
-  CHECK_THAT(reading.catalogue.unusable()[0].reason, StartsWith("line 1:11: not valid JSON"));
-  CHECK_THAT(reading.catalogue.unusable()[1].reason, StartsWith("line 1") && Contains(": at /let/next: unknown name \"v\""));
+  CHECK_THAT(reading.catalogue.unusable()[0].reason, StartsWith("line 1:12: not valid JSON"));
+  CHECK_THAT(reading.catalogue.unusable()[1].reason,
+             StartsWith("line 1") && Contains(": at /let/next: unknown name \"v\""));
   CHECK(reading.catalogue.unusable_provider(Role::time, "wrong"));
   CHECK(reading.catalogue.opened().empty());
 
