@@ -21,6 +21,7 @@ namespace {
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
 constexpr std::string_view layout_prefix = "ricochet_layout__";
+
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
   for (const Role role : all_roles) {

@@ -50,8 +50,8 @@ class Catalogue {
   /// The unusable file that is meant to provide the method, or null.
   const Unusable* unusable_provider(Role role, const std::string& name) const;
 
-  /// Adds a file that is no library, with what its reader found in it: after the files known so far, or before them all.
-  /// require() takes its methods from there.
+  /// Adds a file that is no library, with what its reader found in it: after the files known so far, or before them
+  /// all. require() takes its methods from there.
   void provide(const std::filesystem::path& file, Registry methods, bool first = false);
   /// Adds a file that its reader could not make anything of.
   void cannot_serve(Unusable file) { unusable_.push_back(std::move(file)); }

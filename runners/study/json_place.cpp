@@ -32,7 +32,8 @@ std::string JsonPlace::pointer_of(const std::string& key) const {
 std::vector<std::pair<std::string, JsonPlace>> JsonPlace::members(const std::string& expected) const {
   if (!value_->is_object()) unexpected(expected);
   std::vector<std::pair<std::string, JsonPlace>> members;
-  for (const auto& item : value_->items()) members.emplace_back(item.key(), JsonPlace(item.value(), pointer_of(item.key())));
+  for (const auto& item : value_->items())
+    members.emplace_back(item.key(), JsonPlace(item.value(), pointer_of(item.key())));
   return members;
 }
 

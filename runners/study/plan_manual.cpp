@@ -39,8 +39,8 @@ Range range_of(const std::string& text, const JsonPlace& place) {
     place.unexpected(expected);
   };
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {number(text.substr(1, comma - 1), -infinity), number(text.substr(comma + 1, text.size() - comma - 2), infinity),
-          text.front() == ']', text.back() == '['};
+  return {number(text.substr(1, comma - 1), -infinity),
+          number(text.substr(comma + 1, text.size() - comma - 2), infinity), text.front() == ']', text.back() == '['};
 }
 
 Range range_of(const JsonPlace& place) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <ricochet/contract/stage_facts.hpp>
 #include <sstream>
 
 #include "runners/study/json_text.hpp"
@@ -67,7 +68,12 @@ std::string pointer_of(const std::string& sentence, const JsonPlace& plan) {
 void require_well_formed(const JsonPlace& plan, const Parameters& defaults, double h, const ProblemFacts& facts) {
   PlanValues values(plan, h, facts, defaults, Finite::demanded);
   if (plan_refusal(plan, values)) return;
-  if (const auto wrong = check_plan(read_step_plan(plan, values)))
+  const StepPlan step = read_step_plan(plan, values);
+  auto wrong = check_plan(step);
+  // A plan of numbers cannot tell its h; this one can.
+  if (const double own = wrong ? 0.0 : derive(step).h; own != 0 && !(std::abs(own - h) <= 2e-8 * h))
+    wrong = fmt::format("a step of {:g} s carries a free mass at 1 m/s by {:g} m", h, own);
+  if (wrong)
     throw InputError(pointer_of(*wrong, plan),
                      fmt::format("with the default parameters and h = {:g} s the plan is ill-formed: {}", h, *wrong));
 }

@@ -1,6 +1,6 @@
 #include "runners/study/plan_stages.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
 #include "runners/study/check_object.hpp"
 #include "runners/study/json_text.hpp"
@@ -78,7 +78,8 @@ class StageReader {
     if (!place.has("effort")) return {1.0};
     std::vector<double> weights;
     const JsonPlace list = place.at("effort");
-    for (const JsonPlace& one : list.items("a list of weights of p, p₋₁, p₋₂, …")) weights.push_back(values_.number(one));
+    for (const JsonPlace& one : list.items("a list of weights of p, p₋₁, p₋₂, …"))
+      weights.push_back(values_.number(one));
     return weights;
   }
 
@@ -95,11 +96,10 @@ class StageReader {
     if (!place.has("gate")) return measure;
     const JsonPlace gate = place.at("gate");
     gate.close({"predictor", "predictor_bound", "approach", "approach_bound", "restitution"});
-    measure.gate = VelocityGate{combination(gate.at("predictor", "the position that closes a stop")),
-                                levels_in(gate, "predictor_bound"),
-                                combination(gate.at("approach", "the velocity that rebounds")),
-                                levels_in(gate, "approach_bound"),
-                                gate.has("restitution") ? values_.number(gate.at("restitution")) : 0.0};
+    measure.gate = VelocityGate{
+        combination(gate.at("predictor", "the position that closes a stop")), levels_in(gate, "predictor_bound"),
+        combination(gate.at("approach", "the velocity that rebounds")), levels_in(gate, "approach_bound"),
+        gate.has("restitution") ? values_.number(gate.at("restitution")) : 0.0};
     return measure;
   }
 
@@ -170,10 +170,10 @@ SchemeFacts facts(const JsonPlace& place, PlanValues& values) {
   facts.order = values.number(place.at("order", "the order in h without contact"));
   if (place.has("contact_order")) facts.contact_order = values.optional_number(place.at("contact_order"));
   if (place.has("restitution")) {
-    const std::string word = place.at("restitution").word({"exact", "asymptotic", "ignored"});
-    facts.restitution = word == "exact"        ? Restitution::exact
-                        : word == "asymptotic" ? Restitution::asymptotic
-                                               : Restitution::ignored;
+    // In the order of the enumeration.
+    const std::vector<std::string> words = {"exact", "asymptotic", "ignored"};
+    const std::string word = place.at("restitution").word(words);
+    facts.restitution = static_cast<Restitution>(std::find(words.begin(), words.end(), word) - words.begin());
   }
   if (place.has("needs_regular_mass")) facts.needs_regular_mass = values.truth(place.at("needs_regular_mass"));
   if (place.has("stability_limit")) facts.stability_limit = values.optional_number(place.at("stability_limit"));

@@ -101,8 +101,7 @@ std::vector<double> LinearFormulas::weights(const std::string& text, const std::
 }
 
 const std::vector<std::string>& PlanValues::reserved() {
-  static const std::vector<std::string> names = {"h", "massless", "damped", "contact", "none",
-                                                 "z", "M",        "C",      "K"};
+  static const std::vector<std::string> names = {"h", "massless", "damped", "contact", "none", "z", "M", "C", "K"};
   return names;
 }
 
@@ -138,7 +137,8 @@ void PlanValues::name(const std::string& name, const std::string& pointer, const
     throw InputError(pointer, "the name \"" + name + "\" is taken: formulas know " + quoted_list(reserved()) +
                                   ", pi, e and the functions; choose another");
   for (const auto& [other, is] : taken_)
-    if (other == name) throw InputError(pointer, "the name \"" + name + "\" is that of " + is + " already; choose another");
+    if (other == name)
+      throw InputError(pointer, "the name \"" + name + "\" is that of " + is + " already; choose another");
   taken_.emplace_back(name, what);
 }
 
@@ -241,7 +241,8 @@ std::string PlanValues::sentence(const JsonPlace& place) {
     const std::size_t close = text.find('}', open);
     if (close == std::string::npos)
       throw InputError(place.pointer(), "a brace opens a formula and none closes it; expected {formula}");
-    result += fmt::format("{:g}", number(text.substr(open + 1, close - open - 1), place.pointer()));
+    numbers_.read(text.substr(open + 1, close - open - 1), place.pointer());
+    result += fmt::format("{:g}", numbers_.value());
     at = close + 1;
   }
   return result;

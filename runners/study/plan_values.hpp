@@ -36,7 +36,8 @@ class LinearFormulas {
 enum class Finite { demanded, ignored };
 
 /// The names of one plan and their values: h, what is known of the problem, parameters, "let"; and the reading of
-/// numbers, combinations, weights of matrices and sentences that use them. What it throws are InputErrors with pointers.
+/// numbers, combinations, weights of matrices and sentences that use them. What it throws are InputErrors with
+/// pointers.
 class PlanValues {
  public:
   /// The names that no parameter, slot or let may take, apart from constants and functions.

@@ -61,9 +61,8 @@ bool is_new(const PlanSource& source, const std::string& name, const std::string
                                 " has: tables could not tell them apart; give it a name of its own");
   };
   const auto& all = catalogue.provided();
-  const auto provider = std::find_if(all.begin(), all.end(), [&](const Provided& method) {
-    return method.role == Role::time && method.name == name;
-  });
+  const auto provider = std::find_if(
+      all.begin(), all.end(), [&](const Provided& method) { return method.role == Role::time && method.name == name; });
   const bool plan_file = provider != all.end() && provider->file.extension() == ".json";
   if (provider != all.end() && !plan_file) refuse(provider->file.string());
   if (!registry.manual(Role::time, name)) return true;
@@ -90,8 +89,10 @@ void add_plan(const fs::path& file, Catalogue& catalogue, bool insist) {
     if (insist) throw PluginError(error.what());
     std::string reason = error.what();
     if (reason.starts_with(file.string() + ":")) reason.erase(0, file.string().size() + 1);
-    if (reason.starts_with(" ")) reason.erase(0, 1);
-    else reason.insert(0, "line ");
+    if (reason.starts_with(" "))
+      reason.erase(0, 1);
+    else
+      reason.insert(0, "line ");
     catalogue.cannot_serve({file, reason, {{Role::time, name}}});
   }
 }

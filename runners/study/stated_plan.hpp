@@ -19,8 +19,8 @@ std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& point
                                            const Json& before, Catalogue& catalogue, Registry& registry);
 
 /// The catalogue of this program with the plans beside its plugins: files *.json in the plugin folders that hold a plan
-/// (an object with "slots" or "stages"), after all libraries, and those among `files`. One that is wrong is unusable; in
-/// `files` it is a PluginError.
+/// (an object with "slots" or "stages"), after all libraries, and those among `files`. One that is wrong is unusable;
+/// in `files` it is a PluginError.
 Catalogue standard_catalogue(const std::vector<std::filesystem::path>& files = {});
 /// Adds the plans of one folder.
 void add_plans(const std::filesystem::path& folder, Catalogue& catalogue);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runners/study/field.hpp"
+#include "runners/study/plan_schema.hpp"
 
 namespace ricochet {
 namespace {
@@ -140,6 +141,7 @@ class SchemaWriter {
       for (const ParameterSpec& spec : manual.parameters) complete = complete && spec.fallback.has_value();
       if (complete) plain.push_back(name);
     }
+    if (role == Role::time) ways.push_back(stated_plan_schema());
     // A bare name stands for a method whose parameters all have defaults.
     if (!plain.empty()) ways.insert(ways.begin(), Json{{"enum", plain}});
     if (ways.empty()) ways.push_back({{"type", Json::array({"string", "object"})}});

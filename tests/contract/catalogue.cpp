@@ -167,3 +167,29 @@ TEST_CASE("a library that switches denormal numbers off as it is loaded does so 
   CHECK(catalogue.opened().size() == 1);
   CHECK(float_control() == before);
 }
+
+TEST_CASE("a file that is no library provides what its reader found in it") {
+  const auto stand_in = [](const char* name) {
+    Registry methods;
+    methods.set_current_file("here.json");
+    methods.add_time({name, "A stand-in.", "", "", {}}, [](const Parameters&) { return nullptr; });
+    return methods;
+  };
+  Catalogue catalogue(installed, {}, {});
+  catalogue.provide("here.json", stand_in("mine"));
+  catalogue.provide("later.json", stand_in("mine"));
+  CHECK(contains(catalogue.names(Role::time), "mine"));
+  CHECK(catalogue.opened().empty());
+  Registry registry;
+  REQUIRE(catalogue.require(Role::time, "mine", registry));
+  CHECK(registry.file(Role::time, "mine") == "here.json");
+  CHECK(catalogue.opened() == std::vector<fs::path>{"here.json"});
+
+  // Before all others, where its reader says so.
+  Catalogue explicitly(installed, {}, {});
+  explicitly.provide("later.json", stand_in("mine"));
+  explicitly.provide("here.json", stand_in("mine"), true);
+  Registry other;
+  REQUIRE(explicitly.require(Role::time, "mine", other));
+  CHECK(other.file(Role::time, "mine") == "here.json");
+}

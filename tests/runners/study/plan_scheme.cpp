@@ -5,13 +5,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/contract/catalogue.hpp>
-#include <ricochet/contract/stage_facts.hpp>
 #include <thread>
 
 #include "runners/study/json_text.hpp"
 #include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/study/step_numbers.hpp"
 
 using namespace ricochet;
+using namespace ricochet::tests;
 
 namespace {
 
@@ -42,101 +43,6 @@ PlanOrRefusal plan_of(const Registry& registry, const std::string& name, const s
   return entry->make(complete(entry->manual, values))->plan(h, facts);
 }
 
-// The numbers of a plan in one row, sizes included; missing trailing slots are the zeros that they stand for. Terms
-// whose coefficient is 0 say nothing.
-class Numbers {
- public:
-  explicit Numbers(const StepPlan& given) : plan_(derive(given).plan), slots_(plan_.slots.size()) {
-    for (const auto& pair : plan_.initial) add({pair[0], pair[1]});
-    stages(plan_.start);
-    stages(plan_.stages);
-    add({plan_.start_advances ? 1.0 : 0.0});
-    for (const QuadraticTerm& term : plan_.energy) {
-      add({term.matrix == EnergyMatrix::M ? 0.0 : 1.0, term.coefficient});
-      combination({term.slots, 0});
-    }
-    combination(plan_.velocity);
-    const SchemeFacts& facts = plan_.facts;
-    add({facts.order, facts.contact_order.value_or(-1), static_cast<double>(facts.restitution),
-         facts.needs_regular_mass ? 1.0 : 0.0, facts.stability_limit.value_or(-1),
-         facts.contact_never_gains ? 1.0 : 0.0});
-  }
-  const std::vector<double>& all() const { return numbers_; }
-
- private:
-  void add(const std::vector<double>& values) { numbers_.insert(numbers_.end(), values.begin(), values.end()); }
-  void list(const std::vector<double>& values) {
-    add({static_cast<double>(values.size())});
-    add(values);
-  }
-  void combination(const Combination& c) {
-    std::vector<double> padded = c.slots;
-    padded.resize(slots_, 0.0);
-    add(padded);
-    add({c.z});
-  }
-  void levels(const Levels& levels) {
-    add({static_cast<double>(levels.size())});
-    for (const Level& level : levels) add({level.at, level.weight});
-  }
-  void compliance(const ComplianceMeasure& measure) {
-    combination(measure.displacement);
-    levels(measure.bound);
-    combination(measure.rate);
-    levels(measure.rate_bound);
-    list(measure.effort);
-    add({measure.before ? 1.0 : 0.0});
-    if (measure.before) combination(*measure.before);
-    levels(measure.before_bound);
-  }
-  void stages(const std::vector<Stage>& all) {
-    add({static_cast<double>(all.size())});
-    for (const Stage& stage : all) {
-      add({stage.matrix.M, stage.matrix.C, stage.matrix.K});
-      std::vector<OperatorWeights> rows = stage.history;
-      rows.resize(slots_);
-      for (const OperatorWeights& row : rows) add({row.M, row.C, row.K});
-      levels(stage.load);
-      add({stage.impact ? 1.0 : 0.0});
-      if (stage.impact) {
-        combination(stage.impact->value);
-        levels(stage.impact->bound);
-        list(stage.impact->effort);
-        add({stage.impact->gate ? 1.0 : 0.0});
-        if (const auto& gate = stage.impact->gate) {
-          combination(gate->predictor);
-          levels(gate->predictor_bound);
-          combination(gate->approach);
-          levels(gate->approach_bound);
-          add({gate->restitution});
-        }
-      }
-      for (const auto& measure : stage.compliance) {
-        add({measure ? 1.0 : 0.0});
-        if (measure) compliance(*measure);
-      }
-      for (const Combination& row : stage.update) combination(row);
-      add({stage.work ? 1.0 : 0.0});
-      if (stage.work) {
-        combination(stage.work->displacement);
-        combination(stage.work->rate);
-        levels(stage.work->load);
-        list(stage.work->effort);
-        levels(stage.work->support);
-      }
-      for (const LossTerm& term : stage.loss) {
-        if (term.coefficient == 0) continue;
-        add({term.matrix == EnergyMatrix::M ? 0.0 : 1.0, term.coefficient});
-        combination(term.value);
-      }
-    }
-  }
-
-  StepPlan plan_;
-  std::size_t slots_;
-  std::vector<double> numbers_;
-};
-
 Registry plugins() {
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
   Registry registry;
@@ -163,10 +69,51 @@ void require_twins(const std::string& file, const std::string& name, const std::
           continue;
         }
         const auto& step = std::get<StepPlan>(mine);
-        CHECK_FALSE(check_plan(step));
+        CHECK(check_plan(step) == check_plan(std::get<StepPlan>(theirs)));
         CHECK(step.slots == std::get<StepPlan>(theirs).slots);
-        CHECK(Numbers(step).all() == Numbers(std::get<StepPlan>(theirs)).all());
+        CHECK(step_numbers(step) == step_numbers(std::get<StepPlan>(theirs)));
       }
+}
+
+// Two sub-steps written as numbers: trapezium to t + gh, then v₁ = v_n + h(q₀a_n + q₁a_g + q₂z) and the same for q₁.
+StepPlan two_sub_steps(double rho, double split, double h, bool singular_mass) {
+  const double g = split > 0 ? split : (rho == 1 ? 0.5 : (2 - std::sqrt(2 + 2 * rho)) / (1 - rho));
+  const double q1 = (rho + 1) / (2 * g * (rho - 1) + 4), q2 = 0.5 - g * q1, q0 = 1 - q1 - q2;
+  const double d = g * h, half = d / 2, curve = d * d / 4, w = q2 * h;
+  const double later = q1 * h - d / 2, earlier = q0 * h - d / 2, shared = d * d / 4 - 0.5 * q0 * h * d;
+  const auto ask = [](Stage& stage, double at, const Combination& end, const Combination& rate) {
+    stage.load = {{at, 1}};
+    stage.impact = {.value = end, .bound = {{at, 1}}};
+    stage.at(Evaluation::implicit_end) = {end, {{at, 1}}, rate, {{at, 1}}};
+    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
+    stage.at(Evaluation::explicit_start) = {{.slots = end.slots}, {{at, 1}}, {.slots = rate.slots}, {{at, 1}}};
+  };
+  Stage start, first, second;
+  start.matrix = {1, 0, singular_mass ? curve : 0};
+  start.history = {{0, 0, -1}, {0, -1, 0}};
+  start.load = {{0, 1}};
+  start.impact = {.value = {.slots = {1, d}, .z = 0.5 * d * d}, .bound = {{g, 1}}};
+  for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+    start.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}};
+  start.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
+  const Combination middle{{1, d, curve}, curve}, middle_rate{{0, 1, half}, half};
+  first.matrix = {1, half, curve};
+  first.history = {{0, 0, -1}, {0, -1, -d}, {0, -half, -curve}};
+  first.update = {middle, middle_rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 1}}};
+  ask(first, g, middle, middle_rate);
+  const Combination end{{1, h - d, shared + w * later, shared + w * earlier}, w * w}, rate{{0, 1, later, earlier}, w};
+  second.matrix = {1, w, w * w};
+  for (std::size_t j = 0; j < 4; ++j) second.history.push_back({0, -rate.slots[j], -end.slots[j]});
+  second.update = {end, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
+  ask(second, 1, end, rate);
+  StepPlan plan;
+  plan.slots = {"q", "v", "a", "b"};
+  plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
+  plan.start = {start};
+  plan.stages = {first, second};
+  plan.velocity = {.slots = {0, 1}};
+  plan.facts.order = 2;
+  return plan;
 }
 
 const std::string& smallest() {
@@ -215,17 +162,38 @@ TEST_CASE("Newmark as a plan has the bits of its plugin", "[plan-file]") {
                 {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.0}, {"gamma", 0.7}}});
 }
 
+TEST_CASE("a plan at velocity level, with its gate, has the bits of its plugin", "[plan-file]") {
+  require_twins("moreau-jean.json", "moreau-jean-as-plan", "moreau-jean",
+                {{}, {{"theta", 0.7}}, {{"theta", 0.7}, {"restitution", 0.8}}, {{"restitution", 1.0}}});
+}
+
+TEST_CASE("Bathe's two sub-steps as a plan have the bits of the same sums in C++", "[plan-file]") {
+  const Registry stated = registered(plans / "bathe.json");
+  for (const auto& [rho, split] : {std::pair(0.0, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {0.3, 0.25}})
+    for (const double h : {1e-2, 3.1e-5})
+      for (const int kernel : {0, 2}) {
+        ProblemFacts facts;
+        facts.mass_kernel_dimension = kernel;
+        const PlanOrRefusal mine = plan_of(stated, "bathe-as-plan", {{"rho_inf", rho}, {"split", split}}, h, facts);
+        REQUIRE(std::holds_alternative<StepPlan>(mine));
+        CHECK_FALSE(check_plan(std::get<StepPlan>(mine)));
+        CHECK(step_numbers(std::get<StepPlan>(mine)) == step_numbers(two_sub_steps(rho, split, h, kernel > 0)));
+      }
+}
+
 TEST_CASE("a plan is checked when it is read, and every error has its place", "[plan-file]") {
   CHECK(message("\"mine\"", "\"mine\"").empty());
   const std::string place = "mine.json:8: at /stages/0/matrix";
   CHECK(message("\"theta*h\", \"K\"", "\"thta*h\", \"K\"") ==
-        place + "/C: unknown name \"thta\" in the formula \"thta*h\"; the names are contact, damped, h, massless, theta, "
-                "the constants are pi and e; did you mean \"theta\"?");
+        place +
+            "/C: unknown name \"thta\" in the formula \"thta*h\"; the names are contact, damped, h, massless, theta, "
+            "the constants are pi and e; did you mean \"theta\"?");
   CHECK(message("\"theta*h\", \"K\"", "\"theta h\", \"K\"").find("a product is written with *") != std::string::npos);
   CHECK(message("\"theta*h\", \"K\"", "[1], \"K\"") == place + "/C: expected a number or a formula, found [1]");
   CHECK(message("{\"M\": 1, \"C\": \"theta*h\", \"K\": \"theta*theta*h*h\"}", "\"M + theta*h*C*K\"") ==
-        place + ": the formula \"M + theta*h*C*K\" is not linear in \"M\", \"C\", \"K\"; expected a sum of terms, each a "
-                "coefficient times one of them");
+        place +
+            ": the formula \"M + theta*h*C*K\" is not linear in \"M\", \"C\", \"K\"; expected a sum of terms, each a "
+            "coefficient times one of them");
   CHECK(message("\"matrix\"", "\"matrx\"").find("/stages/0/matrx: unknown key \"matrx\"; did you mean \"matrix\"?") !=
         std::string::npos);
   CHECK(message("\"history\": {\"q\"", "\"history\": {\"w\"").find("/stages/0/history/w: unknown key \"w\"") !=
@@ -264,7 +232,8 @@ TEST_CASE("names of a plan are told apart, and those that formulas know are take
         std::string::npos);
   CHECK(message("\"parameters\": {", "\"parameters\": {\"Beta\": {}, ").find("made of a-z, 0-9 and '_'") !=
         std::string::npos);
-  CHECK(message("\"v\": [0, 1]}", "\"v\": [0, 1], \"z\": [0, 0]}").find("the name \"z\" is taken") != std::string::npos);
+  CHECK(message("\"v\": [0, 1]}", "\"v\": [0, 1], \"z\": [0, 0]}").find("the name \"z\" is taken") !=
+        std::string::npos);
   CHECK(message("\"v\": [0, 1]}", "\"v\": [0, 1], \"pi\": [0, 0]}").find("the name \"pi\" is taken") !=
         std::string::npos);
   // A name of let is known to those after it.
@@ -284,7 +253,8 @@ TEST_CASE("parameters of a plan have the ranges of any plugin's", "[plan-file]")
         std::string::npos);
   // Without a default a study must give one, and the formulas are read all the same.
   CHECK(message("\"default\": 0.5, ", "").empty());
-  const std::string both = message("\"default\": 0.5, \"range\": [0.5, 1]}}", "\"range\": [0.5, 1]}, \"x\": {}, \"x\": {}}");
+  const std::string both =
+      message("\"default\": 0.5, \"range\": [0.5, 1]}}", "\"range\": [0.5, 1]}, \"x\": {}, \"x\": {}}");
   CHECK(both.find("given twice") != std::string::npos);
 }
 
@@ -292,8 +262,12 @@ TEST_CASE("a plan that is no step is told so with the default parameters", "[pla
   // The mass is not carried forward by h.
   const std::string wrong = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"q + theta*h*z\"");
   CHECK(wrong.find("with the default parameters and h = 0.001 s the plan is ill-formed: ") != std::string::npos);
-  CHECK(message("\"theta*h\", \"K\"", "\"theta*h/0\", \"K\"").find("gives an infinite value where h = 0.001, theta = 0.5") !=
-        std::string::npos);
+  CHECK(wrong.find("a step moves a free mass at 1 m/s by 0.0005 m") != std::string::npos);
+  const std::string gains = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"1.01*q + (1-theta)*h*v + theta*h*z\"");
+  CHECK(gains.find("at /: ") == std::string::npos);
+  CHECK(gains.find("ill-formed: a free mass at rest at 1 m is at") != std::string::npos);
+  CHECK(message("\"theta*h\", \"K\"", "\"theta*h/0\", \"K\"")
+            .find("gives an infinite value where h = 0.001, theta = 0.5") != std::string::npos);
 }
 
 TEST_CASE("what only a choice of parameters makes wrong is told with the place in the file", "[plan-file]") {
@@ -330,7 +304,7 @@ TEST_CASE("weights, formulas and names of combinations are three spellings of on
   write_text(folder / "b.json", weights);
   const Registry one = registered(folder / "a.json"), other = registered(folder / "b.json");
   const auto numbers = [&](const Registry& registry) {
-    return Numbers(std::get<StepPlan>(plan_of(registry, "mine", {{"theta", 0.7}}, 0.01, {}))).all();
+    return step_numbers(std::get<StepPlan>(plan_of(registry, "mine", {{"theta", 0.7}}, 0.01, {})));
   };
   CHECK(numbers(one) == numbers(other));
 }
@@ -339,14 +313,14 @@ TEST_CASE("one scheme makes its plans on several threads at once", "[plan-file]"
   const Registry registry = registered(plans / "newmark.json");
   const auto* entry = registry.time("newmark-as-plan");
   const auto scheme = entry->make(complete(entry->manual, {}));
-  const std::vector<double> expected = Numbers(std::get<StepPlan>(scheme->plan(1e-3, {}))).all();
+  const std::vector<double> expected = step_numbers(std::get<StepPlan>(scheme->plan(1e-3, {})));
   int wrong = 0;
   std::vector<std::thread> threads;
   std::vector<int> differences(4, 0);
   for (int& different : differences)
     threads.emplace_back([&] {
       for (int i = 0; i < 20; ++i)
-        different += Numbers(std::get<StepPlan>(scheme->plan(1e-3, {}))).all() != expected ? 1 : 0;
+        different += step_numbers(std::get<StepPlan>(scheme->plan(1e-3, {}))) != expected ? 1 : 0;
     });
   for (std::thread& thread : threads) thread.join();
   for (const int different : differences) wrong += different;

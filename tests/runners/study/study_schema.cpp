@@ -105,6 +105,20 @@ TEST_CASE("The schema and the reader agree on what is a study") {
   }
 }
 
+TEST_CASE("The schema accepts plans, by file and as they are written") {
+  Validator validator(stand_ins());
+  for (const char* name : {"newmark.json", "bathe.json", "moreau-jean.json"}) {
+    INFO(name);
+    std::ifstream stream(std::string(RICOCHET_SOURCE_DIR "/tests/plugins/plan_files/") + name);
+    Json plan = Json::parse(stream);
+    CHECK(validator.accepts(with("/methods/time", {{"name", "plan"}, {"plan", plan}})));
+    CHECK(validator.accepts(with("/methods/time", {{"name", "plan"}, {"file", name}, {"beta", {0.25, 0.5}}})));
+    CHECK_FALSE(validator.accepts(with("/methods/time", {{"name", "other"}, {"file", name}})));
+    plan["stages"][0]["matrx"] = 1;
+    CHECK_FALSE(validator.accepts(with("/methods/time", {{"name", "plan"}, {"plan", plan}})));
+  }
+}
+
 TEST_CASE("The schema and the reader agree on what is a sweep") {
   const Registry registry = stand_ins();
   Validator validator(registry);
