@@ -110,7 +110,7 @@ struct WorkForm {
   Combination displacement;            ///< s
   Combination rate;                    ///< r, the velocity that damping sees
   Levels load;                         ///< F̄
-  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k p₋ₖ
+  std::vector<double> effort = {1.0};  ///< p̄ = Σ effort_k e₋ₖ, e = π₀ p + π₁ p₋₁ + …: what acts in each equation
   Levels support = {};  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
 };
 

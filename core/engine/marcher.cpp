@@ -140,8 +140,11 @@ void Marcher::connect_efforts() {
   const auto stages = static_cast<std::ptrdiff_t>(stage_states_.size());
   const auto weights = [&](std::ptrdiff_t i) {
     const auto& work = program_.plan.stages[static_cast<std::size_t>(i)].work;
-    const std::size_t own = program_.stages[static_cast<std::size_t>(i)].effort.size();
-    return static_cast<std::ptrdiff_t>(std::max(own, work ? work->effort.size() : 0));
+    std::size_t own = program_.stages[static_cast<std::size_t>(i)].effort.size();
+    if (work)
+      for (const StageProgram& stage : program_.stages) own = std::max(own, stage.effort.size());
+    // A work form looks back to the equations of stages before, and these to efforts before them.
+    return static_cast<std::ptrdiff_t>(own + (work ? work->effort.size() - 1 : 0));
   };
   struct Source {
     StageState* stage;

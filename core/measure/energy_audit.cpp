@@ -130,12 +130,29 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
   }
 }
 
+// p̄ at one point and lane, each stage's effort with the weights that it has in that stage's equation.
+double EnergyAudit::acting_effort(const Program& program, const StageView& view, int at) {
+  const auto stages = static_cast<int>(program.stages.size());
+  const WorkForm& work = *view.plan->work;
+  double sum = 0;
+  for (int k = 0; k < static_cast<int>(work.effort.size()); ++k) {
+    const int stage = ((view.stage - k) % stages + stages) % stages;
+    const StageProgram& there = program.stages[static_cast<std::size_t>(stage)];
+    if (!there.reads_contact) continue;
+    double acting = 0;
+    for (int j = 0; j < static_cast<int>(there.effort.size()) && k + j < view.efforts; ++j)
+      if (view.effort[k + j]) acting += there.effort[static_cast<std::size_t>(j)] * view.effort[k + j][at];
+    sum += work.effort[static_cast<std::size_t>(k)] * acting;
+  }
+  return sum;
+}
+
 // The works of one stage, by its test displacement.
 void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const WorkForm& work = *view.plan->work;
   const bool loads = marcher.program().support || marcher.program().load;
-  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || work.effort.size() > 1);
+  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || view.efforts > 1);
   const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
   if (!loads && !contact && !damped) return;
   std::vector<double>& s = first_;
@@ -160,9 +177,7 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
   if (!contact) return;
   const double lift = marcher.program().support ? marcher.support_levels(lane, view.time, work.support) : 0.0;
   for (int j = 0; j < model_.problem().points(); ++j) {
-    double effort = 0;
-    for (int k = 0; k < std::min(static_cast<int>(work.effort.size()), view.efforts); ++k)
-      if (view.effort[k]) effort += work.effort[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
+    const double effort = acting_effort(marcher.program(), view, j * T_ + lane);
     if (effort == 0) continue;
     state.step_contact += effort * (model_.contact().times(j, s.data()) + lift);
     state.step_loads -= effort * lift;

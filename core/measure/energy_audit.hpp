@@ -83,6 +83,7 @@ class EnergyAudit final : public StepObserver {
     bool has_scheme = false, has_first = false;
   };
   EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
+  static double acting_effort(const Program& program, const StageView& view, int at);
   void work(const Marcher& marcher, const StageView& view, int lane);
   double scheme_energy(const Marcher& marcher, int lane);
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
