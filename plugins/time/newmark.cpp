@@ -50,7 +50,8 @@ class Newmark final : public TimeScheme {
     stage.matrix = {1, gamma_ * h, beta_ * h * h};
     stage.history = {{0, 0, -1}, {0, -1, -h}, {0, -lag, -curve}};
     stage.load = {{1, 1}};
-    stage.impact = {end(h), {{1, 1}}, std::nullopt};
+    // Explicit: no effort moves q_{n+1}, which then is no measure of impact.
+    if (beta_ > 0) stage.impact = {end(h), {{1, 1}}, std::nullopt};
     const Combination end_rate{.slots = {0, 1, lag}, .z = gamma_ * h};
     stage.at(Evaluation::implicit_end) = {end(h), {{1, 1}}, end_rate, {{1, 1}}, {1}};
     // The elastic force enters as K q_{n+1} alone, and so does the spring: averaging is done by the scheme's own

@@ -88,11 +88,12 @@ TEST_CASE("Help and version are answers, not errors") {
     const Outcome outcome = here.run(words);
     CHECK(outcome.code == 0);
     for (const char* name :
-         {"run", "plan", "list", "describe", "new", "report", "export", "point", "schema", "doctor", "130"})
+         {"run", "plan", "list", "describe", "new", "check", "report", "export", "point", "schema", "doctor", "130"})
       CHECK_THAT(outcome.out, Contains(name));
   }
   CHECK_THAT(here.run("--version").out, StartsWith("ricochet "));
-  for (const char* name : {"run", "plan", "list", "describe", "new", "report", "export", "point", "schema", "doctor"}) {
+  for (const char* name :
+       {"run", "plan", "list", "describe", "new", "check", "report", "export", "point", "schema", "doctor"}) {
     const Outcome first = here.run(std::string(name) + " --help"), second = here.run(std::string("help ") + name);
     CHECK(first.code == 0);
     CHECK(first.out == second.out);

@@ -1,0 +1,182 @@
+#include "runners/check/dense_march.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet::checking {
+namespace {
+
+// Round-off of ten steps through factors whose condition is that of a small structure's stiffness.
+constexpr double tolerance = 1e-8;
+
+}  // namespace
+
+DenseMarch::DenseMarch(const Marcher& marcher)
+    : problem_(*marcher.program().problem),
+      plan_(marcher.program().plan),
+      h_(marcher.program().h),
+      reads_(marcher.law().reads()),
+      absent_(marcher.law().absent()),
+      M_(problem_.inertia.mass),
+      K_(problem_.stiffness),
+      H_(problem_.contact) {
+  C_ = problem_.damping.stiffness * K_ + problem_.damping.mass * M_;
+  for (const LaneSpec& spec : marcher.program().lanes) {
+    Lane lane;
+    lane.spec = spec;
+    for (const auto& [position, velocity] : plan_.initial)
+      lane.slots.push_back(position * spec.position + velocity * spec.velocity);
+    lane.past.assign(most_efforts, Eigen::VectorXd::Zero(H_.rows()));
+    lane.last_start = Eigen::VectorXd::Zero(H_.rows());
+    lanes_.push_back(std::move(lane));
+  }
+}
+
+Eigen::VectorXd DenseMarch::combined(const Lane& lane, const Combination& c, const Eigen::VectorXd& z) const {
+  Eigen::VectorXd sum = c.z * z;
+  for (std::size_t j = 0; j < c.slots.size(); ++j) sum += c.slots[j] * lane.slots[j];
+  return sum;
+}
+
+double DenseMarch::support(const Lane& lane, double t, const Levels& levels, bool rate) const {
+  const double omega = problem_.support.pulsation;
+  double sum = 0;
+  for (const Level& level : levels) {
+    const double angle = omega * (t + level.at * h_) + lane.spec.phase;
+    sum += level.weight * lane.spec.amplitude * (rate ? omega * std::cos(angle) : std::sin(angle));
+  }
+  return sum;
+}
+
+Eigen::VectorXd DenseMarch::load(const Lane& lane, double t, const Levels& levels) const {
+  const double omega = problem_.support.pulsation;
+  Eigen::VectorXd sum = omega * omega * support(lane, t, levels, false) * problem_.support_shape;
+  if (!problem_.load || problem_.load->absent()) return sum;
+  Eigen::VectorXd at(sum.size());
+  for (const Level& level : levels) {
+    problem_.load->assemble(t + level.at * h_, at.data());
+    sum += level.weight * at;
+  }
+  return sum;
+}
+
+void DenseMarch::note(const std::string& sentence) {
+  if (difference_.empty()) difference_ = fmt::format("step {}: {}", step_ + 1, sentence);
+}
+
+void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
+  const Stage& stage = *view.plan;
+  const auto points = H_.rows();
+  for (std::size_t l = 0; l < lanes_.size(); ++l) {
+    Lane& lane = lanes_[l];
+    if (!marcher.status(static_cast<int>(l)).running) continue;
+    if (lane.starting && !view.starting) {
+      lane.starting = false;
+      if (!plan_.start.empty()) lane.past.front() = lane.last_start;
+    }
+    const std::vector<double>* weights = nullptr;
+    if (!absent_ && reads_ && stage.at(*reads_)) weights = &stage.at(*reads_)->effort;
+    if (!absent_ && !reads_ && stage.impact) weights = &stage.impact->effort;
+    Eigen::VectorXd p = Eigen::VectorXd::Zero(points);
+    if (weights && view.effort)
+      for (Eigen::Index i = 0; i < points; ++i)
+        p[i] = view.effort[0][i * marcher.width() + static_cast<Eigen::Index>(l)];
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(M_.rows());
+    const OperatorWeights& s = stage.matrix;
+    if (s.M != 0 || s.C != 0 || s.K != 0) {
+      Eigen::VectorXd b = load(lane, view.time, stage.load);
+      for (std::size_t j = 0; j < stage.history.size(); ++j) {
+        const OperatorWeights& w = stage.history[j];
+        b += (w.M * M_ + w.C * C_ + w.K * K_) * lane.slots[j];
+      }
+      if (weights) {
+        b += weights->front() * (H_.transpose() * p);
+        if (!view.starting)
+          for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
+      }
+      z = (s.M * M_ + s.C * C_ + s.K * K_).eval().partialPivLu().solve(b);
+    }
+    if (weights) look_at_contact(stage, lane, z, p, view.time);
+    std::vector<Eigen::VectorXd> next;
+    for (const Combination& row : stage.update) next.push_back(combined(lane, row, z));
+    lane.slots = std::move(next);
+    if (view.starting) {
+      lane.last_start = p;
+    } else {
+      std::rotate(lane.past.begin(), lane.past.end() - 1, lane.past.end());
+      lane.past.front() = p;
+    }
+  }
+}
+
+void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Eigen::VectorXd& z,
+                                 const Eigen::VectorXd& p, double t) {
+  const Combination& value = reads_ ? stage.at(*reads_)->displacement : stage.impact->value;
+  const Levels& bound = reads_ ? stage.at(*reads_)->bound : stage.impact->bound;
+  const bool gated = !reads_ && stage.impact->gate;
+  const Eigen::VectorXd y = (H_ * combined(lane, value, z)).array() + support(lane, t, bound, gated);
+  if (gated) {
+    look_at_gate(*stage.impact, lane, y, p, t);
+    return;
+  }
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double lower = lane.spec.lower[i], upper = lane.spec.upper[i];
+    const double size = tolerance * (1 + std::abs(y[i]));
+    if (!reads_) {
+      const bool holds = y[i] >= lower - size && y[i] <= upper + size && (p[i] <= 0 || y[i] <= lower + size) &&
+                         (p[i] >= 0 || y[i] >= upper - size);
+      if (!holds)
+        note(fmt::format("the impact measure is {:.10g} between {:g} and {:g} under {:g} N", y[i], lower, upper, p[i]));
+    } else if (p[i] == 0 && (y[i] < lower - size || y[i] > upper + size)) {
+      note(fmt::format("g = {:.10g} lies beyond its stop without an effort", y[i]));
+    } else if ((p[i] > 0 && y[i] > lower + size) || (p[i] < 0 && y[i] < upper - size)) {
+      note(fmt::format("{:g} N act where g = {:.10g} is open", p[i], y[i]));
+    }
+  }
+}
+
+// Only sides that the gate finds closed carry an effort, and on them y is not below the rebound.
+void DenseMarch::look_at_gate(const ImpactMeasure& impact, const Lane& lane, const Eigen::VectorXd& y,
+                              const Eigen::VectorXd& p, double t) {
+  const VelocityGate& gate = *impact.gate;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(M_.rows());
+  const Eigen::VectorXd gap =
+      (H_ * combined(lane, gate.predictor, none)).array() + support(lane, t, gate.predictor_bound, false);
+  const Eigen::VectorXd speed =
+      (H_ * combined(lane, gate.approach, none)).array() + support(lane, t, gate.approach_bound, true);
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double size = tolerance * (1 + std::abs(speed[i]));
+    const bool lower = gap[i] <= lane.spec.lower[i] + tolerance, upper = gap[i] >= lane.spec.upper[i] - tolerance;
+    if ((p[i] > 0 && !lower) || (p[i] < 0 && !upper))
+      note(fmt::format("{:g} N act on a side whose gate is open", p[i]));
+    const double rebound = -gate.restitution * speed[i];
+    if (p[i] > 0 && std::abs(speed[i]) > size && speed[i] < 0 && std::abs(y[i] - rebound) > size)
+      note(
+          fmt::format("a point that comes with {:g} m/s leaves with {:g} m/s, not with {:g}", speed[i], y[i], rebound));
+    if (p[i] < 0 && std::abs(speed[i]) > size && speed[i] > 0 && std::abs(y[i] - rebound) > size)
+      note(
+          fmt::format("a point that comes with {:g} m/s leaves with {:g} m/s, not with {:g}", speed[i], y[i], rebound));
+  }
+}
+
+void DenseMarch::step_done(Marcher& marcher) {
+  const int rows = marcher.program().model->rows(), T = marcher.width();
+  for (std::size_t j = 0; j < plan_.slots.size(); ++j) {
+    double scale = 0, worst = 0;
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      Eigen::VectorXd model(rows);
+      for (int i = 0; i < rows; ++i) model[i] = marcher.slot(static_cast<int>(j))[i * T + static_cast<int>(l)];
+      const Eigen::VectorXd& dense = lanes_[l].slots[j];
+      worst = std::max(worst, (marcher.program().model->to_nodal(model) - dense).cwiseAbs().maxCoeff());
+      scale = std::max(scale, dense.cwiseAbs().maxCoeff());
+    }
+    if (!(worst <= tolerance * std::max(scale, 1e-6)))
+      note(fmt::format("slot {} differs by {:.3g} of {:.3g} from the plan evaluated with dense matrices",
+                       plan_.slots[j], worst, scale));
+  }
+  ++step_;
+}
+
+}  // namespace ricochet::checking

@@ -1,0 +1,118 @@
+#include "runners/check/law_bench.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "runners/check/allocation_count.hpp"
+
+namespace ricochet::checking {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+LawBench::LawBench(const Law& law, int points, int lanes) : law_(law.make()), points_(points), lanes_(lanes) {
+  const std::vector<Parameters> parameters(static_cast<std::size_t>(lanes), law.set.values);
+  law_->prepare(points, parameters);
+  const auto size = static_cast<std::size_t>(points * lanes);
+  for (auto* block : {&free_, &lower_, &upper_, &rate_, &before_, &effort_}) block->assign(size, 0);
+  memory_.assign(size * static_cast<std::size_t>(std::max(0, law_->memory_per_point())), 0);
+  outcomes_.resize(static_cast<std::size_t>(lanes));
+}
+
+void LawBench::solve(DenseDelassus& W, double reach, double rate_reach, const std::vector<LaneProblem>& problems,
+                     const std::vector<int>& touched) {
+  const auto put = [&](std::vector<double>& block, int lane, const Eigen::VectorXd& values) {
+    for (int i = 0; i < points_; ++i)
+      block[static_cast<std::size_t>(i * lanes_ + lane)] = values.size() > 0 ? values[i] : 0.0;
+  };
+  for (int l = 0; l < lanes_; ++l) {
+    const LaneProblem& lane = problems[static_cast<std::size_t>(l)];
+    put(free_, l, lane.free);
+    put(lower_, l, lane.lower);
+    put(upper_, l, lane.upper);
+    put(rate_, l, lane.rate);
+    put(before_, l, lane.before.size() > 0 ? lane.before : lane.free);
+    put(effort_, l, lane.effort);
+  }
+  std::fill(memory_.begin(), memory_.end(), 0.0);
+  std::fill(outcomes_.begin(), outcomes_.end(), LaneOutcome{});
+  ReducedProblem problem;
+  problem.points = points_;
+  problem.lanes = lanes_;
+  problem.delassus = &W;
+  problem.reach = reach;
+  problem.free = free_.data();
+  problem.lower = lower_.data();
+  problem.upper = upper_.data();
+  problem.rate_reach = law_->reads_rate() ? rate_reach : 0.0;
+  problem.rate_free = law_->reads_rate() ? rate_.data() : nullptr;
+  problem.before = law_->reads() == Evaluation::conserving ? before_.data() : nullptr;
+  problem.memory = memory_.empty() ? nullptr : memory_.data();
+  problem.effort = effort_.data();
+  problem.touched = touched;
+  problem.outcome = outcomes_.data();
+  const long before = allocations_of_this_thread();
+  law_->solve(problem);
+  allocations_ = allocations_of_this_thread() - before;
+}
+
+Eigen::VectorXd LawBench::effort(int lane) const {
+  Eigen::VectorXd p(points_);
+  for (int i = 0; i < points_; ++i) p[i] = effort_[static_cast<std::size_t>(i * lanes_ + lane)];
+  return p;
+}
+
+PointAnswer at_point(LawBench& bench, int side, double depth, double speed, double before) {
+  DenseDelassus W(Eigen::MatrixXd::Constant(1, 1, 1e-6));
+  const auto one = [](double x) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, x)); };
+  const double layer = bench.layer();
+  LaneProblem lane;
+  // The stop of the side at 0, the other one far away; the law sees stops that begin at its layer.
+  lane.lower = one(side < 0 ? layer : -infinity);
+  lane.upper = one(side < 0 ? infinity : -layer);
+  lane.free = one(side * depth);
+  lane.rate = one(speed);
+  lane.before = one(side * before);
+  lane.effort = one(0);
+  bench.solve(W, 0, 0, {lane}, {0});
+  PointAnswer answer{bench.effort(0)[0], bench.outcome(0).dissipation, {}};
+  if (bench.law().offers_slopes()) answer.slopes = bench.law().slopes(0, 0);
+  return answer;
+}
+
+LaneProblem random_lane(std::mt19937& random, int points, bool two_sided) {
+  std::uniform_real_distribution<double> place(-0.02, 0.02), gap(0.002, 0.008), speed(-0.5, 0.5);
+  LaneProblem lane;
+  for (auto* v : {&lane.free, &lane.lower, &lane.upper, &lane.rate, &lane.before, &lane.effort})
+    *v = Eigen::VectorXd::Zero(points);
+  for (int i = 0; i < points; ++i) {
+    lane.free[i] = place(random);
+    lane.lower[i] = -gap(random);
+    lane.upper[i] = two_sided ? gap(random) : infinity;
+    lane.rate[i] = speed(random);
+    lane.before[i] = lane.free[i] + 0.1 * place(random);
+    if (i % 4 == 3) lane.free[i] = lane.lower[i];  // just touching
+  }
+  return lane;
+}
+
+DenseDelassus random_delassus(std::mt19937& random, int points, double flexibility) {
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd A(points, points);
+  for (int i = 0; i < points; ++i)
+    for (int j = 0; j < points; ++j) A(i, j) = normal(random);
+  Eigen::MatrixXd W = A * A.transpose() / points + 0.2 * Eigen::MatrixXd::Identity(points, points);
+  return DenseDelassus(flexibility * W);
+}
+
+double flexibility_of(const Law& law) {
+  LawBench bench(law, 1, 1);
+  if (!bench.law().reads()) return 1e-4;
+  constexpr double depth = 0.01;
+  const double p = at_point(bench, -1, depth, 0, depth).effort;
+  return std::isfinite(p) && p > 0 ? depth / p : 1e-4;
+}
+
+}  // namespace ricochet::checking

@@ -1,0 +1,240 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/check/law_checks.hpp"
+
+namespace ricochet::checking {
+namespace {
+
+constexpr std::array sides = {-1, 1};
+const char* side_name(int side) {
+  return side < 0 ? "lower" : "upper";
+}
+
+// Depths at which a law that acts from its layer on can be asked, in order; a barrier never lets a point reach 0.
+std::vector<double> depths_of(LawBench& bench) {
+  std::vector<double> depths;
+  const double layer = bench.layer();
+  if (layer > 0)
+    for (const double share : {0.9, 0.5, 0.1}) depths.push_back(-share * layer);
+  for (const double depth : {1e-5, 1e-4, 1e-3, 1e-2})
+    if (layer == 0 || std::isfinite(at_point(bench, -1, depth, 0, depth).effort)) depths.push_back(depth);
+  return depths;
+}
+
+std::vector<double> speeds_of(const LawBench& bench) {
+  if (!bench.law().reads_rate()) return {0.0};
+  return {0.0, -0.2, 0.2, -2, 2};
+}
+
+bool is_compliant(const Law& law) {
+  return law.make()->reads().has_value();
+}
+Verdict rigid() {
+  return not_applicable("not a compliant law");
+}
+
+// What one point answers at a given measure, speed and measure before, between the stops of a lane.
+double answer_at(LawBench& bench, const LaneProblem& lane, Eigen::Index i, double g, double u) {
+  const double layer = bench.layer();
+  for (const int side : sides) {
+    const double stop = side < 0 ? lane.lower[i] - layer : lane.upper[i] + layer;
+    const double depth = side * (g - stop), before = side * (lane.before[i] - stop);
+    const bool acts = depth > -layer || (bench.law().reads() == Evaluation::conserving && before > -layer);
+    if (acts) return at_point(bench, side, depth, u, before).effort;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Verdict force_law_is_one(const Law& law) {
+  if (!is_compliant(law)) return rigid();
+  LawBench bench(law, 1, 1);
+  const double layer = bench.layer();
+  if (!(layer >= 0)) return fails(fmt::format("its layer is {:g} m: it must not be negative", layer));
+  for (const int side : sides)
+    for (const double speed : speeds_of(bench)) {
+      const double open = at_point(bench, side, -layer - 1e-3, speed, -layer - 1e-3).effort;
+      if (open != 0)
+        return fails(fmt::format("{:g} N where the point is 1 mm away from the {} stop{} (speed {:g} m/s)", open,
+                                 side_name(side), layer > 0 ? "'s layer" : "", speed));
+      double last = 0;
+      for (const double depth : depths_of(bench)) {
+        const double p = at_point(bench, side, depth, speed, depth).effort;
+        if (!std::isfinite(p)) return fails(fmt::format("the force at a depth of {:g} m is not finite", depth));
+        if (side * p > 0)
+          return fails(
+              fmt::format("pulls: {:g} N at the {} stop (p > 0 pushes up from the lower stop, p < 0 down from "
+                          "the upper one), depth {:g} m, speed {:g} m/s",
+                          p, side_name(side), depth, speed));
+        if (speed == 0 && std::abs(p) < last * (1 - 1e-9))
+          return fails(fmt::format("the force falls from {:g} to {:g} N as the depth grows to {:g} m", last,
+                                   std::abs(p), depth));
+        const double mirrored = at_point(bench, -side, depth, -speed, depth).effort;
+        if (std::abs(p + mirrored) > 1e-9 * std::abs(p))
+          return fails(fmt::format("{:g} N at the {} stop, {:g} N at the other one in the mirror", p, side_name(side),
+                                   mirrored));
+        if (speed == 0) last = std::abs(p);
+      }
+    }
+  const double p = std::abs(at_point(bench, -1, depths_of(bench).back(), 0, depths_of(bench).back()).effort);
+  if (p == 0) return fails("no force at all beyond the stop");
+  return fine(fmt::format("pushes, grows with the depth, the same on both sides; {:.4g} N at {:g} m", p,
+                          depths_of(bench).back()));
+}
+
+Verdict solution_answers_the_force_law(const Law& law) {
+  if (!is_compliant(law)) return rigid();
+  std::mt19937 random(20240612);
+  const double flexibility = flexibility_of(law);
+  double worst = 0;
+  LawBench one(law, 1, 1);
+  if (one.layer() > 0 && !std::isfinite(at_point(one, -1, 1e-3, 0, 1e-3).effort))
+    return not_applicable("a barrier: its force has no value beyond the stop");
+  for (const int points : {1, 3, 10})
+    for (int k = 0; k < 12; ++k) {
+      LawBench bench(law, points, 1);
+      DenseDelassus W = random_delassus(random, points, flexibility);
+      const double reach = std::array{1.0, 0.25, 0.0}[static_cast<std::size_t>(k % 3)], rate_reach = 10 * reach;
+      const LaneProblem lane = random_lane(random, points, k % 2 == 1);
+      bench.solve(W, reach, rate_reach, {lane}, {0});
+      const Eigen::VectorXd p = bench.effort(0);
+      const LaneOutcome& outcome = bench.outcome(0);
+      if (!p.allFinite()) return fails(fmt::format("{} points: an effort is not finite", points));
+      if (!outcome.converged) return fails(fmt::format("{} points: says that it did not converge", points));
+      const Eigen::VectorXd push = W.matrix() * p, g = lane.free + reach * push, u = lane.rate + rate_reach * push;
+      double difference = 0, largest = 0;
+      for (Eigen::Index i = 0; i < points; ++i) {
+        const double expected = answer_at(one, lane, i, g[i], u[i]);
+        difference = std::max(difference, std::abs(p[i] - expected));
+        largest = std::max({largest, std::abs(expected), std::abs(p[i])});
+      }
+      if (difference > 1e-6 * largest + 10 * outcome.residual / flexibility)
+        return fails(
+            fmt::format("{} point{}, reach {:g}: the efforts found differ by {:.3g} of {:.3g} N from what the "
+                        "law answers one point at the measures they lead to; it owns up to {:.3g} m",
+                        points, points == 1 ? "" : "s", reach, difference, largest, outcome.residual));
+      if (outcome.residual > 1e-4 * 0.02)
+        return fails(
+            fmt::format("{} points: leaves an error of {:.3g} m in measures of 0.02 m", points, outcome.residual));
+      if (largest > 0) worst = std::max(worst, difference / largest);
+    }
+  return fine(fmt::format("1, 3 and 10 points, one and two stops: p = Φ(g(p)) to {:.1g}", worst));
+}
+
+Verdict stiffness_as_declared(const Law& law) {
+  if (!is_compliant(law)) return rigid();
+  LawBench bench(law, 1, 1);
+  const auto stiffness = bench.law().constant_stiffness(0);
+  if (!stiffness) return not_declared("not linear: references and spectra that need one stiffness refuse");
+  for (const double depth : {1e-4, 1e-3, 1e-2})
+    for (const double speed : speeds_of(bench)) {
+      const double p = at_point(bench, -1, depth, speed, depth).effort;
+      if (std::abs(p - *stiffness * depth) > 1e-9 * *stiffness * depth)
+        return fails(
+            fmt::format("declares that its force is {:g} N/m times the depth; at {:g} m and {:g} m/s it is "
+                        "{:g} N, not {:g}",
+                        *stiffness, depth, speed, p, *stiffness * depth));
+    }
+  return fine(fmt::format("{:g} N/m", *stiffness));
+}
+
+Verdict slopes_are_derivatives(const Law& law) {
+  if (!is_compliant(law)) return rigid();
+  LawBench bench(law, 1, 1);
+  if (!bench.law().offers_slopes()) return not_declared("no slopes: exponents are those of twins");
+  const bool conserving = bench.law().reads() == Evaluation::conserving;
+  for (const int side : sides)
+    for (const double depth : depths_of(bench))
+      for (const double speed : speeds_of(bench)) {
+        const double before = conserving ? 0.8 * depth : depth;
+        const PointAnswer here = at_point(bench, side, depth, speed, before);
+        if (here.effort == 0) continue;  // a damper that lets go
+        const double dg = 1e-5 * std::abs(depth), du = 1e-5;
+        const auto difference = [&](double d, double u, double b) {
+          const double ahead = at_point(bench, side, depth + d, speed + u, before + b).effort;
+          const double behind = at_point(bench, side, depth - d, speed - u, before - b).effort;
+          return ahead - behind;
+        };
+        // δp = −stiffness δg − viscosity δu − before δg⁻, with g = side · depth.
+        const double stiffness = -side * difference(dg, 0, conserving ? 0 : dg) / (2 * dg);
+        const double viscosity = bench.law().reads_rate() ? -difference(0, du, 0) / (2 * du) : 0;
+        const double backwards = conserving ? -side * difference(0, 0, dg) / (2 * dg) : 0;
+        const double size = std::max(std::abs(stiffness), std::abs(here.effort / depth));
+        const auto wrong = [&](const char* what, double says, double is) {
+          return fmt::format("at a depth of {:g} m and {:g} m/s it says a {} of {:.6g}, differences give {:.6g}", depth,
+                             speed, what, says, is);
+        };
+        if (std::abs(here.slopes.stiffness - stiffness) > 1e-4 * size)
+          return fails(wrong("stiffness", here.slopes.stiffness, stiffness));
+        if (std::abs(here.slopes.before - backwards) > 1e-4 * size)
+          return fails(wrong("slope in the measure before", here.slopes.before, backwards));
+        const double damping = std::max(std::abs(viscosity), std::abs(here.effort));
+        if (std::abs(here.slopes.viscosity - viscosity) > 1e-4 * damping)
+          return fails(wrong("viscosity", here.slopes.viscosity, viscosity));
+      }
+  return fine("agree with differences of the force");
+}
+
+Verdict potential_stores_the_force(const Law& law) {
+  LawBench bench(law, 1, 1);
+  if (bench.law().absent()) return not_applicable("the law is the absence of contact");
+  if (!bench.law().reads()) {
+    for (const double depth : {1e-4, 1e-2})
+      if (bench.law().potential(depth, 0) != 0)
+        return fails(fmt::format("a rigid law stores nothing; its potential at {:g} m is {:g} J", depth,
+                                 bench.law().potential(depth, 0)));
+    return not_applicable("a rigid law stores nothing");
+  }
+  if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
+  const auto U = [&](double depth) { return bench.law().potential(depth, 0); };
+  const bool conserving = bench.law().reads() == Evaluation::conserving;
+  const double rest = U(-bench.layer());
+  for (const double depth : depths_of(bench)) {
+    const double stored = U(depth);
+    if (!(stored >= 0)) return fails(fmt::format("stores {:g} J at a depth of {:g} m", stored, depth));
+    if (std::abs(rest) > 1e-9 * stored) return fails(fmt::format("stores {:g} J where it begins to act", rest));
+    const double step = conserving ? 0.25 * std::abs(depth) : 1e-5 * std::abs(depth);
+    const double ahead = depth + step, behind = depth - step;
+    if (behind < -bench.layer()) continue;
+    const double slope = (U(ahead) - U(behind)) / (2 * step);
+    const double p =
+        conserving ? at_point(bench, -1, ahead, 0, behind).effort : at_point(bench, -1, depth, 0, depth).effort;
+    const double tolerance = (conserving ? 1e-8 : 1e-5) * std::max(std::abs(p), std::abs(slope));
+    if (std::abs(slope - p) > tolerance)
+      return fails(fmt::format("at a depth of {:g} m the force is {:.6g} N, its potential grows by {:.6g} J/m", depth,
+                               p, slope));
+  }
+  return fine("its slope is the force at rest");
+}
+
+Verdict dissipation_is_reported(const Law& law) {
+  LawBench bench(law, 1, 1);
+  if (!bench.law().reads()) return not_applicable("not a compliant law");
+  if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
+  double most = 0;
+  for (const int side : sides)
+    for (const double depth : depths_of(bench)) {
+      const double at_rest = at_point(bench, side, depth, 0, depth).effort;
+      for (const double speed : speeds_of(bench)) {
+        const PointAnswer here = at_point(bench, side, depth, speed, depth);
+        const double taken = -(here.effort - at_rest) * speed;
+        const double scale = std::abs(at_rest * speed) + std::abs(taken);
+        if (taken < -1e-9 * scale)
+          return fails(fmt::format("gives {:.3g} W at a depth of {:g} m and {:g} m/s: a law may only take energy",
+                                   -taken, depth, speed));
+        if (!(std::abs(here.dissipation - taken) <= 1e-6 * scale))
+          return fails(
+              fmt::format("reports {:.6g} W dissipated at a depth of {:g} m and {:g} m/s; its force beyond that "
+                          "at rest takes {:.6g}",
+                          here.dissipation, depth, speed, taken));
+        most = std::max(most, taken);
+      }
+    }
+  return fine(most > 0 ? "what its force beyond that at rest takes" : "none");
+}
+
+}  // namespace ricochet::checking

@@ -1,0 +1,106 @@
+#include "runners/check/mass_spaces.hpp"
+
+#include <fmt/format.h>
+
+#include <ricochet/contract/plugin_call.hpp>
+#include <ricochet/scene/assembly.hpp>
+
+namespace ricochet::checking {
+
+FiniteElementSpace unit_space(const SpaceBench& bench) {
+  using Basis = FiniteElementSpace::Basis;
+  FiniteElementSpace space;
+  space.structure = bench.beam ? "beam" : "bar";
+  space.basis = bench.beam ? Basis::hermite : Basis::linear;
+  space.left_fixed = bench.left_fixed;
+  space.right_fixed = bench.right_fixed;
+  const int per_node = bench.beam ? 2 : 1;
+  std::vector<int> first(static_cast<std::size_t>(bench.elements) + 1, -1);
+  for (int node = 0; node <= bench.elements; ++node) {
+    if ((node == 0 && bench.left_fixed) || (node == bench.elements && bench.right_fixed)) continue;
+    first[static_cast<std::size_t>(node)] = space.dofs;
+    space.dofs += per_node;
+  }
+  const double length = 1.0 / bench.elements;
+  for (int e = 0; e < bench.elements; ++e) {
+    FiniteElementSpace::Element element{e * length, length, 1.0, {-1, -1, -1, -1}};
+    for (int end = 0; end < 2; ++end) {
+      const int dof = first[static_cast<std::size_t>(e + end)];
+      for (int k = 0; k < per_node; ++k)
+        element.dof[static_cast<std::size_t>(end * per_node + k)] = dof < 0 ? -1 : dof + k;
+    }
+    space.elements.push_back(element);
+  }
+  if (bench.point_mass) space.point_masses = {{first[static_cast<std::size_t>(bench.elements / 2)], 0.3}};
+  return space;
+}
+
+std::string space_text(const SpaceBench& bench) {
+  const char* ends = bench.left_fixed && bench.right_fixed ? "fixed at both ends"
+                     : bench.left_fixed                    ? "fixed at its left end"
+                     : bench.right_fixed                   ? "fixed at its right end"
+                                                           : "free at both ends";
+  return fmt::format("a {} of {} elements, {}{}", bench.beam ? "beam" : "bar", bench.elements, ends,
+                     bench.point_mass ? ", with a point mass" : "");
+}
+
+FiniteElementSpace oscillator_space() {
+  FiniteElementSpace space;
+  space.structure = "oscillator";
+  space.dofs = 1;
+  space.point_masses = {{0, 1.0}};
+  return space;
+}
+
+InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space) {
+  const PluginIdentity identity{"mass", mass.entry->manual.name, mass.entry->file};
+  const PluginCallScope scope(identity, "build");
+  return mass.make()->build(space);
+}
+
+Inertia built(const Mass& mass, const FiniteElementSpace& space) {
+  InertiaOrRefusal answer = ask_mass(mass, space);
+  if (auto* refusal = std::get_if<Refusal>(&answer)) throw Refused{refusal->sentence};
+  return std::get<Inertia>(std::move(answer));
+}
+
+Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space) {
+  const auto demand = [](bool holds, const std::string& sentence) {
+    if (!holds) throw std::runtime_error(sentence);
+  };
+  if (!inertia.factored()) {
+    demand(inertia.mass.rows() == space.dofs && inertia.mass.cols() == space.dofs,
+           fmt::format("the matrix is {} × {}, the space has {} dofs", inertia.mass.rows(), inertia.mass.cols(),
+                       space.dofs));
+    const Eigen::MatrixXd M = inertia.mass;
+    demand(M.allFinite(), "the matrix has an entry that is not finite");
+    return M;
+  }
+  const Eigen::MatrixXd B = inertia.coupling, C = inertia.velocity_mass;
+  demand(B.cols() == space.dofs && C.rows() == B.rows() && C.cols() == B.rows(),
+         fmt::format("the factors are {} × {} and {} × {}, the space has {} dofs", B.rows(), B.cols(), C.rows(),
+                     C.cols(), space.dofs));
+  demand(B.allFinite() && C.allFinite(), "a factor has an entry that is not finite");
+  demand((C - C.transpose()).norm() <= 1e-13 * C.norm(), "the mass of the velocities is not symmetric");
+  const Eigen::LLT<Eigen::MatrixXd> factor(C);
+  demand(factor.info() == Eigen::Success, "the mass of the velocities is not positive definite");
+  return B.transpose() * factor.solve(B);
+}
+
+Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space) {
+  return Eigen::MatrixXd(space.basis == FiniteElementSpace::Basis::hermite ? bending_stiffness(space, 1)
+                                                                           : axial_stiffness(space, 1));
+}
+
+std::vector<SpaceBench> accepted(const Mass& mass, int elements) {
+  std::vector<SpaceBench> all;
+  for (const bool beam : {false, true})
+    for (const bool left : {true, false})
+      for (const bool right : {false, true}) {
+        const SpaceBench bench{beam, elements, left, right, false};
+        if (std::holds_alternative<Inertia>(ask_mass(mass, unit_space(bench)))) all.push_back(bench);
+      }
+  return all;
+}
+
+}  // namespace ricochet::checking

@@ -1,0 +1,129 @@
+#include "runners/check/reference_scenes.hpp"
+
+#include <cmath>
+#include <limits>
+#include <ricochet/scene/assembly.hpp>
+
+#include "runners/check/bench.hpp"
+#include "runners/check/closed_forms.hpp"
+
+namespace ricochet::checking {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+SampleGrid grid_of(double duration, int samples, const std::vector<double>& places) {
+  SampleGrid grid;
+  for (int k = 0; k <= samples; ++k) grid.times.push_back(duration * k / samples);
+  grid.places = places;
+  grid.weights.assign(places.size(), places.empty() ? 0 : 1.0 / static_cast<double>(places.size()));
+  return grid;
+}
+
+// The matrices that the methods of a study would march.
+std::shared_ptr<const DiscreteProblem> matrices(const SemiDiscrete& problem, const SampleGrid& grid) {
+  auto discrete = std::make_shared<DiscreteProblem>();
+  discrete->mass = problem.inertia.mass;
+  discrete->stiffness = problem.stiffness;
+  discrete->contact = problem.contact;
+  discrete->lower = problem.lower;
+  discrete->upper = problem.upper;
+  discrete->support_shape = problem.support_shape;
+  discrete->position = problem.position;
+  discrete->velocity = problem.velocity;
+  discrete->load_constant = Eigen::VectorXd::Zero(problem.dofs());
+  discrete->tip = Eigen::MatrixXd(problem.tip).row(0);
+  const auto places = static_cast<Eigen::Index>(grid.places.size());
+  discrete->places = Eigen::MatrixXd(displacement_rows(problem.space, grid.places));
+  discrete->strains = Eigen::MatrixXd::Zero(places, problem.dofs());
+  for (Eigen::Index i = 0; i < places; ++i)
+    for (const auto& [dof, value] : strain_row(problem.space, grid.places[static_cast<std::size_t>(i)]))
+      discrete->strains(i, dof) = value;
+  return discrete;
+}
+
+ReferenceScene described(std::string name, SceneSpec scene, int elements, double duration,
+                         const std::vector<double>& places) {
+  ReferenceScene described;
+  described.name = std::move(name);
+  described.grid = grid_of(duration, 40, places);
+  const ProblemPointer problem = discretised(scene, elements);
+  described.discrete = matrices(*problem, described.grid);
+  ReferenceProblem& asked = described.problem;
+  asked.discrete = described.discrete.get();
+  asked.structure = problem->space.structure;
+  asked.left_fixed = problem->space.left_fixed;
+  asked.right_fixed = problem->space.right_fixed;
+  asked.displacement = [formula = scene.initial.displacement](double x) { return formula(x); };
+  asked.velocity = [formula = scene.initial.velocity](double x) { return formula(x); };
+  asked.load_zero = true;
+  asked.load = [](double, double) { return 0.0; };
+  asked.stop_places = problem->contact_x;
+  asked.stops_at_tip = !problem->contact_x.empty();
+  const double lower = scene.stops.lower ? (*scene.stops.lower)(0) : -infinity;
+  asked.lower = [lower](double) { return lower; };
+  asked.upper = [](double) { return infinity; };
+  asked.contact_absent = problem->contact_x.empty();
+  return described;
+}
+
+ReferenceScene forced_oscillator() {
+  SceneSpec scene = oscillator_scene({.mass = 2, .stiffness = 8, .damping = 0.4, .position = 0.3, .velocity = -1});
+  std::get<OscillatorSpec>(scene.structure).force = {3, 1.3, 0.4};
+  ReferenceScene made = described("a forced oscillator", scene, 1, 4, {});
+  made.problem.stiffness = 8;
+  made.problem.inertia = 2;
+  made.problem.damping_mass = 0.2;
+  made.problem.force_amplitude = 3;
+  made.problem.force_pulsation = 1.3;
+  made.problem.force_phase = 0.4;
+  const HarmonicMotion exact(2, 0.4, 8, 0, {{3 * std::cos(0.4), -3 * std::sin(0.4), 1.3}}, 0.3, -1);
+  made.exact = [exact](double t) { return exact.displacement(t); };
+  return made;
+}
+
+// Let go at 0.5 m, it falls on a stop at 0 after a quarter of its period and rebounds with e times its speed.
+ReferenceScene bouncing_oscillator() {
+  constexpr double e = 0.8, height = 0.5, omega = 2, quarter = 0.5 * 1.5707963267948966;
+  ReferenceScene made =
+      described("a bouncing oscillator",
+                oscillator_scene({.mass = 2, .stiffness = 8, .position = height, .stop = true}), 1, 2, {});
+  made.problem.stiffness = 8;
+  made.problem.inertia = 2;
+  made.problem.restitution = e;
+  made.exact = [](double t) {
+    return t < quarter ? height * std::cos(omega * t) : e * height * std::sin(omega * (t - quarter));
+  };
+  return made;
+}
+
+ReferenceScene bar_on_its_stop() {
+  StructureBench bench;
+  bench.stops = true;
+  SceneSpec scene = structure_scene(bench);
+  scene.initial.velocity = Formula(0.0);
+  scene.stops.lower = Formula(0.0);
+  scene.stops.upper.reset();
+  ReferenceScene made = described("a bar on its stop", scene, 6, 2.5, {0.25, 0.5, 0.75});
+  made.problem.length = made.problem.stiffness = made.problem.inertia = 1;
+  made.tip = 0;
+  return made;
+}
+
+ReferenceScene cantilever() {
+  SceneSpec scene = structure_scene({.beam = true, .stops = true});
+  scene.initial.velocity = Formula(0.0);
+  scene.stops.upper.reset();
+  ReferenceScene made = described("a cantilever against a stop", scene, 4, 0.6, {0.25, 0.5, 0.75});
+  made.problem.length = made.problem.stiffness = made.problem.inertia = 1;
+  made.tip = 1;
+  return made;
+}
+
+}  // namespace
+
+std::vector<ReferenceScene> reference_scenes() {
+  return {forced_oscillator(), bouncing_oscillator(), bar_on_its_stop(), cantilever()};
+}
+
+}  // namespace ricochet::checking

@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/energy_audit.hpp>
+#include <ricochet/measure/plan_restitution.hpp>
+
+#include "runners/check/scheme_checks.hpp"
+
+namespace ricochet::checking {
+namespace {
+
+constexpr double mass = 2, fall = 0.5;
+constexpr int phases = 5;
+
+StepPlan contact_plan(const Scheme& scheme, double h) {
+  return plan_of(scheme, h, {1, 0, false, true});
+}
+bool measures(const StepPlan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(),
+                     [](const Stage& stage) { return stage.impact.has_value(); });
+}
+Verdict no_measure() {
+  return not_declared("no impact measure: rigid laws are refused");
+}
+
+// A free mass falls with 1 m/s on a stop at 0 and leaves it.
+struct Bounce {
+  double before = 0, after = 0, lowest = 0, impulse = 0;
+  long long impacts = 0;
+};
+Bounce bounce(const Scheme& scheme, double h, int phase, std::unique_ptr<ContactLaw> law, int steps) {
+  const ProblemPointer problem = discretised(oscillator_scene(
+      {.mass = mass, .stiffness = 0, .position = fall + h * (phase + 0.37) / phases, .velocity = -1, .stop = true}));
+  Marcher marcher = marcher_of(scheme, problem, h, std::move(law));
+  EnergyAudit audit(marcher);
+  marcher.start(&audit);
+  Bounce result;
+  double last = marcher.position(0)[0];
+  for (int n = 0; n < steps; ++n) {
+    marcher.march(1, &audit);
+    const double now = marcher.position(0)[0];
+    if (n == 1) result.before = (now - last) / h;
+    result.after = (now - last) / h;
+    result.lowest = std::min(result.lowest, now);
+    last = now;
+  }
+  if (!marcher.status(0).running) throw std::runtime_error("a bouncing mass stopped: " + marcher.status(0).cause);
+  result.impulse = audit.contact(0).impulse;
+  result.impacts = audit.contact(0).impacts;
+  return result;
+}
+
+// An oscillator (1 kg, 2 rad/s about 0.2 m) let go above a stop at 0: w up to the impact and after it.
+struct OscillatorBounce {
+  static constexpr double omega = 2, rest = 0.2;
+  double height, impact, speed;
+  explicit OscillatorBounce(double from) : height(from) {
+    const double a = from - rest;
+    impact = std::acos(-rest / a) / omega;
+    speed = a * omega * std::sin(omega * impact);
+  }
+  double after(double t, double e) const {
+    const double s = omega * (t - impact);
+    return rest - rest * std::cos(s) + e * speed / omega * std::sin(s);
+  }
+};
+
+// Errors of displacements between the impact and the next one, the mean over phases.
+std::vector<double> errors_after_impact(const Scheme& scheme, const std::vector<double>& steps, double e) {
+  std::vector<double> errors;
+  for (const double h : steps) {
+    double sum = 0;
+    for (int phase = 0; phase < phases; ++phase) {
+      const OscillatorBounce exact(0.7 + 1.3 * h * (phase + 0.37) / phases);
+      SceneSpec scene =
+          oscillator_scene({.mass = 1, .stiffness = exact.omega * exact.omega, .position = exact.height, .stop = true});
+      scene.load = Formula(exact.rest * exact.omega * exact.omega);
+      Marcher marcher = marcher_of(scheme, discretised(scene), h, rigid_stops());
+      marcher.start();
+      double worst = 0;
+      while (marcher.time() < exact.impact + 0.4) {
+        marcher.march(1);
+        if (marcher.time() > exact.impact + 0.15)
+          worst = std::max(worst, std::abs(marcher.position(0)[0] - exact.after(marcher.time(), e)));
+      }
+      sum += worst / phases;
+    }
+    errors.push_back(sum);
+  }
+  return errors;
+}
+
+std::vector<double> contact_steps(const StepPlan& plan) {
+  double h = 0.02;
+  if (plan.facts.stability_limit) h = std::min(h, 0.2 * *plan.facts.stability_limit);
+  return {h, h / 2, h / 4, h / 8, h / 16};
+}
+
+std::string range_text(const RestitutionRange& range) {
+  return fmt::format("{:.4g} to {:.4g} over the phases of the impact, mean {:.4g}", range.least, range.most,
+                     range.mean);
+}
+
+const char* word(Restitution restitution) {
+  return restitution == Restitution::exact ? "exact" : "asymptotic";
+}
+
+}  // namespace
+
+Verdict rigid_stops_hold(const Scheme& scheme) {
+  const double h = 0.05;
+  const StepPlan plan = contact_plan(scheme, h);
+  if (!measures(plan)) return no_measure();
+  if (!plan_restitution(plan, h))
+    return fails("declares an impact measure that no effort can move: its weight of z, or S, has nothing of M");
+  double lowest = 0;
+  for (int phase = 0; phase < phases; ++phase) {
+    const Bounce of = bounce(scheme, h, phase, rigid_stops(), 40);
+    lowest = std::min(lowest, of.lowest);
+    if (of.impacts == 0) return fails("a mass that falls on a rigid stop passes through it: no effort is ever found");
+  }
+  // A measure that averages positions lets the mass pass by the way of a step or so.
+  if (-lowest > 2 * h)
+    return fails(
+        fmt::format("a mass that comes with 1 m/s passes a rigid stop by {:.2g} steps of its way", -lowest / h));
+  return fine(fmt::format("passes the stop by {:.2g} of a step's way at most", -lowest / h));
+}
+
+Verdict restitution_as_declared(const Scheme& scheme) {
+  const double h = 0.05;
+  const StepPlan plan = contact_plan(scheme, h);
+  if (!measures(plan)) return no_measure();
+  const auto range = restitution_range(plan, h);
+  if (!range) return not_applicable("no effort can move the impact measure");
+  const double e = declared_restitution(scheme);
+  const Restitution declared = plan.facts.restitution;
+  if (declared == Restitution::ignored) return not_declared("ignored; measured " + range_text(*range));
+  if (declared == Restitution::exact && !(std::abs(range->least - e) <= 1e-9 && std::abs(range->most - e) <= 1e-9))
+    return fails(
+        fmt::format("declares its restitution exact, e = {:g}; a free mass rebounds with {}", e, range_text(*range)));
+  const std::vector<double> steps = contact_steps(plan), errors = errors_after_impact(scheme, steps, e);
+  if (!(errors.back() <= 0.5 * errors.front() && errors.back() <= 0.02))
+    return fails(
+        fmt::format("declares its restitution {}, e = {:g}; after one bounce of an oscillator the error is "
+                    "{:.2g} m at h = {:g} s and {:.2g} m at {:g} s, where it should vanish; a free mass "
+                    "rebounds with {}",
+                    word(declared), e, errors.front(), steps.front(), errors.back(), steps.back(), range_text(*range)));
+  return fine(fmt::format("{}, e = {:g}: a free mass rebounds with {}", word(declared), e, range_text(*range)));
+}
+
+Verdict contact_order_as_declared(const Scheme& scheme) {
+  const StepPlan plan = contact_plan(scheme, 0.01);
+  if (!measures(plan)) return no_measure();
+  const auto range = restitution_range(plan, 0.01);
+  const bool known = plan.facts.restitution != Restitution::ignored;
+  if (!plan.facts.contact_order && !known) return not_declared("not known");
+  const std::vector<double> steps = contact_steps(plan);
+  const double e = known ? declared_restitution(scheme) : range ? range->mean : 0;
+  const MeasuredOrder measured = measured_order(steps, errors_after_impact(scheme, steps, e), 0.5);
+  if (!plan.facts.contact_order) return not_declared(fmt::format("not known; measured {:.2f}", measured.order));
+  constexpr double irregular = 0.35;  // impacts fall anywhere in a step
+  if (!measured.exact && measured.order < *plan.facts.contact_order - irregular)
+    return fails(
+        fmt::format("declares order {:g} at rigid stops; after one bounce of an oscillator it is {:.2f} (error "
+                    "{:.2g} m at the finest of 5 steps)",
+                    *plan.facts.contact_order, measured.order, measured.finest));
+  return fine(fmt::format("declared {:g}, measured {:.2f}", *plan.facts.contact_order, measured.order));
+}
+
+Verdict impulse_is_momentum(const Scheme& scheme) {
+  const double h = 0.05;
+  const StepPlan plan = contact_plan(scheme, h);
+  std::vector<std::pair<std::string, std::function<std::unique_ptr<ContactLaw>()>>> laws;
+  if (measures(plan)) laws.emplace_back("rigid stops", rigid_stops);
+  for (const Evaluation evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+    if (std::any_of(plan.stages.begin(), plan.stages.end(),
+                    [&](const Stage& stage) { return stage.at(evaluation).has_value(); }))
+      laws.emplace_back(std::string("springs, ") + evaluation_word(evaluation),
+                        [evaluation] { return springs(evaluation, 50); });
+  if (laws.empty()) return not_declared("no measure of contact at all");
+  for (const auto& [name, law] : laws)
+    for (int phase = 0; phase < phases; ++phase) {
+      const Bounce of = bounce(scheme, h, phase, law(), 60);
+      const double change = mass * (of.after - of.before);
+      if (!(std::abs(change - of.impulse) <= 1e-8 * mass))
+        return fails(fmt::format("{}: the efforts of one bounce sum up to {:.8g} N s, the momentum changes by {:.8g}",
+                                 name, of.impulse, change));
+      if (of.after < -1e-6)
+        return fails(
+            fmt::format("{}: a mass that falls with 1 m/s still falls with {:.3g} m/s at the end", name, -of.after));
+    }
+  return fine(fmt::format("of one bounce on {}", laws.size() == 1 ? laws.front().first : "rigid stops and springs"));
+}
+
+}  // namespace ricochet::checking

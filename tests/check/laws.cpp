@@ -1,0 +1,155 @@
+// Laws with one thing wrong, each caught by the check that looks at it.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <ricochet/algebra/box_problem.hpp>
+
+#include "runners/check/allocation_count.hpp"
+#include "runners/check/law_checks.hpp"
+#include "tests/check/sound_schemes.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+using Catch::Matchers::Contains;
+using checking::CheckResult;
+using checking::Finding;
+
+namespace {
+
+enum class Wrong {
+  nothing,
+  effort,         // three times what it should be
+  allocates,      // by operator new
+  allocates_raw,  // by malloc, as Eigen does
+  stiffness,      // the slope it tells
+  constant,       // the one stiffness it declares
+  potential,
+  dissipation,
+  pulls,
+  neighbour,       // writes a lane that is not touched
+  company,         // depends on the lane before it
+  memory_of_last,  // adds the effort of the last step
+  residual,        // owns up to nothing while it stops early
+  no_number
+};
+
+constexpr double kappa = 2e4;
+
+class FlawedLaw final : public ContactLaw {
+ public:
+  FlawedLaw(bool rigid, Wrong wrong) : rigid_(rigid), wrong_(wrong) {}
+  std::optional<Evaluation> reads() const override {
+    return rigid_ ? std::nullopt : std::optional(Evaluation::implicit_end);
+  }
+  void prepare(int points, std::span<const Parameters>) override { solver_.prepare(points); }
+  void solve(ReducedProblem& problem) override {
+    if (wrong_ == Wrong::allocates) kept_.assign(static_cast<std::size_t>(problem.points) + ++calls_, 0.0);
+    if (wrong_ == Wrong::allocates_raw) {
+      void* volatile raw = std::malloc(64);
+      std::free(raw);
+    }
+    double company = 0;
+    for (const int lane : problem.touched) {
+      const auto at = [&](int i) { return i * problem.lanes + lane; };
+      const double last = problem.effort[lane];
+      problem.outcome[lane] = solver_.solve(*problem.delassus, problem.reach, rigid_ ? 0.0 : 1 / kappa,
+                                            problem.free + lane, problem.lower + lane, problem.upper + lane,
+                                            problem.effort + lane, problem.points, problem.lanes);
+      for (int i = 0; i < problem.points; ++i) {
+        double& p = problem.effort[at(i)];
+        if (wrong_ == Wrong::effort) p *= 3;
+        if (wrong_ == Wrong::pulls) p = -p;
+        if (wrong_ == Wrong::company) p += company;
+        if (wrong_ == Wrong::memory_of_last && last != 0) p += 0.1 * last;
+        if (wrong_ == Wrong::residual) p *= 0.99;
+        if (wrong_ == Wrong::no_number) p = std::nan("");
+      }
+      company += 1e-9 * problem.effort[at(0)];
+      if (wrong_ == Wrong::dissipation) problem.outcome[lane].dissipation = 1;
+    }
+    if (wrong_ == Wrong::neighbour) problem.effort[0] = 0;
+  }
+  double potential(double depth, int) const override {
+    if (rigid_) return wrong_ == Wrong::potential ? depth : 0;
+    return (wrong_ == Wrong::potential ? 1.0 : 0.5) * kappa * depth * depth;
+  }
+  std::optional<double> constant_stiffness(int) const override {
+    return rigid_ ? std::nullopt : std::optional(wrong_ == Wrong::constant ? 2 * kappa : kappa);
+  }
+  bool offers_slopes() const override { return !rigid_; }
+  ContactSlopes slopes(int, int) const override {
+    return {.stiffness = wrong_ == Wrong::stiffness ? 0.5 * kappa : kappa};
+  }
+
+ private:
+  bool rigid_;
+  Wrong wrong_;
+  BoxSolver solver_;
+  std::vector<double> kept_;
+  std::size_t calls_ = 0;
+};
+
+Entry<ContactLaw> law_entry(bool rigid, Wrong wrong) {
+  Entry<ContactLaw> entry{full_manual("made-here"), {}, ""};
+  entry.make = [=](const Parameters&) { return std::make_unique<FlawedLaw>(rigid, wrong); };
+  return entry;
+}
+
+void caught(bool rigid, Wrong wrong, const std::string& check, const std::string& words) {
+  const CheckResult result = one_check(checking::law_checks(), law_entry(rigid, wrong), check);
+  INFO(text_of({result}));
+  CHECK(result.finding == Finding::fails);
+  REQUIRE_FALSE(result.sentences.empty());
+  CHECK_THAT(result.sentences.front(), Contains(words));
+}
+
+}  // namespace
+
+TEST_CASE("check: laws that do what they say pass every check") {
+  for (const bool rigid : {true, false})
+    for (const auto& check : checking::law_checks()) {
+      const CheckResult result = one_check(checking::law_checks(), law_entry(rigid, Wrong::nothing), check.name);
+      INFO(text_of({result}));
+      CHECK(result.finding != Finding::fails);
+    }
+}
+
+TEST_CASE("check: wrong efforts of rigid laws are caught") {
+  caught(true, Wrong::effort, "complementarity", "the law owns up to");
+  caught(true, Wrong::residual, "complementarity", "the law owns up to");
+  caught(true, Wrong::pulls, "complementarity", "of the deepest violation");
+  caught(true, Wrong::no_number, "complementarity", "not finite");
+}
+
+TEST_CASE("check: wrong efforts of compliant laws are caught") {
+  caught(false, Wrong::effort, "solution", "differ by");
+  caught(false, Wrong::effort, "potential", "its potential grows by");
+  caught(false, Wrong::effort, "constant stiffness", "declares that its force is 20000 N/m");
+  caught(false, Wrong::pulls, "force law", "pulls");
+  caught(false, Wrong::no_number, "force law", "not finite");
+}
+
+TEST_CASE("check: wrong slopes, stiffness, potential and dissipation are caught") {
+  caught(false, Wrong::stiffness, "slopes", "differences give");
+  caught(false, Wrong::constant, "constant stiffness", "40000 N/m");
+  caught(false, Wrong::potential, "potential", "its potential grows by");
+  caught(true, Wrong::potential, "potential", "a rigid law stores nothing");
+  caught(false, Wrong::dissipation, "dissipation", "reports 1 W");
+}
+
+TEST_CASE("check: an allocation in solve() is caught, whoever makes it") {
+  if (!checking::allocations_are_counted()) return;
+  for (const bool rigid : {true, false}) {
+    caught(rigid, Wrong::allocates, "no allocation", "size what it needs in prepare()");
+    caught(rigid, Wrong::allocates_raw, "no allocation", "solve() allocates 1 time");
+  }
+}
+
+TEST_CASE("check: lanes that know of each other, or of lanes that are not theirs, are caught") {
+  caught(true, Wrong::neighbour, "untouched lanes", "which is not in `touched`");
+  caught(false, Wrong::company, "lanes independent", "lanes must not know of each other");
+}
+
+TEST_CASE("check: a solution that depends on where the search begins is caught") {
+  caught(true, Wrong::memory_of_last, "warm start", "another solution");
+  caught(false, Wrong::memory_of_last, "warm start", "another solution");
+}
