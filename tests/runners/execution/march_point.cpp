@@ -65,3 +65,22 @@ TEST_CASE("A point is marched with the bits of its diagram") {
   CHECK_FALSE(find_entry(record, 0.09, "rest"));
   CHECK_FALSE(find_entry(record, 0.08, "down"));
 }
+
+TEST_CASE("An entry takes along what the law remembers") {
+  Orbit orbit;
+  orbit.stage = Orbit::Stage::complete;
+  orbit.entry.slots = {1, 2, 3};
+  orbit.entry.efforts = {4};
+  orbit.entry.memory = {5, 6};
+  OrbitView view;
+  view.value = 0.08;
+  view.orbit = &orbit;
+  CaseRecord record;
+  add_entries(record, {view}, {"rest"});
+  const auto entry = find_entry(record, 0.08, "rest");
+  REQUIRE(entry);
+  CHECK(entry->slots == orbit.entry.slots);
+  CHECK(entry->efforts == orbit.entry.efforts);
+  CHECK(entry->fastest.empty());
+  CHECK(entry->memory == orbit.entry.memory);
+}
