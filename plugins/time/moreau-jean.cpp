@@ -12,7 +12,8 @@ using namespace ricochet;
 ///     v ← v + z,   q ← q + h v + hθ z,   y = H v_{n+1} on the sides that the gap test finds closed
 ///
 /// Gap test at q + (h/2)v. On a side that passes it, v⁺ may not fall below −e v⁻ (relative to the stop), or below −v⁻
-/// where v⁻ leaves it. Invariant (undamped, free, θ = ½): ½|v|²_M + ½|q|²_K; test displacement h(v + z/2).
+/// where v⁻ leaves it. Energy (undamped, free): ½|v|²_M + ½|q|²_K, of which a step takes (θ−½)(|z|²_M + |Δq|²_K); test
+/// displacement Δq = h(v + θz).
 class MoreauJean final : public TimeScheme {
  public:
   MoreauJean(double theta, double restitution) : theta_(theta), e_(restitution) {}
@@ -47,7 +48,10 @@ class MoreauJean final : public TimeScheme {
     stage.at(Evaluation::explicit_start) = {
         {.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
     stage.update = {end, {.slots = {0, 1}, .z = 1}};
-    stage.work = {{.slots = {0, h}, .z = h / 2}, {.slots = {0, 1}, .z = theta_}, load, {1}, {{1, 1}, {0, -1}}};
+    const Combination increment{.slots = {0, h}, .z = h * theta_};
+    stage.work = {increment, {.slots = {0, 1}, .z = theta_}, load, {1}, {{1, 1}, {0, -1}}};
+    if (theta_ != 0.5)
+      stage.loss = {{EnergyMatrix::M, theta_ - 0.5, {.slots = {}, .z = 1}}, {EnergyMatrix::K, theta_ - 0.5, increment}};
     plan.stages = {stage};
     plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};
     plan.facts.order = theta_ == 0.5 ? 2 : 1;

@@ -60,6 +60,8 @@ class Newmark final : public TimeScheme {
     stage.at(Evaluation::explicit_start) = {{.slots = {1, h, curve}}, {{1, 1}}, {.slots = {0, 1, lag}}, {{1, 1}}, {1}};
     stage.update = {end(h), end_rate, {.slots = {}, .z = 1}};
     const Combination increment{.slots = {0, h, curve}, .z = beta_ * h * h};
+    // With β < γ/2 what γ > ½ takes is no sum of squares: the balance is not known, the energy falls all the same.
+    if (gamma_ != 0.5 && 2 * beta_ < gamma_) return stage;
     stage.work = {increment,
                   {.slots = {0, 1, gamma_ * lag}, .z = gamma_ * gamma_ * h},
                   {{0, 1 - gamma_}, {1, gamma_}},

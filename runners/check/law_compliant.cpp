@@ -58,6 +58,7 @@ Verdict force_law_is_one(const Law& law) {
   for (const int side : sides)
     for (const double speed : speeds_of(bench)) {
       const double open = at_point(bench, side, -layer - 1e-3, speed, -layer - 1e-3).effort;
+      if (!std::isfinite(open)) return fails("the force of a point that touches nothing is not finite");
       if (open != 0)
         return fails(fmt::format("{:g} N where the point is 1 mm away from the {} stop{} (speed {:g} m/s)", open,
                                  side_name(side), layer > 0 ? "'s layer" : "", speed));
