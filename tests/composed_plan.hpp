@@ -1,5 +1,6 @@
 #pragma once
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <ricochet/contract/step_plan.hpp>
 
 /// \file
@@ -68,6 +69,43 @@ inline StepPlan without_stop_levels(StepPlan plan) {
       if (stage.work) stage.work->support.clear();
     }
   return plan;
+}
+
+/// The steps alone: the levels of a start rule hold on the motion that it starts, which its numbers do not tell.
+inline StepPlan steps_of(StepPlan plan) {
+  plan.start.clear();
+  plan.start_advances = false;
+  return plan;
+}
+
+/// Whether all stops of two stages have the same levels; rates where compliance is explicit apart: what a step knows of
+/// its end when it begins is a velocity of neither.
+inline void check_same_stops(const Stage& a, const Stage& b, bool rates = true) {
+  const auto weight = [](const Levels& levels, double at) {
+    double sum = 0;
+    for (const Level& level : levels) sum += std::abs(level.at - at) < 1e-9 ? level.weight : 0.0;
+    return sum;
+  };
+  const auto same = [&](const Levels& x, const Levels& y) {
+    for (const Levels* either : {&x, &y})
+      for (const Level& level : *either) CHECK(weight(x, level.at) == Approx(weight(y, level.at)).margin(1e-9));
+  };
+  REQUIRE(a.impact.has_value() == b.impact.has_value());
+  if (a.impact && (rates || !a.impact->gate)) same(a.impact->bound, b.impact->bound);
+  if (a.impact && a.impact->gate) {
+    same(a.impact->gate->predictor_bound, b.impact->gate->predictor_bound);
+    if (rates) same(a.impact->gate->approach_bound, b.impact->gate->approach_bound);
+  }
+  for (const auto evaluation :
+       {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start, Evaluation::conserving}) {
+    if (!a.at(evaluation)) continue;
+    INFO(evaluation_word(evaluation));
+    same(a.at(evaluation)->bound, b.at(evaluation)->bound);
+    same(a.at(evaluation)->before_bound, b.at(evaluation)->before_bound);
+    if (rates && evaluation != Evaluation::explicit_start)
+      same(a.at(evaluation)->rate_bound, b.at(evaluation)->rate_bound);
+  }
+  if (a.work && rates) same(a.work->support, b.work->support);
 }
 
 }  // namespace ricochet::testing

@@ -38,7 +38,8 @@ std::size_t distinct_load_levels(const StepPlan& plan) {
   return levels.size();
 }
 
-// Stage `place` counted from the first of a step, negative in the steps before: which one it is, and how many steps ago.
+// Stage `place` counted from the first of a step, negative in the steps before: which one it is, and how many steps
+// ago.
 std::pair<std::ptrdiff_t, std::ptrdiff_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t stages) {
   const std::ptrdiff_t steps = place >= 0 ? 0 : (stages - 1 - place) / stages;
   return {place + steps * stages, steps};
@@ -195,7 +196,8 @@ void Marcher::keep_start_efforts() {
   for (std::ptrdiff_t i = 0; i < before; ++i) {
     const auto [j, steps] = place_in_steps(i - before, static_cast<std::ptrdiff_t>(stage_states_.size()));
     const auto ago = static_cast<std::size_t>(steps - 1);
-    StageState &start = *start_states_[static_cast<std::size_t>(i)], &stage = *stage_states_[static_cast<std::size_t>(j)];
+    StageState &start = *start_states_[static_cast<std::size_t>(i)],
+               &stage = *stage_states_[static_cast<std::size_t>(j)];
     if (!start.delassus || !stage.delassus || ago >= stage.effort.size()) continue;
     std::copy_n(start.effort[0].data(), start.effort[0].size(), stage.effort[ago].data());
     if (ago == 0) stage.contact_lanes = start.contact_lanes;

@@ -11,7 +11,8 @@ using namespace ricochet;
 ///     stage 1, z = a_γ:   (M + d/2 C + d²/4 K) z = F(t+d) − C(v + d/2 a) − K(q + d v + d²/4 a) + Hᵀp
 ///                         q ← q + d v + d²/4(a + z),   v ← v + d/2(a + z),   b ← a,   a ← z
 ///     stage 2, z = a₁:    (M + e C + e² K) z = F(t+h) − C v° − K q° + Hᵀp,   e = q₂h
-///                         v₁ = v_n + h(q₀a_n + q₁a_γ + q₂z) = v° + e z,   q₁ = q_n + h(q₀v_n + q₁v_γ + q₂v₁) = q° + e²z
+///                         v₁ = v_n + h(q₀a_n + q₁a_γ + q₂z) = v° + e z,   q₁ = q_n + h(q₀v_n + q₁v_γ + q₂v₁) = q° +
+///                         e²z
 ///
 /// Each sub-step keeps its own end between the stops, y = H q. An effort of stage 1 gives the momentum hq₁, one of
 /// stage 2 gives h(q₂ + q₀). No energy in M and K alone is known.

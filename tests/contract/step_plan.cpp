@@ -153,7 +153,8 @@ TEST_CASE("a plan carries a free mass at rest and at constant speed") {
   const std::vector<Fault> faults = {
       {"a step moves a free mass at 1 m/s by 0 m: a plan carries it forward by h",
        [](StepPlan& p) { p.stages[0].update[0] = {.slots = {1}}; }},
-      {"a free mass at rest at 1 m is at 1.1 m after 1 steps", [](StepPlan& p) { p.start[0].update[0].slots[0] = 1.1; }},
+      {"a free mass at rest at 1 m is at 1.1 m after 1 steps",
+       [](StepPlan& p) { p.start[0].update[0].slots[0] = 1.1; }},
       {"a free mass at 1 m/s moves by 1.5 h in 1 steps of the plan",
        [](StepPlan& p) { p.start[0].update[0].slots[1] = 1.5; }},
       {"velocity: the plan's velocity is 0.5 m/s on a motion at 1 m/s", [](StepPlan& p) { p.velocity.slots[1] = 5; }},
@@ -260,8 +261,7 @@ TEST_CASE("a number that is not finite is found wherever it stands") {
       {"stage 1: loss", [&](StepPlan& p) { p.stages[0].loss[0].coefficient = bad; }},
       {"stage 1: loss", [&](StepPlan& p) { p.stages[0].loss[0].value.z = bad; }},
       {"stage 1: impact", [&](StepPlan& p) { p.stages[0].impact->effort[0] = bad; }},
-      {"stage 1: compliance before the step",
-       [&](StepPlan& p) { p.stages[0].compliance[3]->before->slots[1] = bad; }},
+      {"stage 1: compliance before the step", [&](StepPlan& p) { p.stages[0].compliance[3]->before->slots[1] = bad; }},
       {"stage 1: compliance bound before the step",
        [&](StepPlan& p) { p.stages[0].compliance[3]->before_bound[0].at = bad; }},
       {"stage 1: impact measure", [&](StepPlan& p) { p.stages[0].impact->value.z = bad; }},
@@ -308,8 +308,9 @@ TEST_CASE("a plan is printed as the equations with their numbers") {
   CHECK_THAT(text, Contains("S = 100 M + 5 C + 0.25 K"));
   CHECK_THAT(text, Contains("b = (−K) q + (−10 C) d + 0.25 F(t+1h) + 0.5 F(t) + 0.25 F(t−1h)"));
   CHECK_THAT(text, Contains("y = H(q + d + z), bounded by bound(t+1h)"));
-  CHECK_THAT(text, Contains("g (implicit) = H(q + 0.5 d + 0.5 z) against 0.5 bound(t+1h) + 0.5 bound(t), effort 0.25 p + "
-                            "0.5 p₋₁ + 0.25 p₋₂"));
+  CHECK_THAT(text,
+             Contains("g (implicit) = H(q + 0.5 d + 0.5 z) against 0.5 bound(t+1h) + 0.5 bound(t), effort 0.25 p + "
+                      "0.5 p₋₁ + 0.25 p₋₂"));
   CHECK_THAT(text, Contains("g (averaged)") && Contains("g (explicit)") && Contains("g (conserving)"));
   CHECK_THAT(text, Contains("one step before H(q − 0.5 d) against 0.5 bound(t) + 0.5 bound(t−1h)"));
   CHECK_THAT(text, Contains("rate H(10 d) against bound'(t)"));
@@ -351,7 +352,10 @@ TEST_CASE("an ill-formed plan is printed as far as it goes, with what is wrong")
       {"one to 6 are marched", [](StepPlan& p) { p.stages.clear(); }},
       {"update must give one combination per slot", [](StepPlan& p) { p.stages[0].update.clear(); }},
       {"update must give one combination per slot", [](StepPlan& p) { p.start[0].update.resize(1); }},
-      {"history names more slots", [](StepPlan& p) { p.stages[0].history.resize(3, {1, 1, 1}); }},
+      {"history names more slots",
+       [](StepPlan& p) {
+         p.stages[0].history.resize(3, {1, 1, 1});
+       }},
       {"impact measure combines more slots", [](StepPlan& p) { p.stages[0].impact->value.slots.resize(3, 1.0); }},
       {"energy: more slots", [](StepPlan& p) { p.energy[0].slots.resize(3, 1.0); }},
       {"120 effort weights", [](StepPlan& p) { p.stages[0].impact->effort.resize(120, 1.0); }},

@@ -192,19 +192,21 @@ TEST_CASE("a composed plan gives what it leaves to be derived the levels that th
       INFO(time.name << ", n = " << n);
       const StepPlan plan = composed(std::get<StepPlan>(plan_of(time, one.h, {})), n);
       CHECK(check_plan(plan).value_or("nothing") == "nothing");
-      const DerivedPlan given = derive(plan), found = derive(without_stop_levels(plan));
+      const DerivedPlan given = derive(plan), found = derive(steps_of(without_stop_levels(plan)));
       CHECK(given.h == Approx(n * one.h).epsilon(1e-9));
       for (int k = 0; k < n; ++k) {
         CHECK(given.stages[static_cast<std::size_t>(k)].from == Approx(k / double(n)).margin(1e-12));
         CHECK(given.stages[static_cast<std::size_t>(k)].to == Approx((k + 1) / double(n)).margin(1e-12));
       }
-      CHECK(print_plan(given.plan) == print_plan(found.plan));
+      const bool rates = time.values.count("gamma") == 0;  // above ½ they stand O(h) off the positions
+      for (std::size_t k = 0; k < given.stages.size(); ++k)
+        check_same_stops(given.plan.stages[k], found.plan.stages[k], rates);
     }
 }
 
 TEST_CASE("the map of a composed step is the power of the map of one") {
-  LinearProblem problem{Eigen::Matrix2d::Identity(), 0.1 * Eigen::Matrix2d::Identity(), Eigen::Matrix2d{{3, -1}, {-1, 2}},
-                        Eigen::MatrixXd{{0.0, 1.0}}};
+  LinearProblem problem{Eigen::Matrix2d::Identity(), 0.1 * Eigen::Matrix2d::Identity(),
+                        Eigen::Matrix2d{{3, -1}, {-1, 2}}, Eigen::MatrixXd{{0.0, 1.0}}};
   for (const Choice& time : schemes())
     for (const ClosedContact& law :
          {ClosedContact{}, ClosedContact{Evaluation::implicit_end, 50}, ClosedContact{Evaluation::averaged, 50}}) {
@@ -251,9 +253,8 @@ TEST_CASE("an orbit of a composed plan goes on with the same bits in another lan
   const std::vector<Case> all = cases();
   const Case& one = all.back();
   const Choice time = GENERATE(from_range(schemes()));
-  const Methods methods{{"consistent"},
-                        {"penalty", {{"stiffness", one.stiffness}, {"evaluation", std::string("averaged")}}},
-                        time};
+  const Methods methods{
+      {"consistent"}, {"penalty", {{"stiffness", one.stiffness}, {"evaluation", std::string("averaged")}}}, time};
   CompileOptions options;
   options.kind = OperatorKind::band;
   Marcher alone = made(one, methods, 3, options);

@@ -140,7 +140,8 @@ TEST_CASE("HHT with α = 0 is Newmark (¼, ½), bit for bit") {
     for (const std::string contact : {"end", "weighted"}) {
       SceneSpec scene = impacting_beam();
       scene.load = Formula("-0.3*x*cos(11*t)", "/scene/load");
-      Marcher hht = marcher(scene, 5, {{"consistent"}, law, {"hht-alpha", {{"alpha", 0.0}, {"contact", contact}}}}, 1e-4);
+      Marcher hht =
+          marcher(scene, 5, {{"consistent"}, law, {"hht-alpha", {{"alpha", 0.0}, {"contact", contact}}}}, 1e-4);
       Marcher newmark = marcher(scene, 5, {{"consistent"}, law, {"newmark"}}, 1e-4);
       const EnergyAudit a = audited(hht, 0.1), b = audited(newmark, 0.1);
       CHECK(hht.lane_state(0).slots == newmark.lane_state(0).slots);
@@ -174,11 +175,10 @@ TEST_CASE("the restitution of each scheme, over the phases at which a mass meets
     double least, mean, most;
   };
   // The multiplier at position level throws a mass back with up to (1−α_m)/(βπ₀) − 1 times its speed.
-  for (const Known& known : {Known{{"midpoint"}, 0, 0.5, 1},
-                             Known{{"midpoint", {{"constraint", std::string("middle")}}}, 0.34, 1.67, 3},
-                             Known{{"hht-alpha"}, 0.26, 1.28, 2.31},
-                             Known{{"hht-alpha", {{"alpha", -0.3}}}, 0.14, 0.75, 1.37},
-                             Known{bathe, 0.27, 1.10, 2}}) {
+  for (const Known& known :
+       {Known{{"midpoint"}, 0, 0.5, 1}, Known{{"midpoint", {{"constraint", std::string("middle")}}}, 0.34, 1.67, 3},
+        Known{{"hht-alpha"}, 0.26, 1.28, 2.31}, Known{{"hht-alpha", {{"alpha", -0.3}}}, 0.14, 0.75, 1.37},
+        Known{bathe, 0.27, 1.10, 2}}) {
     INFO(known.time.name);
     const RestitutionRange found = range(known.time);
     // 64 phases, two printed digits.
