@@ -15,6 +15,7 @@ namespace {
 constexpr std::string_view provides_prefix = "ricochet_provides__";
 constexpr std::string_view abi_prefix = "ricochet_abi__";
 
+
 std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symbol) {
   symbol.remove_prefix(provides_prefix.size());
   for (const Role role : all_roles) {
@@ -140,6 +141,11 @@ bool Catalogue::require(Role role, const std::string& name, Registry& registry) 
   if (registry.manual(role, name)) return true;
   const Provided* method = first_provider(role, name);
   if (!method) return false;
+  if (const auto read = read_.find(method->file); read != read_.end()) {
+    if (std::find(opened_.begin(), opened_.end(), method->file) == opened_.end()) opened_.push_back(method->file);
+    adopt(method->file, read->second, registry);
+    return true;
+  }
   open(method->file, registry);
   return true;
 }
@@ -171,10 +177,6 @@ void Catalogue::provide(const fs::path& file, Registry methods, bool first) {
 }
 
 void Catalogue::open(const fs::path& file, Registry& registry) {
-  if (const auto read = read_.find(file); read != read_.end()) {
-    if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
-    return adopt(file, read->second, registry);
-  }
   const std::string place = file.string() + ": ";
   boost::dll::shared_library library;
   try {
