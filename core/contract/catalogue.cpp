@@ -232,6 +232,11 @@ bool Catalogue::require(Role role, const std::string& name, Registry& registry) 
   if (registry.manual(role, name)) return true;
   const Provided* method = first_provider(role, name);
   if (!method) return false;
+  if (const auto read = read_.find(method->file); read != read_.end()) {
+    if (std::find(opened_.begin(), opened_.end(), method->file) == opened_.end()) opened_.push_back(method->file);
+    adopt(method->file, read->second, registry);
+    return true;
+  }
   open(method->file, registry);
   return true;
 }
@@ -263,10 +268,6 @@ void Catalogue::provide(const fs::path& file, Registry methods, bool first) {
 }
 
 void Catalogue::open(const fs::path& file, Registry& registry) {
-  if (const auto read = read_.find(file); read != read_.end()) {
-    if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);
-    return adopt(file, read->second, registry);
-  }
   const KeepFloatControl control;  // -ffast-math in a plugin would be everyone's
   if (foreign(file) && !is_loaded(file)) try_to_load(file);
   if (std::find(opened_.begin(), opened_.end(), file) == opened_.end()) opened_.push_back(file);

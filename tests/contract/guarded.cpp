@@ -68,10 +68,11 @@ std::unique_ptr<ContactLaw> law_of(std::function<void()> act) {
 
 StepPlan still() {
   StepPlan plan;
-  plan.slots = {"q"};
-  plan.initial = {{1, 0}};
+  plan.slots = {"q", "d"};
+  plan.initial = {{1, 0}, {0, 1e-3}};
+  plan.velocity = {.slots = {0, 1e3}};
   plan.stages.resize(1);
-  plan.stages[0].update = {{{1}, 0}};
+  plan.stages[0].update = {{{1, 1}, 0}, {{0, 1}, 0}};
   return plan;
 }
 
@@ -131,11 +132,11 @@ TEST_CASE("every function of a law is guarded and forwarded") {
 TEST_CASE("a measure that does not exist is not read") {
   struct Wild final : Law {
     Wild() : Law([] {}) {}
-    std::optional<Evaluation> reads() const override { return static_cast<Evaluation>(3); }
+    std::optional<Evaluation> reads() const override { return static_cast<Evaluation>(9); }
   };
   Registry registry;
   registry.add_contact(manual(), [](const Parameters&) { return std::make_unique<Wild>(); });
-  CHECK_THROWS_WITH(registry.contact("mine")->make({})->reads(), Contains("names the measure 3"));
+  CHECK_THROWS_WITH(registry.contact("mine")->make({})->reads(), Contains("names the measure 9"));
 }
 
 TEST_CASE("asking a guarded law allocates nothing") {

@@ -64,12 +64,13 @@ TEST_CASE("a plan that holds together passes") {
   CHECK_FALSE(check_plan(gated_plan()));
   StepPlan bare = full_plan();
   bare.start.clear();
+  bare.start_advances = false;
   bare.energy.clear();
   bare.facts.stability_limit.reset();
   bare.stages[0].impact.reset();
   bare.stages[0].work.reset();
   bare.stages[0].compliance = {};
-  CHECK_FALSE(check_plan(bare));
+  CHECK(check_plan(bare).value_or("") == "");
 }
 
 TEST_CASE("what is wrong with the shape of a plan is told") {

@@ -262,7 +262,7 @@ TEST_CASE("a plan that is no step is told so with the default parameters", "[pla
   // The mass is not carried forward by h.
   const std::string wrong = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"q + theta*h*z\"");
   CHECK(wrong.find("with the default parameters and h = 0.001 s the plan is ill-formed: ") != std::string::npos);
-  CHECK(wrong.find("a step moves a free mass at 1 m/s by 0.0005 m") != std::string::npos);
+  CHECK(wrong.find("a step of 0.001 s carries a free mass at 1 m/s by 0.0005 m") != std::string::npos);
   const std::string gains = message("\"q + (1-theta)*h*v + theta*h*z\"", "\"1.01*q + (1-theta)*h*v + theta*h*z\"");
   CHECK(gains.find("at /: ") == std::string::npos);
   CHECK(gains.find("ill-formed: a free mass at rest at 1 m is at") != std::string::npos);
