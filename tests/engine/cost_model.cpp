@@ -1,6 +1,7 @@
 // What is predicted is compared, never shown as a result: laws of it, and no figure of this machine.
 #include <ricochet/engine/cost_model.hpp>
 
+#include "tests/composed_plan.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -8,20 +9,19 @@ using namespace ricochet::testing;
 
 namespace {
 
-// Newmark–Dumont–Paoli without contact, its stage as often as given and `idle` stages that solve nothing.
+// Newmark–Dumont–Paoli without contact in as many sub-steps as given, and `idle` stages that solve nothing.
 Program repeated(OperatorKind kind, int times, int idle) {
   const auto problem = problem_of(working_set(), 8, {"consistent"});
   auto law = make(registry().contact("none"), {"none"});
   auto plan = std::get<StepPlan>(plan_of({"newmark-dumont-paoli"}, 1e-4, problem_facts(*problem, *law)));
-  const Stage stage = plan.stages.at(0);
-  plan.stages.assign(static_cast<std::size_t>(times), stage);
-  Stage nothing = stage;
-  nothing.matrix = {};
+  plan = composed(plan, times);
+  Stage nothing;
+  nothing.update = {{.slots = {1}}, {.slots = {0, 1}}};
   plan.stages.insert(plan.stages.end(), static_cast<std::size_t>(idle), nothing);
   CompileOptions options;
   options.kind = kind;
   return std::get<Program>(
-      compile(problem, std::move(plan), 1e-4, std::move(law), {scene_lane(*problem, {})}, options));
+      compile(problem, std::move(plan), times * 1e-4, std::move(law), {scene_lane(*problem, {})}, options));
 }
 
 }  // namespace
