@@ -154,10 +154,7 @@ Marcher marcher_of(const Scheme& scheme, const ProblemPointer& problem, double h
 }
 
 double declared_restitution(const Scheme& scheme) {
-  const auto& values = scheme.set.values.values();
-  const auto found = values.find("restitution");
-  const double* e = found == values.end() ? nullptr : std::get_if<double>(&found->second);
-  return e ? *e : 0;
+  return value_of_role(scheme.entry->manual.parameters, scheme.set.values, ParameterRole::restitution).value_or(0);
 }
 
 }  // namespace ricochet::checking

@@ -39,13 +39,15 @@ Verdict rigid() {
 // What one point answers at a given measure, speed and measure before, between the stops of a lane.
 double answer_at(LawBench& bench, const LaneProblem& lane, Eigen::Index i, double g, double u) {
   const double layer = bench.layer();
+  double effort = 0;
   for (const int side : sides) {
     const double stop = side < 0 ? lane.lower[i] - layer : lane.upper[i] + layer;
     const double depth = side * (g - stop), before = side * (lane.before[i] - stop);
     const bool acts = depth > -layer || (bench.law().reads() == Evaluation::conserving && before > -layer);
-    if (acts) return at_point(bench, side, depth, u, before).effort;
+    // What a step leads from one stop to the other, both answer for.
+    if (acts) effort += at_point(bench, side, depth, u, before).effort;
   }
-  return 0;
+  return effort;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <ricochet/measure/amplification.hpp>
+#include <ricochet/measure/step_map.hpp>
 
 #include "runners/check/scheme_checks.hpp"
 
@@ -10,10 +12,11 @@ namespace {
 
 constexpr double marginal = 1e-6;  // a double root is known to the square root of round-off only
 
-// The largest modulus of a step's roots at hω.
+// The largest modulus of a step's roots at hω; roots that coincide are known by their mean.
 double radius(const StepPlan& plan, double h, double frequency) {
   const double omega = frequency / h;
-  return std::abs(amplification_roots(plan, 1, 0, omega * omega)[0]);
+  const auto roots = step_roots(in_metres(amplification(plan, 1, 0, omega * omega), plan, h, 1), false);
+  return roots.empty() ? std::numeric_limits<double>::infinity() : std::abs(roots.front().value);
 }
 
 // An oscillator of 1 kg that rings with hω.
