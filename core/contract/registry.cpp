@@ -24,7 +24,7 @@ std::optional<std::string> check_declaration(const PluginManual& manual, std::si
   if (!is_key(spec.key))
     return name + "; keys begin with a letter and are made of a-z, 0-9 and '_', as a study writes them";
   // What the object of a method holds beside its parameters.
-  for (const char* reserved : {"name", "file"})
+  for (const char* reserved : {"name", "file", "plan"})
     if (spec.key == reserved) return name + ", a key that every method has already; choose another";
   for (std::size_t i = 0; i < index; ++i) {
     const ParameterSpec& other = manual.parameters[i];

@@ -77,7 +77,7 @@ ParameterValue value_of(const JsonPlace& place, ParameterSpec::Type type) {
 }
 
 ParameterSpec parameter(const std::string& key, const JsonPlace& place) {
-  place.close({"default", "range", "unit", "text", "type"});
+  place.close({"default", "range", "unit", "text", "type", "role"});
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (key.empty() || key[0] < 'a' || key[0] > 'z' || !std::all_of(key.begin(), key.end(), allowed))
     throw InputError(place.pointer(), "the parameter \"" + key +
@@ -92,6 +92,9 @@ ParameterSpec parameter(const std::string& key, const JsonPlace& place) {
   spec.type = type_of(place);
   spec.unit = place.has("unit") ? place.at("unit").text("an SI unit, \"1\" where there is none") : "1";
   spec.text = text_of(place, "text");
+  if (place.has("role"))
+    spec.role = place.at("role").word({"restitution", "stiffness"}) == "restitution" ? ParameterRole::restitution
+                                                                                     : ParameterRole::stiffness;
   if (place.has("range")) spec.range = range_of(place.at("range"));
   if (!place.has("default")) return spec;
   const JsonPlace given = place.at("default");

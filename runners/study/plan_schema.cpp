@@ -102,7 +102,8 @@ Json plan() {
               {"range", described({{"type", Json::array({"array", "string"})}}, "[0, 1], \"]0, 1[\".")},
               {"unit", described(text(), "SI; \"1\" without one.")},
               {"text", described(text(), "One sentence.")},
-              {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")}},
+              {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")},
+              {"role", described({{"enum", {"restitution", "stiffness"}}}, "What it stands for, where others need to know.")}},
              {});
   const Json refusal = closed({{"when", described(truth(), "The formula that decides.")},
                                {"because", described(text(), "Why, and what to do.")}},
