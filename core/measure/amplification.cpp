@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/measure/amplification.hpp>
 #include <ricochet/measure/step_map.hpp>
 
@@ -38,7 +39,10 @@ Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, d
 
 std::optional<double> root_at_infinity(const StepPlan& plan) {
   const Eigen::MatrixXd step = amplification(plan, 0, 0, 1);
-  const std::vector<Root> roots = step_roots(step, false);  // largest first; none where the step is not finite
+  const double h = step_of(plan);
+  // In like units: roots that coincide are lost in slots whose sizes differ by 1/h². Largest first; none where the step
+  // is not finite.
+  const std::vector<Root> roots = step_roots(h > 0 ? in_metres(step, plan, h, 1) : step, false);
   if (roots.empty()) return std::nullopt;
   // Zero may be a root of all slots that the spring has, three times in a chain: known to the cube root of round-off.
   constexpr double nothing = 1e-4;
