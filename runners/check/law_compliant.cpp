@@ -95,6 +95,7 @@ Verdict solution_answers_the_force_law(const Law& law) {
   const double flexibility = flexibility_of(law);
   double worst = 0;
   LawBench one(law, 1, 1);
+  if (one.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
   if (one.layer() > 0 && !std::isfinite(at_point(one, -1, 1e-3, 0, 1e-3).effort))
     return not_applicable("a barrier: its force has no value beyond the stop");
   for (const int points : {1, 3, 10})
@@ -157,14 +158,17 @@ Verdict slopes_are_derivatives(const Law& law) {
         const PointAnswer here = at_point(bench, side, depth, speed, before);
         if (here.effort == 0) continue;  // a damper that lets go
         const double dg = 1e-5 * std::abs(depth), du = 1e-5;
+        bool lets_go = false;  // within the difference: there is no derivative
         const auto difference = [&](double d, double u, double b) {
           const double ahead = at_point(bench, side, depth + d, speed + u, before + b).effort;
           const double behind = at_point(bench, side, depth - d, speed - u, before - b).effort;
+          lets_go = ahead == 0 || behind == 0;
           return ahead - behind;
         };
         // δp = −stiffness δg − viscosity δu − before δg⁻, with g = side · depth.
         const double stiffness = -side * difference(dg, 0, conserving ? 0 : dg) / (2 * dg);
         const double viscosity = bench.law().reads_rate() ? -difference(0, du, 0) / (2 * du) : 0;
+        if (lets_go) continue;
         const double backwards = conserving ? -side * difference(0, 0, dg) / (2 * dg) : 0;
         const double size = std::max(std::abs(stiffness), std::abs(here.effort / depth));
         const auto wrong = [&](const char* what, double says, double is) {

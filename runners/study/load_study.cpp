@@ -89,10 +89,17 @@ void check_kind(const Json& study) {
     if (horizon->get<double>() > study["duration"].get<double>())
       throw InputError("/horizon", fmt::format("a horizon of {} s lies beyond the duration of {} s",
                                                horizon->get<double>(), study["duration"].get<double>()));
-  if (const auto steps = study.find("steps"); steps != study.end())
+  if (const auto steps = study.find("steps"); steps != study.end()) {
+    // The square of a step and of its inverse are numbers of a plan.
+    constexpr double least = 1e-100, most = 1e100;
+    for (const char* end : {"from", "to"})
+      if (const double h = (*steps)[end].get<double>(); h < least || h > most)
+        throw InputError(std::string("/steps/") + end,
+                         fmt::format("a step of {} s; expected one between {:g} and {:g} s", h, least, most));
     if ((*steps)["from"].get<double>() > (*steps)["to"].get<double>())
       throw InputError("/steps/from", fmt::format("the range begins at {} s and ends at {} s; expected from ≤ to",
                                                   (*steps)["from"].get<double>(), (*steps)["to"].get<double>()));
+  }
 }
 
 // What a kind adds to a case; null where nothing differs from a plain trajectory, whose ids then stay what they were.

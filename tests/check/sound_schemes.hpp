@@ -131,7 +131,7 @@ inline Entry<TimeScheme> three_level_entry(double e, const Change& change = {}) 
         if (change) change(plan, h);
         return plan;
       },
-      {real_parameter("restitution", "1", e, {.low = e, .high = e}, "e")});
+      {with_role(real_parameter("restitution", "1", e, {.low = e, .high = e}, "e"), ParameterRole::restitution)});
 }
 
 /// What one check says of a method, in this process.

@@ -122,7 +122,9 @@ TEST_CASE("Bathe with ρ∞ = 1 is the trapezoidal rule of half the step") {
     scene.load = Formula("-0.3*x*cos(11*t)", "/scene/load");
     Marcher two = marcher(scene, 5, {{"consistent"}, law, {"bathe", {{"rho_inf", 1.0}}}}, h);
     Marcher one = marcher(scene, 5, {{"consistent"}, law, {"newmark"}}, h / 2);
-    const EnergyAudit a = audited(two, 0.1), b = audited(one, 0.1);
+    // Newmark's rigid impacts throw a point back faster than it came: round-off grows by as much with each.
+    const double duration = law.name == "signorini" ? 0.05 : 0.1;
+    const EnergyAudit a = audited(two, duration), b = audited(one, duration);
     INFO(law.name);
     // The matrices are the same, their rows are not summed in the same order: round-off through some impacts.
     CHECK(two.tip(0) == Approx(one.tip(0)).margin(1e-9));
