@@ -34,7 +34,6 @@ class Misbehaves final : public TimeScheme {
     plan.velocity = {.slots = {0, 1}};
     plan.stages.resize(1);
     plan.stages[0].update = {{.slots = {1, h}}, {.slots = {0, 1}}};
-    plan.stages[0].increment = {.slots = {0, h}};
     if (how_ == "ill-formed") plan.stages[0].update.pop_back();
     if (how_ == "not-a-number") plan.velocity.slots[1] = std::numeric_limits<double>::quiet_NaN();
     return plan;

@@ -84,6 +84,7 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
                      {"largest_step_gain", time == "newmark" ? 0.05 * start : 3e-14},
                      {"drift_per_impact", (energy - start) / 8},
                      {"work_of_damping", 0},
+                     {"work_of_loads", 0},
                      {"dissipated_at_contact", start - energy},
                      {"balance_residual", 1e-12 * start},
                      {"deepest_penetration", mass == "singular" ? 0 : 0.03 * step},
