@@ -20,7 +20,7 @@ class Misbehaves final : public MassStrategy {
     if (how_ == "not-a-number") mass.coeffRef(0, 0) = std::numeric_limits<double>::quiet_NaN();
     if (how_ == "negative") mass = -mass;
     if (how_ == "indefinite") mass.coeffRef(0, 1) = mass.coeffRef(1, 0) = 2 * mass.coeff(0, 0);
-    if (how_ == "unsymmetric") mass.coeffRef(0, 1) *= 1.5;
+    if (how_ == "unsymmetric") mass.coeffRef(0, 2) *= 1.5;
     if (how_ == "kernel") inertia.kernel_dimension = 3;
     if (how_ == "hidden-kernel") mass = mass * 0.0;
     return inertia;

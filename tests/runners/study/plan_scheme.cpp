@@ -159,7 +159,7 @@ std::string message(const std::string& from, const std::string& to) {
 
 TEST_CASE("Newmark as a plan has the bits of its plugin", "[plan-file]") {
   require_twins("newmark.json", "newmark-as-plan", "newmark",
-                {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.0}, {"gamma", 0.7}}});
+                {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.4}, {"gamma", 0.7}}});
 }
 
 TEST_CASE("a plan at velocity level, with its gate, has the bits of its plugin", "[plan-file]") {
