@@ -283,7 +283,7 @@ std::string nine_cases(const std::string& role, nlohmann::ordered_json crashes, 
   crashes["name"] = "crashes";
   study["methods"]["mass"] = "consistent";
   study["methods"]["contact"] = "signorini";
-  study["duration"] = 0.02;
+  study["duration"] = 0.1;
   if (budget > 0) study["budget"] = budget;
   auto& methods = study["methods"][role] = nlohmann::ordered_json::array({crashes});
   for (int i = 0; i < 8; ++i) {
