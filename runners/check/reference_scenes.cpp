@@ -67,6 +67,18 @@ ReferenceScene described(std::string name, SceneSpec scene, int elements, double
   return described;
 }
 
+ReferenceScene free_oscillator() {
+  const SceneSpec scene =
+      oscillator_scene({.mass = 2, .stiffness = 8, .damping = 0.4, .position = 0.3, .velocity = -1});
+  ReferenceScene made = described("a free oscillator", scene, 1, 4, {});
+  made.problem.stiffness = 8;
+  made.problem.inertia = 2;
+  made.problem.damping_mass = 0.2;
+  const HarmonicMotion exact(2, 0.4, 8, 0, {}, 0.3, -1);
+  made.exact = [exact](double t) { return exact.displacement(t); };
+  return made;
+}
+
 ReferenceScene forced_oscillator() {
   SceneSpec scene = oscillator_scene({.mass = 2, .stiffness = 8, .damping = 0.4, .position = 0.3, .velocity = -1});
   std::get<OscillatorSpec>(scene.structure).force = {3, 1.3, 0.4};
@@ -123,7 +135,7 @@ ReferenceScene cantilever() {
 }  // namespace
 
 std::vector<ReferenceScene> reference_scenes() {
-  return {forced_oscillator(), bouncing_oscillator(), bar_on_its_stop(), cantilever()};
+  return {free_oscillator(), forced_oscillator(), bouncing_oscillator(), bar_on_its_stop(), cantilever()};
 }
 
 }  // namespace ricochet::checking

@@ -21,7 +21,7 @@ struct ReferenceScene {
   std::shared_ptr<const DiscreteProblem> discrete;
 };
 
-/// A forced oscillator, a bouncing one, a bar on its stop, a cantilever against a stop.
+/// A free oscillator, a forced one, a bouncing one, a bar on its stop, a cantilever against a stop.
 std::vector<ReferenceScene> reference_scenes();
 
 }  // namespace ricochet::checking

@@ -125,7 +125,9 @@ TEST_CASE("what `ricochet new` makes is built, described and run by the commands
   CHECK(described.code == 0);
   CHECK_THAT(described.out, Contains(made.name + " (" + made.role + ")"));
 
-  // The second command, `ricochet check`: CHECK(obey(here.path(), commands[1]).code == 0);
+  const Outcome checked = obey(here.path(), commands[1]);
+  INFO(checked.out << checked.err);
+  CHECK(checked.code == 0);
   const Outcome run = obey(here.path(), commands[2]);
   INFO(run.out << run.err);
   REQUIRE(run.code == 0);
