@@ -70,11 +70,9 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* sl
   const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
   EnergySample sample;
   std::vector<double>& place = second_;
-  double phi = marcher.support(lane, t);
   if (mean_velocity_) {
     for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l] - 0.5 * state.increment[i];
     sample.kinetic = 0.5 * mass_(state.increment.data()) / (state.duration * state.duration);
-    phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
   } else {
     combine(slots, nullptr, marcher.program().plan.velocity, lane, first_);
     for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l];
@@ -82,6 +80,8 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* sl
   }
   sample.elastic = 0.5 * stiffness_(place.data());
   if (!marcher.program().contact || !compliant_) return sample;
+  double phi = marcher.support(lane, t);
+  if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
   const double layer = marcher.law().layer(lane);
   for (int j = 0; j < model_.problem().points(); ++j) {
     const double depth = marcher.depth(lane, j, model_.contact().times(j, place.data()), phi);

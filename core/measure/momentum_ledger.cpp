@@ -40,7 +40,10 @@ void MomentumLedger::stage(bool starting, std::size_t k, double force) {
   if (!moving_ && force == 0) return;
   moving_ = true;
   quiet_ = force == 0 ? quiet_ + 1 : 0;
-  std::copy_backward(past_.begin(), past_.end() - 1, past_.end());
+  // Only as far back as some stage looks.
+  std::size_t longest = 1;
+  for (const Stage& one : stages_) longest = std::max(longest, one.efforts);
+  for (std::size_t i = longest; i-- > 1;) past_[i] = past_[i - 1];
   past_[0] = force;
   const Stage& stage = starting ? start_[k] : stages_[k];
   double effort = 0;
