@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
-#include <ricochet/contract/catalogue.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/energy_audit.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
 #include <sstream>
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/contract/float_control.hpp>
+#include <ricochet/loader/float_control.hpp>
 
 namespace ricochet {
 

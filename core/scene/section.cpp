@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-void positive(double value, const char* key, const char* what, const char* unit) {
+void require_positive(double value, const char* key, const char* what, const char* unit) {
   if (std::isfinite(value) && value > 0) return;
   throw InputError(fmt::format("/scene/structure/{}", key),
                    fmt::format("{} is {:.6g} {}; expected a finite number above 0", what, value, unit));
@@ -27,8 +27,8 @@ Moments disc(double diameter) {
 }
 
 Moments tube(const Section& section) {
-  positive(section.outer_diameter, "section/outer_diameter", "the outer diameter", "m");
-  positive(section.wall, "section/wall", "the wall", "m");
+  require_positive(section.outer_diameter, "section/outer_diameter", "the outer diameter", "m");
+  require_positive(section.wall, "section/wall", "the wall", "m");
   if (section.wall > section.outer_diameter / 2)
     throw InputError(
         "/scene/structure/section/wall",
@@ -39,13 +39,13 @@ Moments tube(const Section& section) {
 }
 
 Moments circle(const Section& section) {
-  positive(section.diameter, "section/diameter", "the diameter", "m");
+  require_positive(section.diameter, "section/diameter", "the diameter", "m");
   return disc(section.diameter);
 }
 
 Moments rectangle(const Section& section) {
-  positive(section.width, "section/width", "the width", "m");
-  positive(section.height, "section/height", "the height", "m");
+  require_positive(section.width, "section/width", "the width", "m");
+  require_positive(section.height, "section/height", "the height", "m");
   return {section.width * std::pow(section.height, 3) / 12, section.width * section.height};
 }
 
@@ -53,12 +53,12 @@ Moments rectangle(const Section& section) {
 
 SectionProperties section_properties(const Section& section, double young, double density) {
   if (section.type == Section::Type::given) {
-    positive(section.EI, "section/EI", "the bending stiffness EI", "N m²");
-    positive(section.rhoS, "section/rhoS", "the line density ρS", "kg/m");
+    require_positive(section.EI, "section/EI", "the bending stiffness EI", "N m²");
+    require_positive(section.rhoS, "section/rhoS", "the line density ρS", "kg/m");
     return {section.EI, section.rhoS};
   }
-  positive(young, "young", "Young's modulus", "Pa");
-  positive(density, "density", "the density", "kg/m³");
+  require_positive(young, "young", "Young's modulus", "Pa");
+  require_positive(density, "density", "the density", "kg/m³");
   const Moments moments = section.type == Section::Type::tube     ? tube(section)
                           : section.type == Section::Type::circle ? circle(section)
                                                                   : rectangle(section);

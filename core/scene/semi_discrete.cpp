@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_stop = std::numeric_limits<double>::infinity();
 
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
   problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
@@ -64,8 +64,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
 
   problem.contact_x = contact_positions(scene, elements);
   problem.contact = displacement_rows(problem.space, problem.contact_x);
-  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
-  problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
+  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -no_stop);
+  problem.upper = stop_values(scene.stops.upper, problem.contact_x, no_stop);
   problem.tip = displacement_rows(problem.space, {tip_position(scene)});
 
   interpolate_initial(scene, problem);

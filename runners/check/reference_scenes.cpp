@@ -10,7 +10,7 @@
 namespace ricochet::checking {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_stop = std::numeric_limits<double>::infinity();
 
 SampleGrid grid_of(double duration, int samples, const std::vector<double>& places) {
   SampleGrid grid;
@@ -60,9 +60,9 @@ ReferenceScene described(std::string name, SceneSpec scene, int elements, double
   asked.load = [](double, double) { return 0.0; };
   asked.stop_places = problem->contact_x;
   asked.stops_at_tip = !problem->contact_x.empty();
-  const double lower = scene.stops.lower ? (*scene.stops.lower)(0) : -infinity;
+  const double lower = scene.stops.lower ? (*scene.stops.lower)(0) : -no_stop;
   asked.lower = [lower](double) { return lower; };
-  asked.upper = [](double) { return infinity; };
+  asked.upper = [](double) { return no_stop; };
   asked.contact_absent = problem->contact_x.empty();
   return described;
 }

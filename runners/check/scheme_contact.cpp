@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/energy_audit.hpp>
-#include <ricochet/measure/plan_restitution.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
 
 #include "runners/check/scheme_checks.hpp"
 

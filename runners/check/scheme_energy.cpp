@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/measure/energy_audit.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
 
 #include "runners/check/scheme_checks.hpp"
 

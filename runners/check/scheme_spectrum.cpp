@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <ricochet/measure/amplification.hpp>
-#include <ricochet/measure/step_map.hpp>
+#include <ricochet/measure/stability/amplification.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 
 #include "runners/check/scheme_checks.hpp"
 

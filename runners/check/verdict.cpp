@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <exception>
-#include <ricochet/contract/child.hpp>
+#include <ricochet/loader/child.hpp>
 
 namespace ricochet::checking {
 namespace {

@@ -8,7 +8,7 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/command/subcommand.hpp"
-#include "runners/execution/environment.hpp"
+#include "runners/run/environment.hpp"
 #include "runners/store/store_error.hpp"
 
 namespace ricochet {

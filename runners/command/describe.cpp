@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <ostream>
-#include <ricochet/contract/child.hpp>
-#include <ricochet/measure/amplification.hpp>
-#include <ricochet/measure/plan_restitution.hpp>
+#include <ricochet/loader/child.hpp>
+#include <ricochet/measure/stability/amplification.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <sstream>
 

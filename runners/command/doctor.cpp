@@ -9,8 +9,8 @@
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/command/table.hpp"
-#include "runners/execution/environment.hpp"
 #include "runners/report/assets.hpp"
+#include "runners/run/environment.hpp"
 #include "runners/study/stated_plan.hpp"
 
 namespace ricochet {

@@ -9,7 +9,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/table.hpp"
-#include "runners/execution/plan_cases.hpp"
+#include "runners/run/plan_cases.hpp"
 
 namespace ricochet {
 namespace {

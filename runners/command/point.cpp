@@ -7,7 +7,7 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/stored_case.hpp"
-#include "runners/execution/orbit_entries.hpp"
+#include "runners/kinds/sweep/orbit_entries.hpp"
 #include "runners/store/store.hpp"
 
 namespace ricochet {

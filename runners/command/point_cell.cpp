@@ -7,7 +7,7 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/stored_case.hpp"
-#include "runners/execution/cell_ends.hpp"
+#include "runners/kinds/basins/cell_ends.hpp"
 #include "runners/study/with_parameter.hpp"
 
 namespace ricochet {

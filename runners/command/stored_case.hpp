@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runners/command/subcommand.hpp"
-#include "runners/execution/march_point.hpp"
+#include "runners/kinds/sweep/march_point.hpp"
 #include "runners/store/record.hpp"
 
 namespace ricochet {

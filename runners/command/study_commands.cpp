@@ -3,7 +3,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/execution/run_study.hpp"
+#include "runners/run/run_study.hpp"
 
 namespace ricochet {
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>

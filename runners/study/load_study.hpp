@@ -1,6 +1,6 @@
 #pragma once
 #include <filesystem>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <string>
 
 #include "runners/study/study.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 
 #include "runners/study/plan_scheme.hpp"
 

@@ -11,6 +11,8 @@
 #include "tests/allocations.hpp"
 
 using namespace ricochet;
+
+namespace pointwise_solver_tests {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -365,3 +367,5 @@ TEST_CASE("data that are not finite end a nonlinear solve", "[pointwise]") {
     CHECK(s.p == VectorXd::Zero(m));
   }
 }
+
+}  // namespace pointwise_solver_tests

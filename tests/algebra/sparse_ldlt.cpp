@@ -11,6 +11,8 @@
 #include "tests/allocations.hpp"
 
 using namespace ricochet;
+
+namespace sparse_ldlt_tests {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
@@ -251,3 +253,5 @@ TEST_CASE("solves allocate nothing", "[sparse-ldlt]") {
   CHECK(c_after == c_before);
   CHECK(cpp_after == cpp_before);
 }
+
+}  // namespace sparse_ldlt_tests

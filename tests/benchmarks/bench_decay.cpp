@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <ricochet/contract/catalogue.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/loader/catalogue.hpp>
 
 #include "tests/benchmarks/reference_beam.hpp"
 #include "tests/benchmarks/thread_clock.hpp"

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <functional>
 #include <numbers>
-#include <ricochet/contract/catalogue.hpp>
-#include <ricochet/measure/section_march.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/orbits/section_march.hpp>
 #include <thread>
 
 #include "tests/benchmarks/reference_beam.hpp"

@@ -10,11 +10,11 @@
 #include <cstring>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
-#include <ricochet/contract/catalogue.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/measure/energy_audit.hpp>
-#include <ricochet/measure/motion_sampler.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
 
 #include "tests/benchmarks/fma_peak.hpp"
 #include "tests/benchmarks/reference_beam.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
-#include <ricochet/contract/catalogue.hpp>
 #include <ricochet/contract/check_inertia.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 using namespace ricochet;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <map>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <set>
 
 #include "tests/runners/scratch_folder.hpp"
@@ -207,7 +207,8 @@ TEST_CASE("core and runners know no method by name") {
     for (const Source& source : sources(folder))
       for (const Literal& literal : literals(source.text))
         for (const std::string& name : names) {
-          const bool exact = literal.text == name && ((name != "none" && name != "exact" && name != "layer") || decides(literal.before));
+          const bool exact = literal.text == name &&
+                             ((name != "none" && name != "exact" && name != "layer") || decides(literal.before));
           const bool named = !ordinary.count(name) && has_word(literal.text, name);
           if (exact || named) FAIL_CHECK(source.name << " names the method " << name << ": \"" << literal.text << '"');
         }

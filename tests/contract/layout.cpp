@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/layout.hpp>
-#include <ricochet/contract/library_symbols.hpp>
+#include <ricochet/loader/library_symbols.hpp>
 
 using namespace ricochet;
 using Catch::Matchers::StartsWith;

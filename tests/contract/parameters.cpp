@@ -3,6 +3,8 @@
 #include <ricochet/contract/parameters.hpp>
 
 using namespace ricochet;
+
+namespace parameters_tests {
 using Catch::Matchers::Contains;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("a value is found by the role of its parameter, whatever its key") {
   CHECK_FALSE(value_of_role(declared, values, ParameterRole::stiffness).has_value());
   CHECK(value_of_role(declared, Parameters({{"e", 1LL}}), ParameterRole::restitution) == 1);
 }
+
+}  // namespace parameters_tests

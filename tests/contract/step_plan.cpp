@@ -4,6 +4,8 @@
 #include <ricochet/contract/step_plan.hpp>
 
 using namespace ricochet;
+
+namespace step_plan_tests {
 using Catch::Matchers::Contains;
 
 namespace {
@@ -368,3 +370,5 @@ TEST_CASE("an ill-formed plan is printed as far as it goes, with what is wrong")
     CHECK_THAT(print_plan(plan), Contains("slots: ") && Contains("ill-formed: ") && Contains(fault.sentence));
   }
 }
+
+}  // namespace step_plan_tests

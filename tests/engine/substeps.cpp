@@ -1,6 +1,6 @@
 // n steps of h are one step of n sub-steps: in motion, energies, works, impulses, counts and times.
-#include <ricochet/measure/motion_sampler.hpp>
-#include <ricochet/measure/step_map.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
+#include <ricochet/measure/stability/step_map.hpp>
 
 #include "tests/composed_plan.hpp"
 #include "tests/marching.hpp"
@@ -142,8 +142,7 @@ TEST_CASE("n steps of h are one step of n sub-steps") {
       const double length = 0.1;
       // A scheme that knows no restitution throws what hits a rigid stop back faster than it came, up to three times:
       // round-off grows by as much with each impact, so that it is compared over the first ones.
-      const bool throws_back =
-          law.name == "signorini" && fine.program().plan.facts.restitution == Restitution::ignored;
+      const bool throws_back = law.name == "signorini" && fine.program().plan.facts.restitution == Restitution::ignored;
       for (int step = 1; step <= one.steps / n / (throws_back ? 4 : 1); ++step) {
         coarse.march(step - coarse.step(), &of_coarse);
         fine.march(step * n - fine.step(), &of_fine);

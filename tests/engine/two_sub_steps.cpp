@@ -1,6 +1,6 @@
 // Schemes against what they are known for: Bathe's two sub-steps, HHT that is Newmark, the mid-point rule's energies.
-#include <ricochet/measure/motion_sampler.hpp>
-#include <ricochet/measure/plan_restitution.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
 
 #include "tests/marching.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
 #include <variant>

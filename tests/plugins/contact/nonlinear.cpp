@@ -1,6 +1,6 @@
 // Compliant laws that are not linear, on a mass thrown at a stop, where what they must do is known in closed form.
 #include <numbers>
-#include <ricochet/measure/lyapunov.hpp>
+#include <ricochet/measure/orbits/lyapunov.hpp>
 
 #include "tests/marching.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 
 using namespace ricochet;
 

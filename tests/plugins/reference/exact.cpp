@@ -3,9 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 
 using namespace ricochet;
+
+namespace exact_tests {
 
 namespace {
 
@@ -542,3 +544,5 @@ TEST_CASE("bars without a closed form are refused with the reference that applie
       },
       "fixed end");
 }
+
+}  // namespace exact_tests

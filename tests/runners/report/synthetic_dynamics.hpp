@@ -167,7 +167,7 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
   return record;
 }
 
-/// The derived tables, as runners/execution/derive_dynamics.hpp says them, from formulas as well.
+/// The derived tables, as runners/kinds/sweep/derive_dynamics.hpp says them, from formulas as well.
 inline void derive_synthetic(StudyResults& out) {
   std::vector<std::string> head = {"case"};
   head.insert(head.end(), out.columns.begin(), out.columns.end());

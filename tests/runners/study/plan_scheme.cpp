@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/contract/catalogue.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <thread>
 
 #include "runners/study/json_text.hpp"

@@ -3,13 +3,15 @@
 
 #include <catch2/catch.hpp>
 
-#include "runners/execution/minimal_study.hpp"
+#include "runners/run/minimal_study.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
 using namespace ricochet::tests;
+
+namespace stated_plan_tests {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
@@ -211,3 +213,5 @@ TEST_CASE("a plan beside the plugins is a scheme with the name it states", "[pla
   const auto step = stated.registry.time("mine")->make(stated.study.cases.front().time.parameters)->plan(0.1, {});
   CHECK(std::get<StepPlan>(step).facts.order == 1);
 }
+
+}  // namespace stated_plan_tests

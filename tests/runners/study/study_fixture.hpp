@@ -1,9 +1,9 @@
 #pragma once
 #include <memory>
-#include <ricochet/contract/catalogue.hpp>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <string>
 
 #include "runners/study/load_study.hpp"

@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/energy/energy_audit.hpp>
+
+namespace ricochet {
+namespace {
+
+// out += w · lane of x; the stride is written out for one lane, where the loop then vectorises.
+void accumulate(double w, const double* x, std::size_t stride, std::size_t lane, std::vector<double>& out) {
+  if (w == 0) return;
+  const std::size_t rows = out.size();
+  if (stride == 1)
+    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
+  else
+    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i * stride + lane];
+}
+
+}  // namespace
+
+EnergyAudit::EnergyAudit(const Marcher& marcher)
+    : model_(*marcher.program().model),
+      mass_(QuadraticForm::of(model_.inertia())),
+      stiffness_(model_.stiffness()),
+      damping_(model_.problem().damping),
+      h_(marcher.program().h),
+      T_(marcher.width()),
+      compliant_(marcher.law().reads().has_value()),
+      mean_velocity_(marcher.program().velocity_offset != 0) {
+  const auto rows = static_cast<std::size_t>(model_.rows());
+  const auto points = static_cast<std::size_t>(model_.problem().points());
+  lanes_.resize(static_cast<std::size_t>(marcher.lanes()));
+  for (Lane& lane : lanes_) {
+    lane.increment.assign(rows, 0.0);
+    lane.duration = h_;
+    lane.signs.assign(points, 0);
+    lane.asked.assign(points, 0);
+  }
+  for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
+  first_.resize(rows);
+  second_.resize(rows);
+}
+
+void EnergyAudit::combine(const double* const* slots, const double* z, const Combination& c, int lane,
+                          std::vector<double>& out) const {
+  const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
+  std::fill(out.begin(), out.end(), 0.0);
+  if (z) accumulate(c.z, z, T, l, out);
+  for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
+}
+
+double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
+  double energy = 0;
+  for (const QuadraticTerm& term : marcher.program().plan.energy) {
+    if (term.coefficient == 0) continue;
+    const bool mass = term.matrix == QuadraticTerm::Matrix::M;
+    std::fill(first_.begin(), first_.end(), 0.0);
+    for (std::size_t j = 0; j < term.slots.size(); ++j)
+      accumulate(term.slots[j], marcher.slot(static_cast<int>(j)), static_cast<std::size_t>(T_),
+                 static_cast<std::size_t>(lane), first_);
+    energy += term.coefficient * (mass ? mass_(first_.data()) : stiffness_(first_.data()));
+  }
+  return energy;
+}
+
+// The slots hold the state at time t, `increment` what led to it.
+EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* slots, double t, int lane) {
+  const Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
+  EnergySample sample;
+  std::vector<double>& place = second_;
+  if (mean_velocity_) {
+    for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l] - 0.5 * state.increment[i];
+    sample.kinetic = 0.5 * mass_(state.increment.data()) / (state.duration * state.duration);
+  } else {
+    combine(slots, nullptr, marcher.program().plan.velocity, lane, first_);
+    for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l];
+    sample.kinetic = 0.5 * mass_(first_.data());
+  }
+  sample.elastic = 0.5 * stiffness_(place.data());
+  if (!marcher.program().contact || !compliant_) return sample;
+  double phi = marcher.support(lane, t);
+  if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
+  const double layer = marcher.law().layer(lane);
+  for (int j = 0; j < model_.problem().points(); ++j) {
+    const double depth = marcher.depth(lane, j, model_.contact().times(j, place.data()), phi);
+    if (depth > -layer) sample.contact += marcher.law().potential(depth, lane);
+  }
+  return sample;
+}
+
+void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
+  // A scheme with an energy of its own has it before the first step, unless its start rule moves time.
+  const bool declares = !marcher.program().plan.energy.empty();
+  const StageFacts& facts = view.program->facts;
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    if (!marcher.status(lane).running) continue;
+    Lane& state = lanes_[static_cast<std::size_t>(lane)];
+    if (view.stage == 0) {
+      state.step_loads = state.step_damping = state.step_contact = state.step_scheme = state.step_law = 0;
+    }
+    const bool balanced = view.plan->work || !view.starting;
+    if (declares && !state.has_scheme && balanced) {
+      state.energy.scheme_start = scheme_energy(marcher, lane);
+      state.now.scheme = state.energy.scheme_start;
+      state.has_scheme = true;
+    }
+    // The first reading: before anything moves, or after the first sub-step.
+    const bool moves = facts.to != facts.from, moved = facts.from > 0;
+    const bool reads = mean_velocity_ ? moves && moved : view.stage == 0 && !view.starting;
+    if (reads && !state.has_first) {
+      state.energy.first = sample(marcher, view.slots, view.from, lane);
+      if (declares) state.energy.first.scheme = state.energy.scheme_start;
+      state.has_first = true;
+    }
+    if (moves || view.stage == 0) {
+      std::fill(state.increment.begin(), state.increment.end(), 0.0);
+      if (moves) state.duration = (facts.to - facts.from) * h_;
+    }
+    combine(view.slots, view.z, facts.increment, lane, first_);
+    for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
+    if (view.effort) count_contact(view, lane);
+    if (view.plan->work) work(marcher, view, lane);
+    for (const LossTerm& term : view.plan->loss) {
+      if (term.coefficient == 0 || !balanced) continue;
+      combine(view.slots, view.z, term.value, lane, first_);
+      state.step_scheme +=
+          term.coefficient * (term.matrix == EnergyMatrix::M ? mass_(first_.data()) : stiffness_(first_.data()));
+    }
+  }
+}
+
+// The works of one stage, by its test displacement.
+void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const WorkForm& work = *view.plan->work;
+  const bool loads = marcher.program().support || marcher.program().load;
+  const std::vector<double>& weights = view.program->work_effort;
+  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || weights.size() > 1);
+  const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
+  if (!loads && !contact && !damped) return;
+  std::vector<double>& s = first_;
+  combine(view.slots, view.z, work.displacement, lane, s);
+  if (damped) {
+    combine(view.slots, view.z, work.rate, lane, second_);
+    if (damping_.stiffness != 0) state.step_damping += damping_.stiffness * stiffness_(s.data(), second_.data());
+    if (damping_.mass != 0) state.step_damping += damping_.mass * mass_(s.data(), second_.data());
+  }
+  if (marcher.program().support) {
+    // −φ'' = ω² φ for the harmonic support.
+    const double omega = model_.problem().support.pulsation;
+    const double push = omega * omega * marcher.support_levels(lane, view.time, work.load);
+    double along = 0;
+    for (std::size_t i = 0; i < s.size(); ++i) along += s[i] * model_.support_shape()[static_cast<Eigen::Index>(i)];
+    state.step_loads += push * along;
+  }
+  if (marcher.program().load) {
+    const double* load = const_cast<Marcher&>(marcher).distributed_load(work.load, view.time);
+    for (std::size_t i = 0; i < s.size(); ++i) state.step_loads += s[i] * load[i];
+  }
+  if (!contact) return;
+  const double lift = marcher.program().support ? marcher.support_levels(lane, view.time, work.support) : 0.0;
+  for (int j = 0; j < model_.problem().points(); ++j) {
+    double effort = 0;
+    for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
+      if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
+    if (effort == 0) continue;
+    state.step_contact += effort * (model_.contact().times(j, s.data()) + lift);
+    state.step_loads -= effort * lift;
+  }
+}
+
+void EnergyAudit::count_contact(const StageView& view, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  ContactTotals& contact = state.contact;
+  if (view.program->opens_instant) {
+    state.in_contact = false;
+    state.force = 0;
+  }
+  const LaneOutcome& outcome = view.outcome[lane];
+  if ((view.touched_lanes >> lane) & 1u) {
+    contact.most_iterations = std::max(contact.most_iterations, outcome.iterations);
+    // Also where no effort is left: a damped law lets go while its spring is still pressed.
+    state.step_law += view.program->momentum * outcome.dissipation;
+  }
+  if ((view.contact_lanes >> lane) & 1u) {
+    const double momentum = view.program->momentum;
+    for (int j = 0; j < model_.problem().points(); ++j) {
+      const double p = view.effort[0][j * T_ + lane];
+      if (p == 0) continue;
+      state.asked[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
+      // An effort that gives no momentum only puts a position right: it is no force.
+      if (momentum != 0) state.force += p;
+      contact.impulse += momentum * std::abs(p);
+    }
+    contact.residual = std::max(contact.residual, outcome.residual);
+    state.in_contact = true;
+  }
+  if (view.program->closes_instant) close_instant(view, state);
+}
+
+// What an instant of contact was, beside the one before it.
+void EnergyAudit::close_instant(const StageView& view, Lane& state) {
+  ContactTotals& contact = state.contact;
+  const bool was_active = contact.active > 0;
+  contact.force = state.force;
+  contact.active = 0;
+  if (!state.in_contact && !was_active) return;
+  if (state.asked != state.signs) ++contact.active_set_changes;
+  for (const signed char sign : state.asked) contact.active += sign != 0;
+  state.signs.swap(state.asked);
+  std::fill(state.asked.begin(), state.asked.end(), static_cast<signed char>(0));
+  if (contact.active > 0) {
+    ++contact.contact_steps;
+    if (!was_active) {
+      ++contact.impacts;
+      if (contact.first_impact < 0) contact.first_impact = view.time + view.program->facts.instant * h_;
+    }
+  } else if (was_active && contact.first_release < 0) {
+    contact.first_release = view.from;
+  }
+}
+
+void EnergyAudit::step_done(Marcher& marcher) {
+  const RowMatrix& tip = model_.tip();
+  const double t = marcher.time();
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    if (!marcher.status(lane).running) continue;
+    Lane& state = lanes_[static_cast<std::size_t>(lane)];
+    EnergySample sample = this->sample(marcher, marcher.slots(), t, lane);
+    if (marcher.program().contact) {
+      state.penetration = marcher.penetration(lane);
+      state.contact.deepest_penetration = std::max(state.contact.deepest_penetration, state.penetration);
+    }
+    double tip_increment = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
+    tip_increment += tip.times(0, state.increment.data());
+    state.tip_velocity = tip_increment / state.duration;
+    const bool declares = !marcher.program().plan.energy.empty();
+    sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();
+    EnergyTotals& totals = state.energy;
+    totals.work_of_loads += state.step_loads;
+    totals.work_of_damping += state.step_damping;
+    totals.work_of_contact += state.step_contact;
+    totals.work_of_scheme += state.step_scheme;
+    totals.work_of_law += state.step_law;
+    if (state.has_scheme)
+      totals.largest_step_gain =
+          std::max(totals.largest_step_gain, sample.scheme - state.now.scheme - state.step_loads);
+    if (!state.has_first) totals.first = sample;
+    if (!state.has_scheme) totals.scheme_start = sample.scheme;
+    state.has_first = state.has_scheme = true;
+    state.now = totals.last = sample;
+    const double energy = sample.common();
+    if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
+      marcher.freeze(lane, "the energy is not finite");
+    else if (marcher.beyond_bound(lane, energy))
+      marcher.freeze(lane,
+                     fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound(lane)));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <ricochet/measure/motion/motion_sampler.hpp>
+#include <ricochet/scene/assembly.hpp>
+
+namespace ricochet {
+namespace {
+
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+Rows strain_rows(const FiniteElementSpace& space, const std::vector<double>& places) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (const auto& [dof, value] : strain_row(space, places[i])) entries.emplace_back(static_cast<int>(i), dof, value);
+  Rows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
+}
+
+// Weights of the cubic through s = −1, 0, 1, 2, and of its derivative in s, at s in [0, 1].
+struct Cubic {
+  std::array<double, 4> value, slope;
+};
+Cubic cubic(double s) {
+  const double a = s + 1, b = s, c = s - 1, d = s - 2;
+  return {{-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6},
+          {-(c * d + b * d + b * c) / 6, (c * d + a * d + a * c) / 2, -(b * d + a * d + a * b) / 2,
+           (b * c + a * c + a * b) / 6}};
+}
+
+constexpr int block = 8;
+
+// Whether `block` points have no effort.
+bool all_free(const double* efforts, int stride) {
+  std::uint64_t any = 0;
+  for (int j = 0; j < block; ++j) any |= std::bit_cast<std::uint64_t>(efforts[j * stride]) << 1U;  // −0 is no effort
+  return any == 0;
+}
+
+// A time is a step when it is one up to the rounding of two decimal numbers.
+constexpr double rounding_of_steps = 1e-6;
+
+}  // namespace
+
+void sample_places(double length, int cells, SampleGrid& grid) {
+  if (length == 0) return;
+  const double cell = length / cells, offset = 0.5 / std::sqrt(3.0);
+  for (int i = 0; i < cells; ++i)
+    for (const double side : {-offset, offset}) {
+      grid.places.push_back((i + 0.5 + side) * cell);
+      grid.weights.push_back(cell / 2);
+    }
+}
+
+ContactLog::ContactLog(const Marcher& marcher)
+    : model_(*marcher.program().model),
+      problem_(*marcher.program().problem),
+      T_(marcher.width()),
+      h_(marcher.program().h),
+      signs_(static_cast<std::size_t>(problem_.points()), 0),
+      asked_(signs_),
+      position_(static_cast<std::size_t>(model_.rows())),
+      velocity_(static_cast<std::size_t>(model_.rows())),
+      momentum_(marcher.program()) {
+  events_.reserve(64);
+}
+
+// When the gap of a point closes, from the state before the stage.
+double ContactLog::onset(const Marcher& marcher, const StageView& view, int point, int side) {
+  const double t = view.from, dt = view.to != view.from ? view.to - view.from : h_ * view.program->facts.instant;
+  if (!state_known_) {
+    const Combination& rate = marcher.program().plan.velocity;
+    const auto T = static_cast<std::size_t>(T_);
+    for (std::size_t i = 0; i < position_.size(); ++i) {
+      position_[i] = view.slots[0][i * T];
+      velocity_[i] = 0;
+      for (std::size_t s = 0; s < rate.slots.size(); ++s) velocity_[i] += rate.slots[s] * view.slots[s][i * T];
+    }
+    tip_speed_ = marcher.support_rate(0, t) + model_.tip().times(0, velocity_.data());
+    state_known_ = true;
+  }
+  const LaneSpec& lane = marcher.program().lanes.front();
+  const double stop = side == 0 ? lane.lower[point] : lane.upper[point];
+  const double gap = model_.contact().times(point, position_.data()) + marcher.support(0, t) - stop;
+  const double speed = model_.contact().times(point, velocity_.data()) + marcher.support_rate(0, t);
+  double time = t;
+  if (gap * speed < 0) time += std::min(-gap / speed, 2 * dt);
+  if ((side == 0) == (gap < 0)) time = t;  // beyond the stop already: a constraint on other levels let it pass
+  return std::clamp(time, t - dt, t + dt);
+}
+
+void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
+  if (!view.effort) {
+    momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
+    return;
+  }
+  if (view.program->opens_instant) {
+    force_ = 0;
+    now_[0] = now_[1] = false;
+  }
+  if ((view.contact_lanes & 1u) != 0)
+    look(marcher, view);
+  else
+    momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
+  if (view.program->closes_instant && (now_[0] || now_[1] || closed_[0] || closed_[1])) close_instant(view);
+}
+
+void ContactLog::look(const Marcher& marcher, const StageView& view) {
+  const double* efforts = view.effort[0];
+  const int points = problem_.points();
+  state_known_ = false;
+  double force = 0;
+  for (int j = 0; j < points; ++j) {
+    // Most points of most steps are free: eight at a time are passed over.
+    if (j % block == 0)
+      while (j + block <= points && all_free(efforts + j * T_, T_)) j += block;
+    if (j >= points) break;
+    const double p = efforts[j * T_];
+    if (p == 0) continue;
+    force += p;
+    const int side = p > 0 ? 0 : 1;
+    asked_[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
+    if (!closed_[side]) {
+      const double time = onset(marcher, view, j, side);
+      onset_[side] = now_[side] ? std::min(onset_[side], time) : time;
+    }
+    now_[side] = true;
+  }
+  momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
+  // What only puts a position right is no force.
+  if (view.program->momentum != 0) force_ += force;
+}
+
+void ContactLog::close_instant(const StageView& view) {
+  if (asked_ != signs_) ++changes_;
+  signs_.swap(asked_);
+  std::fill(asked_.begin(), asked_.end(), static_cast<signed char>(0));
+  for (const int side : {0, 1}) {
+    if (now_[side] && !closed_[side])
+      events_.push_back({onset_[side], side == 0 ? -1 : 1, true, tip_speed_});
+    else if (!now_[side] && closed_[side])
+      events_.push_back({view.from, side == 0 ? -1 : 1, false, 0});
+    closed_[side] = now_[side];
+  }
+}
+
+MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid)
+    : marcher_(marcher),
+      grid_(grid),
+      log_(marcher),
+      mass_(QuadraticForm::of(marcher.program().problem->inertia)),
+      stiffness_(marcher.program().problem->stiffness),
+      places_(displacement_rows(marcher.program().problem->space, grid.places)),
+      strains_(strain_rows(marcher.program().problem->space, grid.places)),
+      offset_(marcher.program().velocity_offset) {}
+
+void MotionSampler::keep() {
+  constexpr std::size_t window = 5;
+  states_.push_back({marcher_.step(), marcher_.position(0), log_.impulse()});
+  if (states_.size() > window) states_.pop_front();
+}
+
+const MotionSampler::State* MotionSampler::at(long long step) {
+  for (const State& state : states_)
+    if (state.step == step) return &state;
+  if (marcher_.step() < step) marcher_.march(step - marcher_.step(), &log_);
+  if (!marcher_.status(0).running || marcher_.step() != step) return nullptr;
+  keep();
+  return &states_.back();
+}
+
+bool MotionSampler::next() {
+  if (next_ >= grid_.times.size()) return false;
+  const SemiDiscrete& problem = *marcher_.program().problem;
+  if (!started_) {
+    started_ = true;
+    states_.push_back({0, problem.position, 0});
+    marcher_.start(&log_);
+    if (marcher_.step() > 0) keep();
+  }
+  const double h = marcher_.program().h, t = grid_.times[next_], ratio = t / h;
+  long long n = std::llround(ratio);
+  const bool whole = std::abs(ratio - static_cast<double>(n)) <= rounding_of_steps;
+  if (!whole) n = static_cast<long long>(std::floor(ratio));
+
+  Eigen::VectorXd w, v;
+  double impulse = 0;
+  if (whole && n == 0) {
+    w = problem.position;
+    v = problem.velocity;
+  } else if (whole) {
+    const std::array<const State*, 3> s = {at(n - 1), at(n), at(n + 1)};
+    if (!s[0] || !s[1] || !s[2]) return false;
+    w = s[1]->position;
+    v = (s[2]->position - s[0]->position) / (2 * h);
+    impulse = s[1]->impulse - offset_ * (s[2]->impulse - s[1]->impulse);
+  } else {
+    const long long first = std::max(n - 1, 0LL);
+    std::array<const State*, 4> s{};
+    for (int k = 0; k < 4; ++k)
+      if (!(s[static_cast<std::size_t>(k)] = at(first + k))) return false;
+    // Before the second step the window begins at 0: the same cubic, seen from further left.
+    const double local = ratio - static_cast<double>(first + 1);
+    const Cubic weights = cubic(local);
+    w = Eigen::VectorXd::Zero(problem.dofs());
+    v = Eigen::VectorXd::Zero(problem.dofs());
+    for (std::size_t k = 0; k < 4; ++k) {
+      w += weights.value[k] * s[k]->position;
+      v += weights.slope[k] / h * s[k]->position;
+    }
+    const std::size_t left = static_cast<std::size_t>(n - first);
+    const double share = ratio - static_cast<double>(n) - offset_;
+    impulse = (1 - share) * s[left]->impulse + share * s[left + 1]->impulse;
+  }
+  const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);
+  double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
+  if (marcher_.program().contact && marcher_.law().reads()) {
+    const Eigen::VectorXd touched = problem.contact * w;
+    const double layer = marcher_.law().layer(0);
+    for (int j = 0; j < problem.points(); ++j)
+      if (const double depth = marcher_.depth(0, j, touched[j], support); depth > -layer)
+        energy += marcher_.law().potential(depth, 0);
+  }
+  motion_.tip.push_back((problem.tip * w)[0] + support);
+  motion_.tip_velocity.push_back((problem.tip * v)[0] + rate);
+  motion_.energy.push_back(energy);
+  motion_.impulse.push_back(impulse);
+  const Eigen::VectorXd u = (places_ * w).array() + support, strain = strains_ * w,
+                        velocity = (places_ * v).array() + rate;
+  motion_.displacement.insert(motion_.displacement.end(), u.begin(), u.end());
+  motion_.strain.insert(motion_.strain.end(), strain.begin(), strain.end());
+  motion_.velocity.insert(motion_.velocity.end(), velocity.begin(), velocity.end());
+  ++next_;
+  return true;
+}
+
+SampledMotion MotionSampler::finish() {
+  motion_.events = log_.events();
+  return std::move(motion_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,238 @@
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ricochet/algebra/inverse_form.hpp>
+#include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
+
+namespace ricochet {
+namespace {
+
+// An impact is over within this many steps of contact: restitution over three levels takes two.
+constexpr int longest_impact = 3;
+// hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
+constexpr double resolved_turn = 0.1;
+
+}  // namespace
+
+std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
+  std::vector<bool> massive(static_cast<std::size_t>(problem.points()), true);
+  if (problem.inertia.kernel_dimension == 0) return massive;
+  const Eigen::MatrixXd moved = problem.contact * mass_kernel(problem.inertia);
+  // The kernel's basis has entries of order one.
+  for (int i = 0; i < problem.points(); ++i) massive[static_cast<std::size_t>(i)] = moved.row(i).norm() < 1e-9;
+  return massive;
+}
+
+std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
+  const auto given_way = [&](double time) {
+    QuasiDefinite matrix;
+    matrix.A = time * time * problem.stiffness;
+    if (problem.inertia.factored()) {
+      matrix.G = problem.inertia.coupling;
+      matrix.Cv = problem.inertia.velocity_mass;
+    } else {
+      matrix.A += problem.inertia.mass;
+    }
+    return InverseForm(matrix);
+  };
+  const InverseForm within_step = given_way(h), at_once = given_way(1e-3 * h);
+  std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
+  for (int i = 0; i < problem.points(); ++i) {
+    const Eigen::VectorXd push = problem.contact.row(i).transpose();
+    const auto step = within_step(push), instant = at_once(push);
+    resolved[static_cast<std::size_t>(i)] = step && instant && *instant <= (1 + resolved_turn * resolved_turn) * *step;
+  }
+  return resolved;
+}
+
+// The last three displacements, newest first.
+struct ImpactJump::Past {
+  std::array<Eigen::VectorXd, 3> q;
+  int known = 0;
+  // One column of a block; allocates the first time only.
+  void add(const double* block, int rows, int width, int column) {
+    std::rotate(q.begin(), q.begin() + 2, q.end());
+    q[0].resize(rows);
+    for (int i = 0; i < rows; ++i) q[0][i] = block[static_cast<std::ptrdiff_t>(i) * width + column];
+    known = std::min(known + 1, 3);
+  }
+  // Velocity and acceleration about the middle of the three, and what they give `ago` seconds before the newest.
+  Eigen::VectorXd acceleration(double h) const { return (q[0] - 2 * q[1] + q[2]) / (h * h); }
+  Eigen::VectorXd velocity(double h, double ago) const { return (q[0] - q[1]) / h + (h / 2 - ago) * acceleration(h); }
+  Eigen::VectorXd displacement(double h, double ago) const {
+    return q[0] - ago * velocity(h, 0) + ago * ago / 2 * acceleration(h);
+  }
+};
+
+struct ImpactJump::Impact {
+  int point = 0;
+  double time = 0;                         // t*
+  Eigen::VectorXd velocity, acceleration;  // v⁻, a⁻ at t*
+  double approach = 0;                     // w⁻
+};
+
+struct ImpactJump::Lane {
+  Past orbit;
+  std::vector<Past> columns;
+  bool contact = false, known = false;
+  int steps = 0;       // of contact in this impact
+  int free_steps = 0;  // since
+  Impact impact;
+  int applied = 0;
+};
+
+struct ImpactJump::Inverse {
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass;
+  Eigen::SparseMatrix<double> stiffness;
+  Damping damping;
+  Eigen::SparseMatrix<double> inertia;
+  // The acceleration of a free motion (q, v).
+  Eigen::VectorXd of(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+    const Eigen::VectorXd force = stiffness * (q + damping.stiffness * v) + damping.mass * (inertia * v);
+    return -mass.solve(force);
+  }
+};
+
+ImpactJump::ImpactJump(Marcher& marcher) {
+  const Program& program = marcher.program();
+  if (program.tangents == 0 || !program.contact || program.law->reads()) return;
+  massive_ = points_with_mass(*program.problem);
+  const auto some = [&] { return std::find(massive_.begin(), massive_.end(), true) != massive_.end(); };
+  if (!some()) return;
+  const std::vector<bool> resolved = resolved_points(*program.problem, program.h);
+  for (std::size_t i = 0; i < massive_.size(); ++i) massive_[i] = massive_[i] && resolved[i];
+  needed_ = some();
+  if (!needed_) return;
+  marcher.hold_tangents(massive_, longest_impact);
+  offset_ = program.velocity_offset;
+  restitution_ = plan_restitution(program.plan, program.h);
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    lanes_.push_back(std::make_unique<Lane>());
+    lanes_.back()->columns.resize(static_cast<std::size_t>(program.tangents));
+  }
+  const Inertia& inertia = program.model->inertia();
+  if (inertia.factored() || inertia.kernel_dimension > 0) return;
+  inverse_mass_ = std::make_unique<Inverse>();
+  inverse_mass_->inertia = inertia.mass;
+  inverse_mass_->stiffness = program.model->stiffness();
+  inverse_mass_->damping = program.problem->damping;
+  inverse_mass_->mass.compute(inverse_mass_->inertia);
+  if (inverse_mass_->mass.info() != Eigen::Success) inverse_mass_.reset();
+}
+
+ImpactJump::~ImpactJump() = default;
+
+void ImpactJump::columns_replaced() {
+  for (auto& lane : lanes_)
+    for (Past& past : lane->columns) past.known = 0;
+}
+
+int ImpactJump::applied(int lane) const {
+  return needed_ ? lanes_[static_cast<std::size_t>(lane)]->applied : 0;
+}
+
+void ImpactJump::stage_solved(const Marcher& marcher, const StageView& view) {
+  for (std::size_t index = 0; index < lanes_.size(); ++index) {
+    Lane& lane = *lanes_[index];
+    // Contact anywhere in the step, whichever of its stages asked.
+    if (view.stage == 0) lane.contact = false;
+    if (!view.effort || !((view.contact_lanes >> index) & 1u)) continue;
+    for (std::size_t i = 0; i < massive_.size(); ++i) {
+      const double p = view.effort[0][i * static_cast<std::size_t>(marcher.width()) + index];
+      if (p == 0 || !massive_[i]) continue;
+      lane.contact = true;
+      if (!lane.known && lane.steps == 0 && lane.orbit.known == 3)
+        watch(marcher, lane, static_cast<int>(index), static_cast<int>(i), p > 0 ? 0 : 1, view.time);
+      break;
+    }
+  }
+}
+
+// The orbit just before an impact, carried to the time at which the gap of the point closes.
+void ImpactJump::watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time) {
+  const double h = marcher.program().h;
+  const RowMatrix& rows = marcher.program().model->contact();
+  const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(index)];
+  Impact& impact = lane.impact;
+  impact.point = point;
+  impact.acceleration = lane.orbit.acceleration(h);
+  const Eigen::VectorXd now = lane.orbit.velocity(h, 0);
+  const double speed = rows.times(point, now.data()) + marcher.support_rate(index, time);
+  const double gap = (side == 0 ? spec.lower[point] : spec.upper[point]) - rows.times(point, lane.orbit.q[0].data()) -
+                     marcher.support(index, time);
+  // Closing towards a lower stop, gap and speed are both negative.
+  const double ahead = speed != 0 ? std::min(std::max(gap / speed, -2 * h), 2 * h) : 0.0;
+  impact.time = time + ahead;
+  impact.velocity = lane.orbit.velocity(h, -ahead);
+  impact.approach = rows.times(point, impact.velocity.data()) + marcher.support_rate(index, impact.time);
+  lane.known = impact.approach != 0;
+}
+
+void ImpactJump::step_done(Marcher& marcher) {
+  const int rows = marcher.program().model->rows(), width = marcher.width();
+  for (std::size_t index = 0; index < lanes_.size(); ++index) {
+    Lane& lane = *lanes_[index];
+    const int number = static_cast<int>(index);
+    lane.orbit.add(marcher.slot(0), rows, width, number);
+    for (std::size_t k = 0; k < lane.columns.size(); ++k)
+      lane.columns[k].add(marcher.slot(0), rows, width, marcher.tangent_lane(number, static_cast<int>(k)));
+    if (lane.contact) {
+      ++lane.steps;
+      lane.free_steps = 0;
+      if (lane.steps > longest_impact) lane.known = false;  // it rests: its derivative is that of the step
+      continue;
+    }
+    if (lane.steps == 0) continue;
+    ++lane.free_steps;
+    if (!lane.known) {
+      lane.steps = 0;
+      continue;
+    }
+    if (lane.free_steps < 2 || lane.columns.empty() || lane.columns.front().known < 3) continue;
+    finish(marcher, lane, number);
+    lane.known = false;
+    lane.steps = 0;
+  }
+}
+
+void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
+  const Program& program = marcher.program();
+  const double h = program.h, since = marcher.time() - lane.impact.time;
+  const RowMatrix& rows = program.model->contact();
+  const Impact& impact = lane.impact;
+  const double omega = program.problem->support.pulsation;
+  const Eigen::VectorXd after = lane.orbit.velocity(h, since), acceleration = lane.orbit.acceleration(h);
+  // Its direction is that of the orbit; its size is the law's, which the orbit itself keeps to O(h) only.
+  Eigen::VectorXd lost = impact.velocity - after;
+  const double taken = rows.times(impact.point, lost.data());
+  if (restitution_ && taken != 0) lost *= (1 + *restitution_) * impact.approach / taken;
+  const double clamp = -omega * omega * marcher.support(index, impact.time);
+  const double pushed = rows.times(impact.point, impact.acceleration.data()) + clamp;
+  for (std::size_t k = 0; k < lane.columns.size(); ++k) {
+    const Past& past = lane.columns[k];
+    const Eigen::VectorXd dq = past.displacement(h, since), dv = past.velocity(h, since);
+    const double shift = -rows.times(impact.point, dq.data()) / impact.approach;
+    const double closing = rows.times(impact.point, dv.data()) + pushed * shift;
+    Eigen::VectorXd place = lost * shift;
+    Eigen::VectorXd rate = (impact.acceleration - acceleration) * shift - lost * (closing / impact.approach);
+    Eigen::VectorXd bend = Eigen::VectorXd::Zero(place.size());
+    if (inverse_mass_) bend = inverse_mass_->of(place, rate);
+    place += since * rate + since * since / 2 * bend;
+    rate += since * bend;
+    LaneState column = marcher.tangent(index, static_cast<int>(k));
+    double* slot = column.slots.data();
+    for (const auto& [position, velocity] : program.plan.initial) {
+      for (int i = 0; i < place.size(); ++i)
+        slot[i] += position != 0 ? position * place[i] + velocity * rate[i]
+                                 : (velocity != 0 ? velocity * (rate[i] + offset_ * h * bend[i]) : bend[i]);
+      slot += place.size();
+    }
+    marcher.set_tangent(index, static_cast<int>(k), column);
+  }
+  for (Past& past : lane.columns) past.known = 0;
+  ++lane.applied;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,65 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <ricochet/engine/marcher.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// The jump of tangent columns at impacts with inertia. Where a contact point has mass, the derivative of a fixed-step
+/// impact is not the derivative of the motion, at any step: the step at which the point is met does not move with the
+/// orbit. Tangents are therefore held free through an impact, and when it is over (at most three steps of contact) the
+/// exact jump is put on them, with δt = −H δq⁻/w⁻ the shift of the impact's time:
+///
+///     δq⁺ = δq⁻ + (v⁻ − v⁺) δt
+///     δv⁺ = δv⁻ + (a⁻ − a⁺) δt − (1+e) r [H δv⁻ + (H a⁻ + φ'') δt],        (1+e) r = (v⁻ − v⁺)/w⁻
+///
+/// w = Hv + φ' the speed of the point; v±, a± are those of the orbit, from its displacements before and after, carried
+/// to the time of the impact; e is what the plan restitutes to a free mass. A contact that lasts longer is a point that
+/// rests: there the derivative of the step with its contact set is right. Second-order accurate in h on regular masses.
+/// Points whose impact the step does not resolve (resolved_points(): the mass of one node of a beam) are not looked at:
+/// they meet their stop like points without mass, the motion after it is the step's own, and so is its derivative.
+/// Source: Müller (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
+class ImpactJump final : public StepObserver {
+ public:
+  /// Looks at rigid contact points whose mass is not zero and whose impacts the step resolves, and has the marcher hold
+  /// the tangents there.
+  explicit ImpactJump(Marcher& marcher);
+  ~ImpactJump();
+
+  /// Whether there are such points and tangents at all; otherwise the march need not be observed.
+  bool needed() const { return needed_; }
+  /// Tangent columns were replaced (orthonormalised): their past is not theirs any more.
+  void columns_replaced();
+  /// Jumps put on lane's columns so far.
+  int applied(int lane) const;
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override;
+  void step_done(Marcher& marcher) override;
+
+ private:
+  struct Past;
+  struct Impact;
+  struct Lane;
+  void watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time);
+  void finish(Marcher& marcher, Lane& lane, int index);
+
+  bool needed_ = false;
+  double offset_ = 0;  // of velocity slots, in steps
+  std::optional<double> restitution_;
+  std::vector<bool> massive_;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+  struct Inverse;
+  std::unique_ptr<Inverse> inverse_mass_;
+};
+
+/// For each contact point of the problem, whether it has inertia: no displacement in Ker M moves it.
+std::vector<bool> points_with_mass(const SemiDiscrete& problem);
+
+/// For each contact point, whether a step of h follows the motion that an impulse on it leaves: whether
+/// H (M + h²K)⁻¹ Hᵀ is within a hundredth of its limit H M⁻¹ Hᵀ for h → 0 (taken at h/1000). For an oscillator: hω ≤
+/// 0.1.
+std::vector<bool> resolved_points(const SemiDiscrete& problem, double h);
+
+}  // namespace ricochet

@@ -1,0 +1,72 @@
+#pragma once
+#include <array>
+#include <ricochet/measure/orbits/section_series.hpp>
+#include <vector>
+
+/// \file
+/// Whether an orbit repeats on its section. The distance at lag p is relative, column by column:
+///
+///     d_k(p) = max_c |x_{k,c} − x_{k−p,c}| / scale_c                                                           (1)
+///
+/// A column whose scale is 0 repeats only where it is equal.
+namespace ricochet {
+
+/// Longest period that is looked for, in forcing periods.
+constexpr int longest_period = 64;
+
+struct Recurrence {
+  int period = 0;          ///< p, in forcing periods; 0: none up to the longest
+  double distance = 0;     ///< max d_k(p) over the window; without a period, of the lag where that is smallest
+  double contraction = 1;  ///< of d_k(p) per forcing period; 1 at round-off and where nothing tells it from 1
+  int window = 0;          ///< rows looked at, the last ones; 0: too few for any lag
+};
+
+/// The smallest p ≤ longest at which the orbit repeats over a window of its last rows (all of them, or else the last
+/// half; at least 2p + 8 rows):
+///   - max d_k(p) ≤ tolerance, and the distances do not grow so that they would leave it within another such window
+///     (an unstable orbit that is being left), or
+///   - the largest d_k(p) of each p periods follow L + A ρ^k with ρ < 1, A > 0, scatter below a tenth, and |L| plus
+///     three standard errors is at most the tolerance: an orbit that has not quite arrived;
+/// and no divisor q of p has distances d_k(q) that fall by a tenth or more over the window without having come within a
+/// tenth of their limit: near a period doubling d_k(2p) is small long before d_k(p) is, and the orbit may be either.
+/// `contraction` is e^slope of ln d_k over k, where the slope is three standard errors from 0; distances below 1e-13
+/// are round-off and end the fit. Rows that are not finite repeat nothing; no distance is told as larger than 1e9.
+/// Throws std::invalid_argument when `scale` does not give one finite number ≥ 0 per column.
+Recurrence find_recurrence(const SectionSeries& series, const std::vector<double>& scale, double tolerance,
+                           int longest = longest_period);
+
+/// The same question asked once per period of a march that waits for its transient to end: plain data, O(longest ·
+/// width) per period, no allocation after construction.
+struct Settling {
+  std::vector<double> scale;  ///< one per column, as for find_recurrence()
+  double tolerance = 0;
+  int longest = longest_period;
+  std::vector<double> ring;  ///< the last `longest` rows
+  std::vector<int> repeats;  ///< per lag: successive periods within tolerance so far
+  long long periods = 0;     ///< rows seen
+
+  Settling() = default;
+  Settling(std::vector<double> scale_per_column, double relative_tolerance, int longest_lag = longest_period);
+
+  /// Takes the row of one period; true when settled.
+  bool add(const double* row);
+  /// Whether some lag p has repeated within the tolerance (1) for max(p, 4) + 4 successive periods.
+  bool settled() const { return period() > 0; }
+  /// The smallest such p; 0: none yet.
+  int period() const;
+  /// Forgets the rows, keeps scale and tolerance.
+  void clear();
+
+  /// All of it as numbers, and back: a march that resumes goes on as if it had not stopped. Throws
+  /// std::invalid_argument on numbers that save() did not write.
+  std::vector<double> save() const;
+  static Settling load(const std::vector<double>& saved);
+};
+
+/// Whether two clouds of section points are the same: every point of either has one of the other within
+/// max_c |a_c − b_c|/scale_c ≤ tolerance (the Hausdorff distance in that norm). With b the image of a under x → −x,
+/// t → t + T/2 (the opposite section, negated), this is the symmetry of the orbit. Two empty clouds are the same.
+bool same_cloud(const std::vector<std::array<double, 2>>& a, const std::vector<std::array<double, 2>>& b,
+                const std::array<double, 2>& scale, double tolerance);
+
+}  // namespace ricochet

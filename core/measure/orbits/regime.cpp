@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/measure/orbits/regime.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double regular_below = 0.2, chaotic_above = 0.8;
+constexpr double seen_growth = 2;   // of a deviation over the window, to contradict what repeats
+constexpr double approached = 0.5;  // of the first distance at the end of the window
+constexpr const char* names[] = {"no contact", "periodic", "quasi-periodic", "chaotic", "undecided", "failed"};
+
+std::string count_text(int n, const char* what) {
+  return n == 1 ? fmt::format("every {}", what) : fmt::format("every {} {}s", n, what);
+}
+
+std::string exponent_text(const Interval& e) {
+  return fmt::format("exponent {:.3g} 1/s in [{:.3g}, {:.3g}]", e.value, e.low, e.high);
+}
+
+std::string zero_one_text(const RegimeInput& input) {
+  return input.zero_one ? fmt::format("K = {:.2f}", *input.zero_one) : "no 0–1 test (60 kept periods are needed)";
+}
+
+std::string distance_text(const RegimeInput& input) {
+  const Recurrence& r = input.recurrence;
+  if (r.window == 0) return "too few periods were kept to see a recurrence";
+  return fmt::format("no recurrence within {:.1g} in {} periods (nearest {:.2g})", input.tolerance, r.window,
+                     r.distance);
+}
+
+std::string repeats_text(const RegimeInput& input) {
+  const Recurrence& r = input.recurrence;
+  const std::string lag = count_text(r.period, "forcing period");
+  if (r.distance > input.tolerance)
+    return fmt::format("settles {} (distances, {:.2g} at most, shrink by {:.4g} per period towards less than {:.1g})",
+                       lag, r.distance, r.contraction, input.tolerance);
+  return fmt::format("repeats {} within {:.2g} over {} periods", lag, r.distance, r.window);
+}
+
+// Whether the exponent's interval lies above zero by what the window would show.
+bool grows(const RegimeInput& input) {
+  if (!input.exponent || input.exponent->low <= 0) return false;
+  if (input.forcing_period <= 0) return true;
+  return input.exponent->low * input.forcing_period * input.recurrence.window >= std::log(seen_growth);
+}
+
+bool still_arriving(const Recurrence& r) {
+  return r.window > 0 && r.contraction < 1 && std::pow(r.contraction, r.window) < approached;
+}
+
+// What is missing, or what contradicts, where nothing is decided.
+std::string undecided_text(const RegimeInput& input) {
+  std::string text = distance_text(input);
+  const Recurrence& r = input.recurrence;
+  if (input.exponent) {
+    const Interval& e = *input.exponent;
+    text += ", " + exponent_text(e);
+    if (e.high < 0) {
+      text += fmt::format(" and {}", zero_one_text(input));
+      return text + (input.settled ? ": neighbours approach each other, the period may exceed the longest looked for"
+                                   : ": neighbours approach each other, a longer transient may settle");
+    }
+    if (!input.zero_one) return text + ": " + zero_one_text(input) + " tells regular from chaotic";
+    return text + fmt::format(" and {}: neither regular (below {}) nor an exponent above zero; keep more periods",
+                              zero_one_text(input), regular_below);
+  }
+  text += fmt::format(", no exponent, {}", zero_one_text(input));
+  if (!input.zero_one) return text + ": keep more periods or ask for an exponent";
+  if (*input.zero_one < regular_below && still_arriving(r))
+    return text + fmt::format(", distances shrink by {:.4g} per period: still settling", r.contraction);
+  return text + ": ask for an exponent or keep more periods";
+}
+
+}  // namespace
+
+const char* regime_name(Regime regime) {
+  return names[static_cast<int>(regime)];
+}
+
+RegimeVerdict classify(const RegimeInput& input) {
+  const Recurrence& r = input.recurrence;
+  const std::string cut = input.settled ? "" : "; the transient was cut at its cap";
+  if (!input.contact) {
+    return {Regime::no_contact, r.period,
+            "no stop was touched" + (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut};
+  }
+  if (r.period > 0) {
+    std::string text = repeats_text(input) + fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
+    if (input.exponent) text += ", " + exponent_text(*input.exponent);
+    if (grows(input)) return {Regime::undecided, r.period, text + ": an orbit that repeats and grows is contradictory"};
+    return {Regime::periodic, r.period, text + cut};
+  }
+  const std::string impacts = fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
+  if (input.exponent) {
+    const std::string text = exponent_text(*input.exponent) + ", " + zero_one_text(input) + ", " + distance_text(input);
+    if (input.exponent->low > 0) return {Regime::chaotic, 0, text + impacts};
+    if (input.exponent->high >= 0 && input.zero_one && *input.zero_one < regular_below)
+      return {Regime::quasi_periodic, 0, text + impacts};
+  } else if (input.zero_one) {
+    const std::string text = zero_one_text(input) + " without an exponent, " + distance_text(input);
+    if (*input.zero_one > chaotic_above) return {Regime::chaotic, 0, text + impacts};
+    if (*input.zero_one < regular_below && r.window > 0 && !still_arriving(r))
+      return {Regime::quasi_periodic, 0, text + impacts};
+  }
+  return {Regime::undecided, 0, undecided_text(input) + cut};
+}
+
+}  // namespace ricochet

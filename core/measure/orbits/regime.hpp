@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+#include <ricochet/measure/orbits/recurrence.hpp>
+#include <ricochet/measure/statistics/block_bootstrap.hpp>
+#include <string>
+
+namespace ricochet {
+
+/// What an orbit of a forced structure does in the long run.
+enum class Regime { no_contact, periodic, quasi_periodic, chaotic, undecided, failed };
+/// "no contact", "periodic", "quasi-periodic", "chaotic", "undecided", "failed".
+const char* regime_name(Regime regime);
+
+/// What is known of one orbit over its kept periods.
+struct RegimeInput {
+  bool contact = false;              ///< whether any stop was touched
+  Recurrence recurrence;             ///< of its section
+  std::optional<Interval> exponent;  ///< largest Lyapunov exponent, 1/s; those owed to the scheme have been set apart
+  std::optional<double> zero_one;    ///< K
+  double impacts_per_period = 0;
+  bool settled = true;        ///< false: the transient was cut at its cap
+  double tolerance = 0;       ///< of the recurrence, relative
+  double forcing_period = 0;  ///< T, s; 0: not known
+};
+
+struct RegimeVerdict {
+  Regime regime = Regime::undecided;
+  int period = 0;        ///< forcing periods, of what repeats; 0: nothing does
+  std::string evidence;  ///< one sentence, with the numbers
+};
+
+/// 1. No contact: no stop was touched.
+/// 2. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that, unless T is known and
+///    the growth it means over the window, e^{low T window}, is less than 2: undecided.
+/// 3. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
+/// 4. Quasi-periodic: the exponent's interval holds zero and K < 0.2; without an exponent, K < 0.2 and the section does
+///    not approach an orbit (distances that halved over the window do).
+/// 5. Undecided otherwise; the sentence says what is missing or what contradicts.
+/// `failed` is for those who march: nothing is classified as failed here.
+RegimeVerdict classify(const RegimeInput& input);
+
+}  // namespace ricochet

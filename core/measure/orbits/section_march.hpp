@@ -1,0 +1,116 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/orbits/recurrence.hpp>
+#include <string>
+#include <vector>
+
+/// \file
+/// Orbits of a periodically forced scene, read once per forcing period: many at a time, one per lane, each replaced by
+/// the next as it ends. The clock of the march runs over one period and is turned back: the strobed map is autonomous,
+/// and an orbit does not depend on how many periods were marched before, nor in which lane.
+namespace ricochet {
+
+/// Where the points of a section are taken.
+enum class SectionKind {
+  strobe,    ///< at one phase of the forcing
+  impact,    ///< where a contact begins
+  extremum,  ///< where the tip turns back
+};
+
+/// How long orbits are followed, and what is read of them.
+struct SectionPlan {
+  double pulsation = 0;      ///< ω of the forcing, rad/s
+  int steps_per_period = 0;  ///< even, 8 or more; h = 2π/(ω · steps)
+  int strobe = 0;            ///< step of the period at which the strobe stands, 0 … steps_per_period − 1
+  int transient = 300;       ///< periods that are not kept, at least
+  int at_most = 2000;        ///< and at most, while the orbit is not settled
+  int keep = 300;            ///< periods that are kept
+  SectionKind section = SectionKind::strobe;
+  double tolerance = 1e-6;  ///< of settling, in units of `scale` (displacement) and ω·scale (velocity)
+  double scale = 1;         ///< m
+
+  /// What the readings of an orbit are measured in: displacement, velocity, and the same half a period later.
+  std::vector<double> reading_scale() const { return {scale, pulsation * scale, scale, pulsation * scale}; }
+};
+
+/// Readings of the tip at a strobe, absolute: (x, v) there, and (−x, −v) half a period later: the image of the orbit
+/// under x → −x, t → t + T/2. v is the central difference over two steps.
+struct SectionPoint {
+  double displacement = 0, velocity = 0, opposite_displacement = 0, opposite_velocity = 0;
+};
+
+/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s).
+struct ImpactPoint {
+  double phase = 0;
+  std::int64_t side = 0;  ///< as wide as the others: no padding, the bytes of equal impacts are equal
+  double speed = 0;
+};
+
+/// An orbit, on its way or complete. Plain data: what is needed to go on is in it.
+struct Orbit {
+  enum class Stage { transient, keep, complete, stopped };
+  int task = 0;  ///< which orbit it is, for its owner
+  Stage stage = Stage::transient;
+  int transient_periods = 0, kept_periods = 0;
+  bool settled = false;
+  std::string cause;  ///< of a stopped one
+  int stopped_period = 0;
+  Settling settling;
+  SectionSeries readings;             ///< per kept period: the strobed point without the sawtooth of single steps
+  std::vector<SectionPoint> strobed;  ///< per kept period
+  std::vector<SectionPoint> points;   ///< of the other sections; empty for a strobe
+  std::vector<ImpactPoint> impacts;   ///< of the last 64 kept periods
+  std::vector<int> impact_counts;     ///< per kept period
+  long long contact_steps = 0;        ///< of the kept periods
+  int most_on_a_side = 0;             ///< impacts on one side in one period, the most
+  bool closed[2] = {false, false};
+  LaneSpec lane;
+  LaneState entry;  ///< when the kept periods began, one step after a strobe
+  LaneState now;    ///< the latest one
+};
+
+/// A block of lanes that march orbits.
+class SectionMarch {
+ public:
+  /// The lanes of the program are places; they are idle until load().
+  SectionMarch(Program program, const SectionPlan& plan);
+  ~SectionMarch();
+
+  int places() const { return marcher_.lanes(); }
+  bool idle(int place) const { return !orbits_[static_cast<std::size_t>(place)]; }
+  /// Puts an orbit in an idle place; it goes on from orbit.now.
+  void load(int place, Orbit orbit);
+  /// Marches one forcing period. Orbits that completed or stopped are taken out and returned, with `now` their last
+  /// state.
+  std::vector<Orbit> period();
+  /// Copies of the orbits on their way, `now` up to date.
+  std::vector<Orbit> running() const;
+  const Marcher& marcher() const { return marcher_; }
+
+ private:
+  class Watch;
+  struct Reading {
+    std::vector<double> before, at, after;  // tips per lane
+  };
+  void read_tips(std::vector<double>& tips) const;
+  void march_to(int step, bool watched);
+  void close_period(int place, Orbit& orbit, const SectionPoint& point, double smoothed);
+
+  Marcher marcher_;
+  SectionPlan plan_;
+  std::vector<std::optional<Orbit>> orbits_;
+  std::unique_ptr<Watch> watch_;
+  Reading strobe_, opposite_;
+};
+
+/// What starts orbits: one period from t = 0 under the start rule of the scheme, up to one step after the strobe that
+/// follows. `states` and `causes` per lane; a cause is "" where the lane still runs.
+struct StartedOrbits {
+  std::vector<LaneState> states;
+  std::vector<std::string> causes;
+};
+StartedOrbits start_orbits(Program program, const SectionPlan& plan);
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/engine/stage_operator.hpp>
+#include <ricochet/measure/stability/linear_response.hpp>
+
+namespace ricochet {
+namespace {
+
+using Complex = std::complex<double>;
+
+}  // namespace
+
+std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const StepPlan& plan, double h) {
+  const double omega = problem.support.pulsation;
+  if (omega == 0 || (problem.load && !problem.load->absent())) return std::nullopt;
+  const MarchModel model(std::make_shared<SemiDiscrete>(problem), true);
+  const int slots = static_cast<int>(plan.slots.size());
+  const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
+  const Complex turn = std::polar(1.0, omega * h);
+  // u = φ + w, φ = A Im(e^{iωt}): with A = 1 the phasor of φ is −i, that of −φ'' is −iω².
+  const Complex clamp(0, -1), push = clamp * omega * omega;
+  Eigen::VectorXcd position = Eigen::VectorXcd::Zero(model.rows());
+  for (int mode = 0; mode < model.rows(); ++mode) {
+    // One step as X ← A X + b e^{iωt}, stage by stage.
+    Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(slots, slots);
+    Eigen::VectorXcd b = Eigen::VectorXcd::Zero(slots);
+    for (const Stage& stage : plan.stages) {
+      const FoldedStage folded = fold(stage, problem.damping, slots);
+      Eigen::RowVectorXcd z = Eigen::RowVectorXcd::Zero(slots);
+      Complex z0 = 0;
+      if (folded.solves()) {
+        const double S = folded.mass * M[mode] + folded.stiffness * K[mode];
+        if (S == 0) return std::nullopt;
+        Eigen::RowVectorXcd history = Eigen::RowVectorXcd::Zero(slots);
+        for (int j = 0; j < slots; ++j)
+          history[j] = folded.mass_history[static_cast<std::size_t>(j)] * M[mode] +
+                       folded.stiffness_history[static_cast<std::size_t>(j)] * K[mode];
+        Complex load = 0;
+        for (const Level& level : stage.load) load += level.weight * std::polar(1.0, omega * level.at * h);
+        z = history * A / S;
+        z0 = ((history * b)(0) + load * push * model.support_shape()[mode]) / S;
+      }
+      Eigen::MatrixXcd next(slots, slots);
+      Eigen::VectorXcd added(slots);
+      for (int j = 0; j < slots; ++j) {
+        const Combination& update = stage.update[static_cast<std::size_t>(j)];
+        next.row(j) = update.z * z;
+        added[j] = update.z * z0;
+        for (std::size_t i = 0; i < update.slots.size(); ++i) {
+          next.row(j) += update.slots[i] * A.row(static_cast<Eigen::Index>(i));
+          added[j] += update.slots[i] * b[static_cast<Eigen::Index>(i)];
+        }
+      }
+      A = next;
+      b = added;
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXcd> solve(turn * Eigen::MatrixXcd::Identity(slots, slots) - A);
+    if (!solve.isInvertible()) return std::nullopt;
+    position[mode] = solve.solve(b)[0];
+  }
+  LinearResponse response;
+  const auto read = [&](const RowMatrix& rows, int row) {
+    Complex sum = clamp;
+    for (int e = rows.start[static_cast<std::size_t>(row)]; e < rows.start[static_cast<std::size_t>(row) + 1]; ++e)
+      sum += rows.value[static_cast<std::size_t>(e)] * position[rows.index[static_cast<std::size_t>(e)]];
+    return sum;
+  };
+  for (int i = 0; i < model.contact().rows(); ++i) response.contact.push_back(read(model.contact(), i));
+  response.tip = read(model.tip(), 0);
+  return response;
+}
+
+double overlap(const LinearResponse& response, const LaneSpec& lane) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < response.contact.size(); ++i) {
+    const double peak = std::abs(lane.amplitude) * std::abs(response.contact[i]);
+    const auto point = static_cast<Eigen::Index>(i);
+    most = std::max({most, peak - lane.upper[point], lane.lower[point] + peak});
+  }
+  return most;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,354 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/measure/stability/observed_stability.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Motions that begin with half of their energy elastic and half kinetic reach at most twice their first norm.
+constexpr double growth_since_start = 4, growth_at_end = 1.5;
+// Near the limit of an explicit scheme the common energy swings by 1/(1 − (h/h*)²) around what is conserved: a thousand
+// times is out of its reach but for the last half per mille.
+constexpr double blown_up = 1000;
+constexpr std::size_t window = 1024;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+class NoContact final : public ContactLaw {
+ public:
+  bool absent() const override { return true; }
+  void prepare(int, std::span<const Parameters>) override {}
+  void solve(ReducedProblem&) override {}
+};
+
+// |x_j − x_j*|² in K and in M for every slot, the largest of each third of the horizon.
+class NormWatch final : public StepObserver {
+ public:
+  NormWatch(const Marcher& marcher, VectorXd rest, long long steps, std::vector<int> held = {})
+      : mass_(QuadraticForm::of(marcher.program().model->inertia())),
+        stiffness_(marcher.program().model->stiffness()),
+        rest_(std::move(rest)),
+        difference_(rest_),
+        held_(std::move(held)),
+        steps_(std::max(steps, 3LL)) {
+    for (auto& third : largest_) third.assign(2 * static_cast<std::size_t>(marcher.slot_count()), 0.0);
+  }
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    if (!view.effort) return;
+    for (const int point : held_) opened_ = opened_ || view.effort[0][point * marcher.width()] == 0;
+  }
+  void step_done(Marcher& marcher) override {
+    if (!marcher.status(0).running) return;
+    if (opened_) marcher.freeze(0, "the disturbance has opened the contact");
+    const auto third = static_cast<std::size_t>(std::min(2LL, 3 * marcher.step() / steps_));
+    for (int j = 0; j < marcher.slot_count(); ++j) {
+      const double* x = marcher.slot(j);
+      for (Eigen::Index i = 0; i < rest_.size(); ++i)
+        difference_[i] = x[i * marcher.width()] - (j == 0 ? rest_[i] : 0.0);
+      double& elastic = largest_[third][2 * static_cast<std::size_t>(j)];
+      double& kinetic = largest_[third][2 * static_cast<std::size_t>(j) + 1];
+      elastic = std::max(elastic, stiffness_(difference_.data()));
+      kinetic = std::max(kinetic, mass_(difference_.data()));
+    }
+  }
+
+  void judge(ObservedCell& cell) const {
+    for (std::size_t s = 0; s < largest_[0].size(); ++s) {
+      const double first = largest_[0][s], second = largest_[1][s], third = largest_[2][s];
+      if (!(first > 0) || third < growth_since_start * first || third < growth_at_end * second) continue;
+      const double late = third / second, early = second / first;
+      // Linear growth of amplitudes: 2.25 and 4.
+      const bool linear = late < 3 && early > 1.3 * late;
+      if (linear && cell.behaviour == Behaviour::stable) {
+        cell.behaviour = Behaviour::linear_growth;
+        cell.cause = "amplitudes grow like the number of steps";
+      } else if (!linear) {
+        cell.behaviour = Behaviour::growing;
+        cell.growth = std::max(cell.growth, std::expm1(1.5 * std::log(late) / static_cast<double>(steps_)));
+      }
+    }
+    if (cell.behaviour == Behaviour::growing)
+      cell.cause = fmt::format("amplitudes grow by {:.3g} per step", cell.growth);
+  }
+
+ private:
+  QuadraticForm mass_, stiffness_;
+  VectorXd rest_, difference_;
+  std::vector<int> held_;
+  bool opened_ = false;
+  long long steps_;
+  std::array<std::vector<double>, 3> largest_;  // per slot: in K, in M
+};
+
+// Windows of the contact force, each beginning with an impact.
+class ForceWindows {
+ public:
+  ForceWindows() { signal_.reserve(window); }
+  void add(double force) {
+    if (windows_ == 64 || (signal_.empty() && force == 0)) return;
+    signal_.push_back(force);
+    if (signal_.size() < window) return;
+    finish();
+  }
+  double share() {
+    if (windows_ == 0 && !signal_.empty()) {
+      signal_.resize(window, 0.0);
+      finish();
+    }
+    return windows_ == 0 ? 0.0 : sum_ / windows_;
+  }
+
+ private:
+  void finish() {
+    sum_ += fast_power_share(signal_);
+    ++windows_;
+    signal_.clear();
+  }
+  std::vector<double> signal_;
+  double sum_ = 0;
+  int windows_ = 0;
+};
+
+// The energy that nothing gave, and the contact force.
+class GainWatch final : public StepObserver {
+ public:
+  explicit GainWatch(const Marcher& marcher) : audit_(marcher) {}
+  void stage_solved(const Marcher& marcher, const StageView& view) override { audit_.stage_solved(marcher, view); }
+  void step_done(Marcher& marcher) override {
+    audit_.step_done(marcher);
+    if (!marcher.status(0).running) return;
+    const EnergyTotals& totals = audit_.totals(0);
+    given_ = std::max(given_, totals.scheme_start + std::max(0.0, totals.work_of_loads));
+    const double energy = totals.last.scheme + totals.last.contact;
+    const double unearned = energy - totals.scheme_start - totals.work_of_loads + totals.work_of_damping;
+    if (given_ > 0 && std::isfinite(unearned)) gain_ = std::max(gain_, unearned / given_);
+    // A scheme's own energy has no sign beyond its limit.
+    const double common = totals.last.common();
+    if (given_ > 0 && common > blown_up * given_) gain_ = std::max(gain_, common / given_);
+    if (gain_ > 1 && first_bad_ < 0) first_bad_ = marcher.step();
+    force_.add(audit_.contact(0).force);
+  }
+
+  void judge(ObservedCell& cell) {
+    const ContactTotals& contact = audit_.contact(0);
+    cell.gain = gain_;
+    cell.impacts = contact.impacts;
+    if (contact.impacts > 0)
+      cell.changes_per_impact = static_cast<double>(contact.active_set_changes) / static_cast<double>(contact.impacts);
+    cell.fast_share = force_.share();
+    if (gain_ <= 1) return;
+    cell.behaviour = Behaviour::growing;
+    cell.first_bad_step = first_bad_;
+    cell.cause = fmt::format("energy that nothing gave reaches {:.3g} times all that was given, first at step {}",
+                             gain_, first_bad_);
+  }
+
+ private:
+  EnergyAudit audit_;
+  ForceWindows force_;
+  double given_ = 0, gain_ = 0;
+  long long first_bad_ = -1;
+};
+
+template <class Watch>
+ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
+  using Clock = std::chrono::steady_clock;
+  marcher.start(&watch);
+  // Steps between two questions whether to go on: about a hundredth of a second, where one step takes less.
+  long long stretch = 1;
+  while (marcher.step() < horizon.steps && marcher.any_running()) {
+    if (horizon.go_on && !horizon.go_on()) break;
+    const Clock::time_point before = Clock::now();
+    marcher.march(std::min(stretch, horizon.steps - marcher.step()), &watch);
+    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    stretch = seconds < 0.01 ? 2 * stretch : std::max(stretch / 2, 1LL);
+  }
+  ObservedCell cell;
+  cell.steps = marcher.step();
+  watch.judge(cell);
+  const LaneStatus& status = marcher.status(0);
+  if (status.running) return cell;
+  cell.behaviour = status.cause.starts_with("the contact law") ? Behaviour::failed : Behaviour::diverged;
+  cell.steps = status.step;
+  if (cell.first_bad_step < 0) cell.first_bad_step = status.step;
+  cell.cause = fmt::format("step {}: {}", status.step, status.cause);
+  return cell;
+}
+
+ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                          std::unique_ptr<ContactLaw> law, LaneSpec lane, const Horizon& horizon) {
+  CompileOptions options;
+  options.expected_steps = horizon.steps;
+  std::vector<LaneSpec> lanes;
+  lanes.push_back(std::move(lane));
+  return compile(problem, plan, h, std::move(law), std::move(lanes), options);
+}
+
+std::shared_ptr<const SemiDiscrete> without_loads(const SemiDiscrete& problem) {
+  auto bare = std::make_shared<SemiDiscrete>(problem);
+  bare->load = nullptr;
+  bare->support.amplitude = 0;
+  return bare;
+}
+
+}  // namespace
+
+const char* behaviour_word(Behaviour behaviour) {
+  switch (behaviour) {
+    case Behaviour::stable:
+      return "stable";
+    case Behaviour::linear_growth:
+      return "marginal";
+    case Behaviour::growing:
+      return "unstable";
+    case Behaviour::diverged:
+      return "diverged";
+    case Behaviour::failed:
+      break;
+  }
+  return "failed";
+}
+
+double fast_power_share(std::vector<double> signal) {
+  const std::size_t n = signal.size();
+  double mean = 0;
+  for (const double x : signal) mean += x / static_cast<double>(n);
+  std::vector<std::complex<double>> a(n);
+  // Bit-reversed order, then butterflies (Cooley and Tukey 1965).
+  const int bits = std::countr_zero(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t reversed = 0;
+    for (int b = 0; b < bits; ++b) reversed |= ((i >> b) & 1u) << (bits - 1 - b);
+    a[reversed] = signal[i] - mean;
+  }
+  for (std::size_t half = 1; half < n; half *= 2) {
+    const auto turn = std::polar(1.0, -std::numbers::pi / static_cast<double>(half));
+    for (std::size_t block = 0; block < n; block += 2 * half) {
+      std::complex<double> factor = 1;
+      for (std::size_t k = block; k < block + half; ++k) {
+        const auto odd = factor * a[k + half];
+        a[k + half] = a[k] - odd;
+        a[k] += odd;
+        factor *= turn;
+      }
+    }
+  }
+  double all = 0, fast = 0;
+  for (std::size_t k = 1; k < n; ++k) {
+    all += std::norm(a[k]);
+    if (k > n / 4 && k < n - n / 4) fast += std::norm(a[k]);
+  }
+  // A constant leaves the round-off of its mean.
+  const double scale =
+      *std::max_element(signal.begin(), signal.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
+  return all > 1e-24 * scale * scale * static_cast<double>(n) ? fast / all : 0.0;
+}
+
+ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                               const Excitation& start, const Horizon& horizon) {
+  const auto bare = without_loads(*problem);
+  LaneSpec lane = scene_lane(*bare, {});
+  if (start.position.size() > 0) {
+    lane.position = start.position;
+    lane.velocity = start.velocity;
+  }
+  auto program = compiled(bare, plan, h, std::make_unique<NoContact>(), std::move(lane), horizon);
+  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
+  Marcher marcher(std::move(std::get<Program>(program)));
+  NormWatch watch(marcher, VectorXd::Zero(marcher.program().model->rows()), horizon.steps);
+  return march(marcher, watch, horizon);
+}
+
+ObservedOrRefusal observe_held(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                               std::unique_ptr<ContactLaw> law, const Parameters& parameters, const ClosedSet& set,
+                               const Excitation& start, const Horizon& horizon) {
+  const LinearLaw linear = linear_law(*law, problem->points(), parameters);
+  if (linear.evaluation)
+    for (const Stage& stage : plan.stages)
+      if (const auto& compliance = stage.at(*linear.evaluation); compliance && compliance->effort.size() > 1)
+        return Refusal{"a law that weights past efforts begins a held motion with a blow"};
+  const auto points = static_cast<Eigen::Index>(set.points.size());
+  MatrixXd rows(points, problem->dofs());
+  for (Eigen::Index i = 0; i < points; ++i)
+    rows.row(i) = Eigen::RowVectorXd(problem->contact.row(set.points[static_cast<std::size_t>(i)]));
+  const Eigen::LDLT<MatrixXd> stiffness{MatrixXd(problem->stiffness)};
+  if (!stiffness.isPositive() || stiffness.vectorD().minCoeff() <= 1e-14 * stiffness.vectorD().maxCoeff())
+    return Refusal{"a free structure has no rest against a stop"};
+
+  const auto bare = without_loads(*problem);
+  LaneSpec lane = scene_lane(*bare, parameters);
+  const VectorXd rest = stiffness.solve(rows.transpose() * VectorXd::Ones(points));
+  const double spring = linear.stiffness ? 1 / *linear.stiffness : 0.0;
+  lane.lower.setConstant(-infinity);
+  lane.upper.setConstant(infinity);
+  for (Eigen::Index i = 0; i < points; ++i)
+    lane.lower[set.points[static_cast<std::size_t>(i)]] = rows.row(i).dot(rest) + spring;
+  const double energy = 0.5 * rest.dot(MatrixXd(problem->stiffness) * rest);
+  const double share = start.position.size() > 0 ? 1e-6 * std::sqrt(energy) : 0.0;
+  lane.position = rest;
+  lane.velocity.setZero();
+  if (share > 0) {
+    lane.position += share * start.position;
+    lane.velocity = share * start.velocity;
+  }
+  auto program = compiled(bare, plan, h, std::move(law), std::move(lane), horizon);
+  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
+  Marcher marcher(std::move(std::get<Program>(program)));
+  NormWatch watch(marcher, marcher.program().model->to_model(rest), horizon.steps, set.points);
+  return march(marcher, watch, horizon);
+}
+
+ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                                std::unique_ptr<ContactLaw> law, const Parameters& parameters, const Horizon& horizon) {
+  auto program = compiled(problem, plan, h, std::move(law), scene_lane(*problem, parameters), horizon);
+  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
+  Marcher marcher(std::move(std::get<Program>(program)));
+  GainWatch watch(marcher);
+  return march(marcher, watch, horizon);
+}
+
+ObservedLimit observed_limit(const std::vector<double>& steps, const std::vector<std::optional<ObservedCell>>& known,
+                             const std::function<std::optional<ObservedCell>(double h)>& observe, bool below) {
+  ObservedLimit limit;
+  std::optional<double> stable, unstable;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!known[i]) continue;
+    if (!unstable && known[i]->stable()) stable = steps[i];
+    if (!unstable && !known[i]->stable()) unstable = steps[i];
+    if (unstable && known[i]->stable()) limit.returns = true;
+  }
+  if (!unstable) return limit;
+  limit.below_range = !stable;
+  for (double h = *unstable; below && !stable && h > 1e-6 * steps.front();) {
+    h /= 4;
+    const auto cell = observe(h);
+    if (!cell) return limit;
+    (cell->stable() ? stable : unstable) = h;
+  }
+  if (!stable) return limit;
+  double low = *stable, high = *unstable;
+  while (high > 1.01 * low) {
+    const double middle = std::sqrt(low * high);
+    const auto cell = observe(middle);
+    if (!cell) break;
+    (cell->stable() ? low : high) = middle;
+  }
+  limit.step = std::sqrt(low * high);
+  return limit;
+}
+
+}  // namespace ricochet

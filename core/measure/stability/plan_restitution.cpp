@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <ricochet/contract/unit_mass.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
+
+namespace ricochet {
+namespace {
+
+// A free unit mass above a rigid stop at 0, with the efforts that its plan looks back to.
+class BouncingMass {
+ public:
+  BouncingMass(const StepPlan& plan, double height) : mass_(plan, height, -1), past_(most_efforts, 0.0) {}
+
+  double position() const { return mass_.slots[0]; }
+  /// Returns whether an effort of the stop could have moved an impact measure.
+  bool step(const std::vector<Stage>& stages) {
+    bool measured = false;
+    for (const Stage& stage : stages) {
+      double effort = 0, found = 0;
+      const double S = stage.matrix.M;
+      if (stage.impact)
+        for (std::size_t k = 1; k < stage.impact->effort.size(); ++k) effort += stage.impact->effort[k] * past_[k - 1];
+      double z = mass_.unknown(stage, 0, effort);
+      const double weight = stage.impact ? stage.impact->effort[0] : 0.0;
+      const double reach = stage.impact && S != 0 ? stage.impact->value.z * weight / S : 0.0;
+      if (reach > 0) {
+        measured = true;
+        found = push(*stage.impact, z) / reach;
+        z += weight * found / S;
+      }
+      std::rotate(past_.begin(), past_.end() - 1, past_.end());
+      past_[0] = found;
+      mass_.update(stage, z);
+    }
+    return measured;
+  }
+
+ private:
+  // What the measure lacks to its bound; 0 where it lies above, or the gate is open.
+  double push(const ImpactMeasure& impact, double z) const {
+    double lower = 0;
+    if (const auto& gate = impact.gate) {
+      if (combined(gate->predictor, mass_.slots) > 0) return 0;
+      const double approach = combined(gate->approach, mass_.slots);
+      lower = approach > 0 ? -approach : -gate->restitution * approach;
+    }
+    return std::max(0.0, lower - combined(impact.value, mass_.slots, z));
+  }
+  UnitMass mass_;
+  std::vector<double> past_;
+};
+
+// Downwards at one unit per second from two steps and a share of a third above the stop.
+std::optional<double> rebound(const StepPlan& plan, double h, double share) {
+  BouncingMass mass(plan, (2 + share) * h);
+  mass.step(plan.start);
+  bool measured = false;  // by the steps: the start may see what they do not
+  for (int n = 0; n < 12; ++n) measured = mass.step(plan.stages) || measured;
+  if (!measured) return std::nullopt;
+  // The rebound over one more step, whatever the scheme keeps as its velocity.
+  const double before = mass.position();
+  mass.step(plan.stages);
+  return (mass.position() - before) / h;
+}
+
+}  // namespace
+
+std::optional<double> plan_restitution(const StepPlan& plan, double h) {
+  return rebound(plan, h, 0.3);
+}
+
+std::optional<RestitutionRange> restitution_range(const StepPlan& plan, double h) {
+  constexpr int phases = 64;
+  RestitutionRange range;
+  for (int k = 0; k < phases; ++k) {
+    // Mid-points: at 0 and 1 the mass meets its stop exactly at a step.
+    const auto e = rebound(plan, h, (k + 0.5) / phases);
+    if (!e) return std::nullopt;
+    range.least = k == 0 ? *e : std::min(range.least, *e);
+    range.most = k == 0 ? *e : std::max(range.most, *e);
+    range.mean += *e / phases;
+  }
+  return range;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,236 @@
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/stability/step_map.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+bool solves(const Stage& stage) {
+  return stage.matrix.M != 0 || stage.matrix.C != 0 || stage.matrix.K != 0;
+}
+
+MatrixXd weighted(const LinearProblem& problem, const OperatorWeights& w) {
+  return w.M * problem.mass + w.C * problem.damping + w.K * problem.stiffness;
+}
+
+struct Measure {
+  const Combination* value = nullptr;
+  std::vector<double> effort = {1.0};
+  const Combination* before = nullptr;  // a conserving evaluation takes the mean of both
+};
+
+std::optional<Measure> measure_of(const Stage& stage, const ClosedContact& law) {
+  if (!law.evaluation) {
+    if (!stage.impact) return std::nullopt;
+    return Measure{&stage.impact->value, stage.impact->effort};
+  }
+  const auto& compliance = stage.at(*law.evaluation);
+  if (!compliance) return std::nullopt;
+  return Measure{&compliance->displacement, compliance->effort, compliance->before ? &*compliance->before : nullptr};
+}
+
+// The last efforts of all stages in the state, newest first: p₋₁ of the stage to come, p₋₂, …
+struct PastEfforts {
+  Index at = 0;
+  Index levels = 0;
+};
+
+// Rows of one stage: the unknown z and the effort p over the state before it.
+class StageRows {
+ public:
+  StageRows(const LinearProblem& problem, const StepPlan& plan, const Stage& stage, Index total)
+      : problem_(problem), plan_(plan), stage_(stage), n_(problem.mass.rows()), total_(total) {}
+
+  std::optional<Refusal> free_step() {
+    unknown_ = MatrixXd::Zero(n_, total_);
+    if (!solves(stage_)) return std::nullopt;
+    lu_.compute(weighted(problem_, stage_.matrix));
+    for (std::size_t j = 0; j < stage_.history.size(); ++j)
+      unknown_.middleCols(static_cast<Index>(j) * n_, n_) = weighted(problem_, stage_.history[j]);
+    unknown_ = lu_.solve(unknown_).eval();
+    if (!unknown_.allFinite()) return Refusal{"the matrix of the step is singular"};
+    return std::nullopt;
+  }
+
+  std::optional<Refusal> close(const Measure& measure, const ClosedContact& law, const PastEfforts& past) {
+    const MatrixXd& H = problem_.contact;
+    const Index points = H.rows();
+    if (!solves(stage_)) return Refusal{"the scheme measures contact in a stage that solves nothing"};
+    const MatrixXd response = lu_.solve(H.transpose());
+    const MatrixXd delassus = H * response;
+    for (Index k = 1; k < static_cast<Index>(measure.effort.size()); ++k)
+      unknown_.middleCols(past.at + (k - 1) * points, points) += measure.effort[static_cast<std::size_t>(k)] * response;
+    const double z = measure.value->z, weight = measure.effort.front();
+    MatrixXd free = H * combine(*measure.value);
+    if (law.evaluation) {
+      const double stiffness = measure.before ? 0.5 * law.stiffness : law.stiffness;
+      if (measure.before) free += H * combine(*measure.before);
+      const MatrixXd A = MatrixXd::Identity(points, points) + stiffness * z * weight * delassus;
+      effort_ = -stiffness * A.partialPivLu().solve(free);
+    } else {
+      if (z == 0) return Refusal{"the scheme's impact measure does not see the effort of its own step"};
+      // Points that depend on others share the effort among them: the least one that does it.
+      effort_ = -(z * weight * delassus).completeOrthogonalDecomposition().solve(free);
+    }
+    unknown_ += weight * response * effort_;
+    if (!unknown_.allFinite()) return Refusal{"the closed contact has no finite step"};
+    return std::nullopt;
+  }
+
+  // Σ w_j x_j + w_z z, over the state before the stage.
+  MatrixXd combine(const Combination& c) const {
+    MatrixXd rows = c.z * unknown_;
+    for (std::size_t j = 0; j < c.slots.size(); ++j)
+      rows.middleCols(static_cast<Index>(j) * n_, n_).diagonal().array() += c.slots[j];
+    return rows;
+  }
+
+  MatrixXd step(const PastEfforts& past) const {
+    MatrixXd map = MatrixXd::Identity(total_, total_);
+    for (std::size_t j = 0; j < plan_.slots.size(); ++j)
+      map.middleRows(static_cast<Index>(j) * n_, n_) = combine(stage_.update[j]);
+    // A stage without contact has found no effort.
+    const Index points = problem_.contact.rows();
+    for (Index k = past.levels; k-- > 1;) {
+      map.middleRows(past.at + k * points, points).setZero();
+      map.block(past.at + k * points, past.at + (k - 1) * points, points, points).setIdentity();
+    }
+    if (past.levels > 0 && effort_.size() > 0) map.middleRows(past.at, points) = effort_;
+    if (past.levels > 0 && effort_.size() == 0) map.middleRows(past.at, points).setZero();
+    return map;
+  }
+
+ private:
+  const LinearProblem& problem_;
+  const StepPlan& plan_;
+  const Stage& stage_;
+  Index n_, total_;
+  Eigen::PartialPivLU<MatrixXd> lu_;
+  MatrixXd unknown_, effort_;
+};
+
+// D⁻¹ A D with D of powers of two, rows and columns of about the same size; returns D.
+Eigen::VectorXd balance(MatrixXd& A) {
+  const Index n = A.rows();
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (Index i = 0; i < n; ++i) {
+      const double column = A.col(i).lpNorm<1>() - std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - std::abs(A(i, i));
+      // Against round-off there is nothing to balance: it would make a defective matrix look diagonal.
+      if (std::min(column, row) <= 1e-13 * std::max(column, row)) continue;
+      const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (!std::isfinite(factor) || (column * factor + row / factor) >= 0.95 * (column + row)) continue;
+      scale[i] *= factor;
+      A.col(i) *= factor;
+      A.row(i) /= factor;
+      moved = true;
+    }
+  }
+  return scale;
+}
+
+}  // namespace
+
+StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law) {
+  const Index n = problem.mass.rows(), points = problem.contact.rows();
+  PastEfforts past{n * static_cast<Index>(plan.slots.size()), 0};
+  bool reads = false;
+  for (const Stage& stage : plan.stages)
+    if (const auto measure = points > 0 ? measure_of(stage, law) : std::nullopt) {
+      past.levels = std::max(past.levels, static_cast<Index>(measure->effort.size()) - 1);
+      reads = true;
+    }
+  const Index total = past.at + past.levels * points;
+  if (points > 0 && !reads)
+    return Refusal{law.evaluation ? "the time scheme offers no such evaluation of a compliant law"
+                                  : "the time scheme has no impact measure for a rigid law"};
+  MatrixXd whole = MatrixXd::Identity(total, total);
+  for (std::size_t k = 0; k < plan.stages.size(); ++k) {
+    StageRows rows(problem, plan, plan.stages[k], total);
+    if (auto refusal = rows.free_step()) return *refusal;
+    if (const auto measure = points > 0 ? measure_of(plan.stages[k], law) : std::nullopt)
+      if (auto refusal = rows.close(*measure, law, past)) return *refusal;
+    whole = rows.step(past) * whole;
+  }
+  return whole;
+}
+
+std::optional<MatrixXd> held_point_map(const StepPlan& plan) {
+  if (plan.stages.size() != 1 || !plan.stages[0].impact || plan.stages[0].impact->value.z == 0) return std::nullopt;
+  // Weighted past efforts are a state of their own.
+  if (plan.stages[0].impact->effort.size() != 1) return std::nullopt;
+  const Stage& stage = plan.stages[0];
+  const Combination& held = stage.impact->value;
+  const auto slots = static_cast<Index>(plan.slots.size());
+  MatrixXd map = MatrixXd::Zero(slots, slots);
+  for (Index j = 0; j < slots; ++j) {
+    const Combination& update = stage.update[static_cast<std::size_t>(j)];
+    for (std::size_t i = 0; i < update.slots.size(); ++i) map(j, static_cast<Index>(i)) = update.slots[i];
+    for (std::size_t i = 0; i < held.slots.size(); ++i)
+      map(j, static_cast<Index>(i)) -= update.z * held.slots[i] / held.z;
+  }
+  return map;
+}
+
+MatrixXd in_metres(MatrixXd step, const StepPlan& plan, double h, Index rows, double stiffness) {
+  for (std::size_t j = 0; j < plan.slots.size(); ++j) {
+    const auto& [position, velocity] = plan.initial[j];
+    const double metres = position != 0 ? 1.0 : velocity != 0 ? h / velocity : h * h;
+    step.middleRows(static_cast<Index>(j) * rows, rows) *= metres;
+    step.middleCols(static_cast<Index>(j) * rows, rows) /= metres;
+  }
+  const Index efforts = step.rows() - rows * static_cast<Index>(plan.slots.size());
+  step.bottomRows(efforts) /= stiffness;
+  step.rightCols(efforts) *= stiffness;
+  return step;
+}
+
+std::vector<Root> step_roots(const MatrixXd& matrix, bool vectors) {
+  if (!matrix.allFinite()) return {};
+  MatrixXd A = matrix;
+  const Eigen::VectorXd scale = balance(A);
+  const Eigen::EigenSolver<MatrixXd> solver(A, vectors);
+  if (solver.info() != Eigen::Success) return {};
+  const Eigen::VectorXcd values = solver.eigenvalues();
+  const Eigen::MatrixXcd all = vectors ? Eigen::MatrixXcd(solver.eigenvectors()) : Eigen::MatrixXcd();
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return std::abs(values[a]) > std::abs(values[b]); });
+  std::vector<Root> roots;
+  std::vector<bool> taken(order.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (taken[i]) continue;
+    const std::complex<double> first = values[order[i]];
+    std::vector<Index> cluster;
+    std::complex<double> sum = 0;
+    for (std::size_t j = i; j < order.size(); ++j) {
+      if (taken[j] || std::abs(values[order[j]] - first) > root_cluster * std::max(1.0, std::abs(first))) continue;
+      taken[j] = true;
+      cluster.push_back(order[j]);
+      sum += values[order[j]];
+    }
+    Root root{sum / static_cast<double>(cluster.size()), static_cast<int>(cluster.size()), false, {}};
+    if (vectors) {
+      root.vector = scale.cast<std::complex<double>>().cwiseProduct(all.col(cluster.front()));
+      if (cluster.size() > 1 && std::abs(root.value) > 0.5) {
+        Eigen::MatrixXcd space(values.size(), static_cast<Index>(cluster.size()));
+        for (std::size_t j = 0; j < cluster.size(); ++j)
+          space.col(static_cast<Index>(j)) = all.col(cluster[j]).normalized();
+        // Eigenvectors of a Jordan block of two come out parallel up to the square root of round-off.
+        const Eigen::VectorXd sizes = space.jacobiSvd().singularValues();
+        root.defective = sizes[sizes.size() - 1] < 1e-4 * sizes[0];
+      }
+    }
+    roots.push_back(std::move(root));
+  }
+  return roots;
+}
+
+}  // namespace ricochet

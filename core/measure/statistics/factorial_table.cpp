@@ -1,0 +1,172 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ricochet/measure/statistics/factorial_table.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr FactorMask bit(std::size_t factor) {
+  return FactorMask{1} << factor;
+}
+
+}  // namespace
+
+FactorialTable::FactorialTable(std::vector<std::size_t> levels) : levels_(std::move(levels)), strides_(levels_.size()) {
+  for (std::size_t k = levels_.size(); k-- > 0;) {
+    strides_[k] = size_;
+    size_ *= levels_[k];
+  }
+}
+
+std::size_t FactorialTable::index(const std::vector<std::size_t>& level) const {
+  std::size_t cell = 0;
+  for (std::size_t k = 0; k < factors(); ++k) cell += level[k] * strides_[k];
+  return cell;
+}
+
+std::size_t FactorialTable::freedom(std::size_t order) const {
+  // Coefficients of Π(1 + (n_i − 1) t) up to t^order.
+  std::vector<std::size_t> terms(order + 1, 0);
+  terms[0] = 1;
+  for (const std::size_t n : levels_)
+    for (std::size_t k = order; k > 0; --k) terms[k] += terms[k - 1] * (n - 1);
+  std::size_t sum = 0;
+  for (const std::size_t count : terms) sum += count;
+  return sum;
+}
+
+FactorialTable::Weights FactorialTable::uniform() const {
+  Weights out;
+  for (const std::size_t n : levels_) out.emplace_back(n, 1 / static_cast<double>(n));
+  return out;
+}
+
+/// The weighted mean over one factor of a tensor on the factors of `mask`.
+std::vector<double> FactorialTable::contract(const std::vector<double>& tensor, FactorMask mask, std::size_t factor,
+                                             const std::vector<double>& weights) const {
+  std::size_t inner = 1;
+  for (std::size_t k = factor + 1; k < factors(); ++k)
+    if (mask & bit(k)) inner *= levels_[k];
+  const std::size_t n = levels_[factor];
+  std::vector<double> out(tensor.size() / n, 0);
+  for (std::size_t at = 0; at < out.size(); at += inner)
+    for (std::size_t l = 0; l < n; ++l)
+      for (std::size_t k = 0; k < inner; ++k) out[at + k] += weights[l] * tensor[at * n + l * inner + k];
+  return out;
+}
+
+/// f̄_u for every u, each from the smallest that holds one factor more.
+std::vector<std::vector<double>> FactorialTable::means(std::vector<double> values, const Weights& weights) const {
+  const FactorMask all = bit(factors()) - 1;
+  std::vector<std::vector<double>> out(all + 1);
+  out[all] = std::move(values);
+  for (FactorMask mask = all; mask-- > 0;) {
+    std::size_t least = factors();
+    for (std::size_t k = 0; k < factors(); ++k)
+      if (!(mask & bit(k)) && (least == factors() || levels_[k] < levels_[least])) least = k;
+    out[mask] = contract(out[mask | bit(least)], mask | bit(least), least, weights[least]);
+  }
+  return out;
+}
+
+std::vector<double> FactorialTable::variances(const std::vector<double>& values, const Weights& weights) const {
+  // Off the grand mean first, so that little cancels.
+  double mean = 0;
+  for (const double v : values) mean += v / static_cast<double>(size_);
+  std::vector<double> centred = values;
+  for (double& v : centred) v -= mean;
+  auto tensors = means(std::move(centred), weights);
+  std::vector<double> out(tensors.size());
+  for (FactorMask mask = 0; mask < tensors.size(); ++mask) {
+    std::vector<double> squares = std::move(tensors[mask]);
+    for (double& v : squares) v *= v;
+    FactorMask left = mask;
+    for (std::size_t k = 0; k < factors(); ++k)
+      if (left & bit(k)) {
+        squares = contract(squares, left, k, weights[k]);
+        left &= ~bit(k);
+      }
+    out[mask] = squares[0];
+  }
+  for (std::size_t k = 0; k < factors(); ++k)
+    for (FactorMask mask = 0; mask < out.size(); ++mask)
+      if (mask & bit(k)) out[mask] -= out[mask & ~bit(k)];
+  out[0] = 0;
+  for (double& v : out) v = std::max(v, 0.0);
+  return out;
+}
+
+bool FactorialTable::fit_additive(const std::vector<double>& values, const std::vector<char>& known,
+                                  std::vector<double>& fitted) const {
+  // Unknowns: the value where every factor has its first level, then what every other level adds.
+  std::vector<Eigen::Index> first;
+  for (std::size_t k = 0, next = 1; k < factors(); next += levels_[k++] - 1)
+    first.push_back(static_cast<Eigen::Index>(next));
+  const auto unknowns = static_cast<Eigen::Index>(freedom(1));
+  std::vector<Eigen::Index> row;
+  const auto row_of = [&](std::size_t cell) {
+    row.assign(1, 0);
+    for (std::size_t k = 0; k < factors(); ++k)
+      if (const std::size_t l = level(cell, k)) row.push_back(first[k] + static_cast<Eigen::Index>(l) - 1);
+  };
+  double mean = 0, count = 0;
+  for (std::size_t cell = 0; cell < size_; ++cell)
+    if (known[cell]) mean += values[cell], ++count;
+  mean /= count;
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    if (!known[cell]) continue;
+    row_of(cell);
+    for (const Eigen::Index i : row) {
+      right[i] += values[cell] - mean;
+      for (const Eigen::Index j : row) normal(i, j) += 1;
+    }
+  }
+  // Whole numbers: a singular matrix is so to round-off, a regular one far from it.
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
+  if (lu.rank() < unknowns) return false;
+  const Eigen::VectorXd solution = lu.solve(right);
+  fitted.assign(size_, mean);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    row_of(cell);
+    for (const Eigen::Index i : row) fitted[cell] += solution[i];
+  }
+  return true;
+}
+
+void FactorialTable::fill_pairs(std::vector<double>& values, const std::vector<char>& known,
+                                std::vector<double>& fitted) const {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double enough = 1e-11 * (*high - *low);
+  const Weights weights = uniform();
+  const auto d = static_cast<double>(factors());
+  // Σ_{|u| ≤ 2} f_u = Σ_{i<j} f̄_ij − (d − 2) Σ_i f̄_i + (d − 1)(d − 2)/2 f̄.
+  const double factor_of_size[] = {0.5 * (d - 1) * (d - 2), 2 - d, 1};
+  fitted.resize(size_);
+  for (int round = 0; round < 500; ++round) {
+    const auto tensors = means(values, weights);
+    std::fill(fitted.begin(), fitted.end(), 0);
+    for (FactorMask mask = 0; mask < tensors.size(); ++mask) {
+      const auto count = static_cast<std::size_t>(std::popcount(mask));
+      if (count > 2) continue;
+      for (std::size_t cell = 0; cell < size_; ++cell) {
+        std::size_t place = 0;
+        for (std::size_t k = 0; k < factors(); ++k)
+          if (mask & bit(k)) place = place * levels_[k] + level(cell, k);
+        fitted[cell] += factor_of_size[count] * tensors[mask][place];
+      }
+    }
+    double moved = 0;
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      if (known[cell]) continue;
+      moved = std::max(moved, std::abs(fitted[cell] - values[cell]));
+      values[cell] = fitted[cell];
+    }
+    if (moved <= enough) return;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,281 @@
+#include "runners/kinds/basins/run_basins.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/kinds/basins/cell_ends.hpp"
+#include "runners/kinds/basins/cell_scenes.hpp"
+#include "runners/kinds/basins/grid_refinement.hpp"
+#include "runners/kinds/sweep/orbit_checkpoints.hpp"
+#include "runners/march/partial_pace.hpp"
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t largest_batch = 4096;  // cells whose orbits are in memory at one time
+
+bool refines(const StudyCase& study_case) {
+  const Json& wanted = study_case.settings.at("refine");
+  return wanted.is_boolean() && wanted.get<bool>();
+}
+
+class BasinsRun {
+ public:
+  BasinsRun(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk, const std::atomic<bool>& stop)
+      : case_(study_case),
+        desk_(desk),
+        stop_(stop),
+        scenes_(study_case, registry),
+        columns_(scenes_.axes()[0].values.size()),
+        rows_(scenes_.axes()[1].values.size()),
+        refinement_(columns_, rows_, refines(study_case)),
+        ends_(columns_ * rows_) {}
+
+  CaseRecord run() {
+    record_.id = case_.id;
+    record_.axes = case_.axes;
+    for (auto wanted = refinement_.next(); !wanted.empty() && !over_budget_; wanted = refinement_.next())
+      for (std::size_t first = 0; first < wanted.size() && !over_budget_; first += largest_batch) {
+        const auto begin = wanted.begin() + static_cast<std::ptrdiff_t>(first);
+        const std::vector<std::size_t> batch(
+            begin, begin + static_cast<std::ptrdiff_t>(std::min(largest_batch, wanted.size() - first)));
+        take(batch, march(batch));
+      }
+    finish();
+    for (int batch = 0; desk_.shelf.keep && batch < batches_; ++batch) desk_.shelf.keep(batch_key(batch), "");
+    return std::move(record_);
+  }
+
+ private:
+  std::string batch_key(int batch) const { return fmt::format("cells/{}/{}", desk_.key, batch); }
+
+  // The ends of a batch of cells; batches that an interrupted run had finished are read.
+  std::vector<CellEnd> march(const std::vector<std::size_t>& batch) {
+    const int number = batches_++;
+    if (desk_.shelf.find)
+      if (const std::string bytes = desk_.shelf.find(batch_key(number)); !bytes.empty()) {
+        if (scenes_.scenes().groups() == 0) prepare_some(batch);
+        return cell_ends(bytes);
+      }
+    const double begun = thread_seconds();
+    scenes_.begin();
+    std::vector<CellEnd> ends(batch.size());
+    std::vector<std::size_t> places;  // of the tasks
+    std::vector<OrbitTask> tasks;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      CellScenes::Prepared cell = scenes_.prepare(batch[i] % columns_, batch[i] / columns_);
+      if (cell.refusal.empty()) {
+        places.push_back(i);
+        tasks.push_back(std::move(cell.task));
+      } else {
+        ends[i] = refused_end(cell.refusal);
+      }
+    }
+    record_.setup_seconds += thread_seconds() - begun;
+    if (tasks.empty()) return ends;
+    describe_methods();
+    ScheduleOptions options;
+    options.section = section_;
+    options.workers = desk_.workers;
+    options.budget = budget_of(case_) - record_.run_seconds;
+    options.lean = true;
+    OrbitScheduler scheduler(scenes_.scenes(), options);
+    for (OrbitTask& task : tasks) scheduler.add(std::move(task));
+    OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
+    scheduler.restore(checkpoints.find());
+    scheduler.run(stop_, [&](const MarchedOrbits& marched) {
+      checkpoints.save(marched);
+      show_partial();
+    });
+    record_.run_seconds += scheduler.seconds();
+    lane_periods_ += scheduler.lane_periods();
+    over_budget_ = scheduler.over_budget();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!over_budget_ && !scheduler.finished(static_cast<int>(k))) throw Interrupted{};
+      if (scheduler.finished(static_cast<int>(k)))
+        ends[places[k]] = cell_end(scheduler.orbit(static_cast<int>(k)), section_);
+      else
+        ends[places[k]] = unmarched();
+    }
+    if (desk_.shelf.keep && !over_budget_) desk_.shelf.keep(batch_key(number), to_bytes(ends));
+    checkpoints.forget();
+    return ends;
+  }
+
+  CellEnd unmarched() const {
+    CellEnd end;
+    end.status = "failed";
+    end.reason = fmt::format("the budget of {:g} s was spent before", budget_of(case_));
+    return end;
+  }
+
+  // One scene is enough to know what a batch that is read was marched with.
+  void prepare_some(const std::vector<std::size_t>& batch) {
+    for (const std::size_t cell : batch)
+      if (scenes_.prepare(cell % columns_, cell / columns_).refusal.empty()) return describe_methods();
+  }
+
+  void describe_methods() {
+    if (described_) return;
+    described_ = true;
+    const ForcedScenes& scenes = scenes_.scenes();
+    section_ = section_plan(case_, scenes);
+    labels_ = EndLabels(section_);
+    record_.operator_name = scenes.operator_chosen();
+    record_.left_out = left_out_pairs(scenes.left_out(0));
+    record_.notes = scenes.notes(0);
+  }
+
+  void take(const std::vector<std::size_t>& batch, std::vector<CellEnd> ends) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      refinement_.set_label(batch[i], labels_.label(ends[i]));
+      ends_[batch[i]] = std::move(ends[i]);
+    }
+  }
+
+  // Of a case under way (not complete) only the cells that are known have a row.
+  void write_tables(CaseRecord& record, bool complete) const {
+    DerivedTable cells{
+        "cells", {"x", "y", "class", "period", "attractor", "marched", "source", "status", "reason"}, {}};
+    NumberTable points;
+    points.name = "cell_points";
+    points.names = {"cell", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"};
+    points.columns.resize(points.names.size());
+    points.exported = false;
+    const std::vector<std::size_t> sources = refinement_.sources();
+    std::vector<std::size_t> row_of(sources.size());
+    std::size_t rows = 0;
+    for (std::size_t cell = 0; cell < sources.size(); ++cell)
+      if (row_of[cell] = rows; complete || sources[cell] < sources.size()) ++rows;
+    for (std::size_t cell = 0; cell < sources.size(); ++cell) {
+      const double x = scenes_.axes()[0].values[cell % columns_], y = scenes_.axes()[1].values[cell / columns_];
+      if (sources[cell] == sources.size()) {
+        if (complete)
+          cells.rows.push_back(
+              {x, y, regime_name(Regime::failed), nullptr, nullptr, false, nullptr, "failed", unmarched().reason});
+        continue;
+      }
+      const CellEnd& end = ends_[sources[cell]];
+      cells.rows.push_back({x, y, regime_name(end.regime), end.period > 0 ? Json(end.period) : Json(nullptr), nullptr,
+                            sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
+      for (std::size_t i = 0; i < end.section.size(); ++i) {
+        const SectionPoint& point = end.section[i];
+        std::size_t column = 0;
+        for (const double value : {static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement,
+                                   point.velocity, point.opposite_displacement, point.opposite_velocity})
+          points.columns[column++].push_back(value);
+      }
+    }
+    record.tables.push_back(std::move(cells));
+    record.numbers.push_back(std::move(points));
+  }
+
+  void show_partial() {
+    if (!desk_.shelf.show || !pace_.due()) return;
+    CaseRecord partial = record_;
+    write_tables(partial, false);
+    partial.status = "done";
+    std::size_t known = 0;
+    for (std::size_t cell = 0; cell < ends_.size(); ++cell) known += refinement_.marched(cell);
+    partial.reason = fmt::format("under way: {} cells marched", known);
+    pace_.take([&] { desk_.shelf.show(partial); });
+  }
+
+  void finish() {
+    write_tables(record_, true);
+    std::size_t marched = 0, complete = 0, refused = 0;
+    const CellEnd* bad = nullptr;
+    for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
+      if (!refinement_.marched(cell)) continue;
+      const CellEnd& end = ends_[cell];
+      record_.steps += end.periods * section_.steps_per_period;
+      refused += end.status == "refused";
+      marched += end.status != "refused";
+      complete += end.status == "done";
+      if (end.status != "done" && !bad) bad = &end;
+    }
+    put("orbits", static_cast<double>(complete));
+    if (lane_periods_ > 0)
+      put("lane_steps_per_second",
+          static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));
+    if (refines(case_))
+      record_.notes.push_back(fmt::format(
+          "{} of {} cells were marched, {} filled from a marched one of their basin: only boundaries are refined",
+          marched + refused, ends_.size(), ends_.size() - marched - refused));
+    record_.status = complete > 0 ? "done" : (marched == 0 ? "refused" : "diverged");
+    if (over_budget_) {
+      record_.status = "failed";
+      record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} cells are known", budget_of(case_),
+                                   complete, ends_.size());
+    } else if (complete == 0) {
+      record_.reason = "no cell could be marched to its end" + (bad ? "; " + bad->reason : std::string());
+    } else if (bad) {
+      record_.notes.push_back(fmt::format("{} of {} marched cells were refused or stopped; their rows say why",
+                                          marched + refused - complete, marched + refused));
+    }
+  }
+
+  void put(const char* name, double value) {
+    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
+  }
+
+  const StudyCase& case_;
+  const CaseDesk& desk_;
+  const std::atomic<bool>& stop_;
+  CellScenes scenes_;
+  std::size_t columns_, rows_;
+  GridRefinement refinement_;
+  std::vector<CellEnd> ends_;  // of the marched cells
+  SectionPlan section_;
+  EndLabels labels_{SectionPlan{}};
+  CaseRecord record_;
+  long long lane_periods_ = 0;
+  int batches_ = 0;
+  bool described_ = false, over_budget_ = false;
+  PartialPace pace_;
+};
+
+}  // namespace
+
+CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  CellScenes scenes(study_case, registry);
+  const std::size_t columns = scenes.axes()[0].values.size(), rows = scenes.axes()[1].values.size();
+  bool possible = false;
+  for (std::size_t cell = 0; cell < columns * rows && !possible; ++cell) {
+    const CellScenes::Prepared prepared = scenes.prepare(cell % columns, cell / columns);
+    possible = prepared.refusal.empty();
+    if (!possible && out.refusal.empty())
+      out.refusal = fmt::format("at ({:g}, {:g}): {}", scenes.axes()[0].values[cell % columns],
+                                scenes.axes()[1].values[cell / columns], prepared.refusal);
+  }
+  if (!possible) return out;
+  out.refusal.clear();
+  out.operator_name = scenes.scenes().operator_chosen();
+  out.left_out = left_out_pairs(scenes.scenes().left_out(0));
+  out.notes = scenes.scenes().notes(0);
+  const bool refine = refines(study_case);
+  const std::size_t coarse = GridRefinement::coarse_cells(columns, rows, refine);
+  const std::size_t cells = coarse + (columns * rows - coarse) / 4;
+  if (refine)
+    out.notes.push_back(
+        fmt::format("{} of {} cells are marched, then those near boundaries; predicted as a quarter of "
+                    "the others",
+                    coarse, columns * rows));
+  const Json& settings = study_case.settings;
+  const double periods = settings.at("transient").at("periods").get<double>() + settings.at("keep").get<double>();
+  const double steps = periods * study_case.steps_per_period * static_cast<double>(cells);
+  out.steps = static_cast<long long>(steps);
+  out.predicted_seconds = steps * scenes.scenes().predicted_step_seconds(0, 8) / 8;
+  return out;
+}
+
+CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+                      const std::atomic<bool>& stop) {
+  return BasinsRun(study_case, registry, desk, stop).run();
+}
+
+}  // namespace ricochet

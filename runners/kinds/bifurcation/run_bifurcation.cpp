@@ -1,0 +1,458 @@
+#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <ricochet/measure/stability/linear_response.hpp>
+#include <set>
+
+#include "runners/kinds/sweep/orbit_checkpoints.hpp"
+#include "runners/kinds/sweep/orbit_entries.hpp"
+#include "runners/kinds/sweep/orbit_exponents.hpp"
+#include "runners/kinds/sweep/orbit_portraits.hpp"
+#include "runners/kinds/sweep/orbit_rows.hpp"
+#include "runners/kinds/sweep/random_states.hpp"
+#include "runners/march/partial_pace.hpp"
+#include "runners/march/prepare_case.hpp"
+#include "runners/study/with_parameter.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr int most_refinements = 40;       // halvings
+constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
+
+/// Batches of exponents that a killed run had measured, read when they are asked for and forgotten at the end.
+class ExponentCheckpoints {
+ public:
+  explicit ExponentCheckpoints(const CaseDesk& desk) : desk_(desk) {}
+  void serve(ExponentTask& task) {
+    if (!desk_.shelf.find || !desk_.shelf.keep) return;
+    task.find = [this](std::size_t batch) {
+      const std::string bytes = desk_.shelf.find(key(batch));
+      if (!bytes.empty()) note(batch);
+      return bytes;
+    };
+    task.keep = [this](std::size_t batch, const std::string& bytes) {
+      desk_.shelf.keep(key(batch), bytes);
+      note(batch);
+    };
+  }
+  void forget() {
+    for (const std::size_t batch : kept_) desk_.shelf.keep(key(batch), "");
+  }
+
+ private:
+  std::string key(std::size_t batch) const { return fmt::format("exponents/{}/{}", desk_.key, batch); }
+  void note(std::size_t batch) {
+    const std::lock_guard guard(mutex_);
+    kept_.insert(batch);
+  }
+  const CaseDesk& desk_;
+  std::mutex mutex_;
+  std::set<std::size_t> kept_;
+};
+
+// What the march does without; tangents belong to the exponents, where these are asked for.
+std::vector<std::pair<std::string, std::string>> left_out_of(const ForcedScenes& scenes, const StudyCase& study_case) {
+  auto pairs = left_out_pairs(scenes.left_out(0));
+  if (study_case.settings.value("exponents", 0) > 0)
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == "tangent columns"; });
+  return pairs;
+}
+
+class BifurcationRun {
+ public:
+  BifurcationRun(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+                 const std::atomic<bool>& stop)
+      : case_(study_case),
+        registry_(registry),
+        desk_(desk),
+        stop_(stop),
+        scenes_(study_case, registry),
+        starts_(starts_of(study_case.settings)),
+        values_(parameter_values(study_case.settings)),
+        pointer_(study_case.settings.at("parameter").at("pointer").get<std::string>()) {}
+
+  CaseRecord run() {
+    const double begun = thread_seconds();
+    record_.id = case_.id;
+    record_.axes = case_.axes;
+    for (const double value : values_) add_value(value);
+    section_ = section_plan(case_, scenes_);
+    if (scenes_.groups() == 0) return refused();
+    describe_methods();
+    record_.setup_seconds = thread_seconds() - begun;
+    ScheduleOptions options;
+    options.section = section_;
+    options.workers = desk_.workers;
+    options.budget = budget_of(case_);
+    OrbitScheduler scheduler(scenes_, options);
+    scheduler_ = &scheduler;
+    OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
+    ExponentCheckpoints batches(desk_);
+    saved_ = checkpoints.find();
+    const auto keep = [&](const MarchedOrbits& marched) {
+      checkpoints.save(marched);
+      show_partial();
+    };
+    add_tasks();
+    scheduler.restore(saved_);
+    scheduler.run(stop_, keep);
+    refine(keep);
+    record_.run_seconds = scheduler.seconds();
+    finish(batches);
+    checkpoints.forget();
+    batches.forget();
+    return std::move(record_);
+  }
+
+ private:
+  // One value of the parameter: its scenes, at rest and as the study says, where starts ask for them.
+  struct Value {
+    double value = 0;
+    int rest = -1, state = -1;  // scenes
+    std::vector<int> tasks;     // per start; −1: none
+  };
+
+  void add_value(double value) {
+    Value one;
+    one.value = value;
+    if (any_start(starts_, false)) one.rest = scenes_.add(pointer_, value, false);
+    if (any_start(starts_, true)) one.state = scenes_.add(pointer_, value, true);
+    one.tasks.assign(starts_.size(), -1);
+    known_.push_back(std::move(one));
+  }
+
+  int scene_of(const Value& value, const StartSpec& start) const {
+    return start.own_state() ? value.state : value.rest;
+  }
+
+  OrbitTask task_at(const Value& value, const StartSpec& start) const {
+    OrbitTask task;
+    task.scene = scene_of(value, start);
+    task.lane = scenes_[task.scene].lane;
+    if (start.kind == StartSpec::random) {
+      const int group = scenes_[task.scene].group;
+      set_random_state(task.lane, scenes_.problem(group), start.seed, start.index);
+    }
+    return task;
+  }
+
+  void add_tasks() {
+    for (std::size_t s = 0; s < starts_.size(); ++s) {
+      const bool down = starts_[s].kind == StartSpec::down, chain = down || starts_[s].kind == StartSpec::up;
+      int last = -1;
+      for (std::size_t i = 0; i < known_.size(); ++i) {
+        Value& value = known_[down ? known_.size() - 1 - i : i];
+        if (!scenes_[scene_of(value, starts_[s])].refusal.empty()) continue;
+        OrbitTask task = task_at(value, starts_[s]);
+        if (chain) task.after = last;
+        last = value.tasks[s] = scheduler_->add(std::move(task));
+      }
+    }
+  }
+
+  void describe_methods() {
+    record_.operator_name = scenes_.operator_chosen();
+    record_.left_out = left_out_of(scenes_, case_);
+    record_.notes = scenes_.notes(0);
+    record_.notes.push_back(fmt::format(
+        "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
+        section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
+    analyse_groups();
+  }
+
+  // What the plan alone says of the groups that are not known yet.
+  void analyse_groups() {
+    while (static_cast<int>(marginal_.size()) < scenes_.groups()) {
+      const int group = static_cast<int>(marginal_.size());
+      marginal_.push_back(marginal_roots(scenes_, group));
+      viscosity_.push_back(numerical_viscosity(scenes_, group, case_, registry_));
+    }
+  }
+
+  CaseRecord refused() {
+    record_.status = "refused";
+    record_.reason = "no value of the parameter can be marched";
+    for (const Value& value : known_)
+      for (const int scene : {value.rest, value.state})
+        if (scene >= 0 && !scenes_[scene].refusal.empty()) {
+          record_.reason =
+              fmt::format("no value of the parameter can be marched; at {:g}: {}", value.value, scenes_[scene].refusal);
+          return std::move(record_);
+        }
+    return std::move(record_);
+  }
+
+  // The class of a value as far as it decides where to look closer: what does not repeat is one class.
+  std::string rough_class(int task) const {
+    const Orbit& orbit = scheduler_->orbit(task);
+    if (orbit.stage != Orbit::Stage::complete) return "";
+    if (!touches(orbit)) return "no contact";
+    const Recurrence found = find_recurrence(orbit.readings, section_.reading_scale(), recurrence_tolerance);
+    return found.period > 0 ? fmt::format("periodic {}", found.period) : "not periodic";
+  }
+
+  void refine(const std::function<void(const MarchedOrbits&)>& keep) {
+    const Json& wanted = case_.settings.value("refine", Json(nullptr));
+    if (!wanted.is_number() || scheduler_->over_budget()) return;
+    const auto tolerance = wanted.get<double>();
+    for (int round = 0; round < most_refinements; ++round) {
+      struct Middle {
+        std::size_t start;
+        double value;
+        int left, right;
+      };
+      std::vector<Middle> middles;
+      for (std::size_t s = 0; s < starts_.size(); ++s) {
+        std::size_t brackets = 0;
+        const Value* before = nullptr;
+        std::string was;
+        for (const Value& value : known_) {
+          if (value.tasks[s] < 0) continue;
+          const std::string is = rough_class(value.tasks[s]);
+          if (is.empty()) continue;
+          if (before && was != is && value.value - before->value > tolerance) {
+            if (brackets++ < most_brackets)
+              middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
+            else
+              crowded_ = true;
+          }
+          before = &value;
+          was = is;
+        }
+      }
+      if (middles.empty()) return;
+      int added = 0;
+      for (const Middle& middle : middles) {
+        const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
+                                            [](const Value& value, double at) { return value.value < at; });
+        auto index = static_cast<std::size_t>(place - known_.begin());
+        if (place == known_.end() || place->value != middle.value) {
+          add_value(middle.value);
+          std::rotate(known_.begin() + static_cast<std::ptrdiff_t>(index), known_.end() - 1, known_.end());
+        }
+        Value& value = known_[index];
+        const StartSpec& start = starts_[middle.start];
+        if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) continue;
+        OrbitTask task = task_at(value, start);
+        if (start.kind == StartSpec::up) task.after = middle.left;
+        if (start.kind == StartSpec::down) task.after = middle.right;
+        value.tasks[middle.start] = scheduler_->add(std::move(task));
+        ++added;
+      }
+      if (added == 0) return;
+      analyse_groups();
+      scheduler_->restore(saved_);
+      scheduler_->run(stop_, keep);
+    }
+  }
+
+  std::vector<OrbitView> views() const {
+    std::vector<OrbitView> all;
+    for (std::size_t s = 0; s < starts_.size(); ++s)
+      for (const Value& value : known_) {
+        const int scene = scene_of(value, starts_[s]), task = value.tasks[s];
+        const bool original = std::binary_search(values_.begin(), values_.end(), value.value);
+        if (task < 0 && (!original || scenes_[scene].refusal.empty())) continue;
+        OrbitView view;
+        view.value = value.value;
+        view.start = s;
+        view.refusal = scenes_[scene].refusal;
+        if (task >= 0) {
+          if (!scheduler_->finished(task)) continue;
+          view.orbit = &scheduler_->orbit(task);
+          view.group = scenes_[scene].group;
+          view.marginal = marginal_[static_cast<std::size_t>(view.group)].sentence;
+          view.viscosity = viscosity_[static_cast<std::size_t>(view.group)];
+        }
+        all.push_back(view);
+      }
+    return all;
+  }
+
+  void show_partial() {
+    if (!desk_.shelf.show || !pace_.due()) return;
+    CaseRecord partial = record_;
+    std::vector<OrbitView> all = views();
+    classify_all(all);
+    write_tables(partial, all);
+    partial.status = "done";
+    partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
+    pace_.take([&] { desk_.shelf.show(partial); });
+  }
+
+  void classify_all(std::vector<OrbitView>& all) const {
+    for (OrbitView& view : all) judge(view, section_);
+  }
+
+  std::vector<std::string> start_names() const {
+    std::vector<std::string> names;
+    for (const StartSpec& start : starts_) names.push_back(start.name);
+    return names;
+  }
+
+  void write_tables(CaseRecord& record, const std::vector<OrbitView>& all) const {
+    add_orbit_tables(record, all, start_names(), exponents(), section_);
+  }
+
+  int exponents() const { return case_.settings.value("exponents", 0); }
+
+  void finish(ExponentCheckpoints& batches) {
+    std::vector<OrbitView> all = views();
+    ExponentTask task;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!all[i].orbit || all[i].orbit->stage != Orbit::Stage::complete) continue;
+      task.orbits.push_back(all[i].orbit);
+      task.groups.push_back(all[i].group);
+      places.push_back(i);
+    }
+    if (exponents() > 0 && !places.empty()) {
+      for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
+      task.count = exponents();
+      task.workers = desk_.workers;
+      batches.serve(task);
+      double seconds = 0;
+      const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
+      record_.run_seconds += seconds;
+      for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
+      put("exponent_seconds", seconds);
+    }
+    classify_all(all);
+    write_tables(record_, all);
+    add_portraits(record_, scenes_, all, section_);
+    add_entries(record_, all, start_names());
+    add_grazing();
+    if (crowded_)
+      record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
+    long long marched = 0, bad = 0;
+    for (const OrbitView& view : all) (view.orbit && view.orbit->stage == Orbit::Stage::complete ? marched : bad) += 1;
+    record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
+    put("orbits", static_cast<double>(marched));
+    add_shares(record_, all);
+    if (scheduler_->lane_periods() > 0)
+      put("lane_steps_per_second", static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
+    record_.status = marched > 0 ? "done" : "diverged";
+    if (scheduler_->over_budget()) {
+      record_.status = "failed";
+      record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} orbits are complete", budget_of(case_),
+                                   marched, scheduler_->count());
+    } else if (marched == 0) {
+      for (const OrbitView& view : all)
+        if (view.orbit) record_.reason = "no orbit was completed; " + view.orbit->cause;
+    } else if (bad > 0) {
+      record_.notes.push_back(
+          fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));
+    }
+  }
+
+  // Where the periodic motion without contact first touches a stop, from the scheme's own linear response.
+  void add_grazing() {
+    ForcedScenes probes(case_, registry_);
+    std::map<int, std::optional<LinearResponse>> responses;  // per group: it does not depend on amplitude and stops
+    const auto excess = [&](double value) -> std::optional<double> {
+      const ForcedScene& scene = probes[probes.add(pointer_, value, false)];
+      if (!scene.refusal.empty() || probes.problem(scene.group).points() == 0) return std::nullopt;
+      const auto [known, added] = responses.try_emplace(scene.group);
+      if (added)
+        known->second =
+            linear_response(probes.problem(scene.group), probes.plan(scene.group), probes.step(scene.group));
+      if (!known->second) return std::nullopt;
+      return overlap(*known->second, scene.lane);
+    };
+    std::optional<double> before;
+    double low = 0;
+    for (std::size_t i = 0; i < values_.size(); i += std::max<std::size_t>(1, (values_.size() - 1) / 16)) {
+      const auto now = excess(values_[i]);
+      if (before && now && (*before < 0) != (*now < 0)) {
+        double left = low, right = values_[i];
+        int steps = 0;
+        for (; steps < 60 && right - left > 1e-12 * std::max(std::abs(left), std::abs(right)); ++steps) {
+          const double middle = 0.5 * (left + right);
+          const auto there = excess(middle);
+          if (!there) break;
+          ((*there < 0) == (*before < 0) ? left : right) = middle;
+        }
+        add_grazing_row(record_, *before < 0, 0.5 * (left + right), left, right, steps);
+      }
+      before = now;
+      low = values_[i];
+    }
+  }
+
+  void put(const char* name, double value) {
+    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
+  }
+
+  const StudyCase& case_;
+  const Registry& registry_;
+  const CaseDesk& desk_;
+  const std::atomic<bool>& stop_;
+  ForcedScenes scenes_;
+  std::vector<StartSpec> starts_;
+  std::vector<double> values_;  // of the study
+  std::string pointer_;
+  std::vector<Value> known_;  // ascending; refined ones among them
+  SectionPlan section_;
+  std::vector<MarginalRoots> marginal_;  // per group
+  std::vector<std::optional<EquivalentViscosity>> viscosity_;
+  OrbitScheduler* scheduler_ = nullptr;
+  MarchedOrbits saved_;
+  CaseRecord record_;
+  bool crowded_ = false;
+  PartialPace pace_;
+};
+
+}  // namespace
+
+CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  const std::vector<double> values = parameter_values(study_case.settings);
+  const std::vector<StartSpec> starts = starts_of(study_case.settings);
+  const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
+  ForcedScenes scenes(study_case, registry);
+  int representative = -1;
+  for (const double value : values) {
+    const int scene = scenes.add(pointer, value, false);
+    if (scenes[scene].refusal.empty()) {
+      representative = scene;
+      break;
+    }
+    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
+  }
+  if (representative < 0) return out;
+  out.refusal.clear();
+  out.operator_name = scenes.operator_chosen();
+  out.left_out = left_out_of(scenes, study_case);
+  out.notes = scenes.notes(0);
+  const Json& settings = study_case.settings;
+  // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
+  // cost 0.7 of free flight on top of it.
+  constexpr double contact_share = 1.7;
+  const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
+  const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +
+                                  settings.at("transient").at("at_most").get<double>());
+  double chains = 0, singles = 0;
+  for (const StartSpec& start : starts)
+    (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
+  const double count = static_cast<double>(values.size()), period = study_case.steps_per_period;
+  const auto lanes = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
+  const double orbit = (transient + kept) * period;
+  out.steps = static_cast<long long>(orbit * count * (chains + singles));
+  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
+  // The orbit again, one column more than exponents, and the twin.
+  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
+  return out;
+}
+
+CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+                           const std::atomic<bool>& stop) {
+  return BifurcationRun(study_case, registry, desk, stop).run();
+}
+
+}  // namespace ricochet

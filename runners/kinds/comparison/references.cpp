@@ -1,0 +1,326 @@
+#include "runners/kinds/comparison/references.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <ricochet/measure/motion/motion_errors.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/checks.hpp>
+
+#include "runners/kinds/comparison/motion_bytes.hpp"
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/prepare_case.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/study/field.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr int cells = 64;
+
+Json method_json(const MethodChoice& choice) {
+  Json json = {{"name", choice.name}};
+  for (const auto& [key, value] : choice.parameters.values()) json[key] = to_json(value);
+  if (choice.plan) json["plan"] = *choice.plan;
+  return json;
+}
+
+// A motion marched to the end of the grid, or why there is none.
+struct Marched {
+  std::optional<SampledMotion> motion;
+  std::string refusal;
+  double order = 1;
+};
+
+Marched march(const StudyCase& study_case, const Registry& registry, const SampleGrid& grid,
+              const std::function<void(LaneSpec&)>& change, const std::atomic<bool>& stop) {
+  Marched marched;
+  Prepared prepared = prepare_case(study_case, registry);
+  if (!prepared.program) {
+    marched.refusal = prepared.refusal;
+    return marched;
+  }
+  marched.order = prepared.program->plan.facts.order;
+  if (change) change(prepared.program->lanes.front());
+  Marcher marcher(std::move(*prepared.program));
+  MotionSampler sampler(marcher, grid);
+  sampler.march([&] {
+    if (stop) throw Interrupted{};
+    return true;
+  });
+  if (sampler.sampled() == grid.times.size())
+    marched.motion = sampler.finish();
+  else
+    marched.refusal = fmt::format("at h = {:g} s the method itself stops at t = {:.6g} s: {}", study_case.step,
+                                  marcher.status(0).time, marcher.status(0).cause);
+  return marched;
+}
+
+DiscreteProblem dense(const SemiDiscrete& problem, const SampleGrid& grid) {
+  DiscreteProblem discrete;
+  const Eigen::Index n = problem.dofs();
+  if (problem.inertia.factored()) {
+    const Eigen::MatrixXd B = problem.inertia.coupling, C = problem.inertia.velocity_mass;
+    discrete.mass = B.transpose() * C.llt().solve(B);
+  } else {
+    discrete.mass = problem.inertia.mass;
+  }
+  discrete.stiffness = problem.stiffness;
+  discrete.contact = problem.contact;
+  discrete.lower = problem.lower;
+  discrete.upper = problem.upper;
+  discrete.support_shape = problem.support_shape;
+  discrete.position = problem.position;
+  discrete.velocity = problem.velocity;
+  discrete.load_constant = Eigen::VectorXd::Zero(n);
+  if (!problem.load->absent()) problem.load->assemble(0, discrete.load_constant.data());
+  discrete.tip = Eigen::MatrixXd(problem.tip).row(0);
+  const auto places = static_cast<Eigen::Index>(grid.places.size());
+  discrete.places = Eigen::MatrixXd(displacement_rows(problem.space, grid.places));
+  discrete.strains = Eigen::MatrixXd::Zero(places, n);
+  for (Eigen::Index i = 0; i < places; ++i)
+    for (const auto& [dof, value] : strain_row(problem.space, grid.places[static_cast<std::size_t>(i)]))
+      discrete.strains(i, dof) = value;
+  return discrete;
+}
+
+// A case of the same scene and methods at another step and mesh.
+StudyCase at(const StudyCase& study_case, double step, int elements) {
+  StudyCase other = study_case;
+  other.step = step;
+  other.elements = elements;
+  return other;
+}
+
+}  // namespace
+
+SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples) {
+  SampleGrid grid;
+  for (int k = 0; k <= samples; ++k) grid.times.push_back(k == samples ? duration : duration * k / samples);
+  sample_places(structure_length(scene), cells, grid);
+  return grid;
+}
+
+References::References(const Study& study, const Registry& registry, MotionShelf shelf)
+    : study_(study), registry_(registry), shelf_(std::move(shelf)) {
+  smallest_step_ = study.cases.front().step;
+  coarsest_ = finest_ = study.cases.front().elements;
+  for (const StudyCase& one : study.cases) {
+    smallest_step_ = std::min(smallest_step_, one.step);
+    coarsest_ = std::min(coarsest_, one.elements);
+    finest_ = std::max(finest_, one.elements);
+  }
+}
+
+template <class Value>
+Value References::once(std::map<std::string, Promised<Value>>& known, const std::string& key,
+                       const std::atomic<bool>& stop, const std::function<Value()>& make) {
+  constexpr auto look_every = std::chrono::milliseconds(100), at_once = std::chrono::milliseconds(0);
+  std::promise<Value> promise;
+  for (;;) {
+    std::shared_future<Value> future;
+    {
+      const std::lock_guard guard(mutex_);
+      const auto [found, fresh] = known.try_emplace(key);
+      Promised<Value>& entry = found->second;
+      // The thread of a case that was given up does not come back with its answer.
+      const bool lost = !fresh && entry.owner && entry.owner->given_up() &&
+                        entry.value.wait_for(at_once) != std::future_status::ready;
+      if (fresh || lost) {
+        entry = {promise.get_future().share(), current_ticket()};
+        break;
+      }
+      future = entry.value;
+    }
+    if (future.wait_for(look_every) == std::future_status::ready) return future.get();
+    if (stop) throw Interrupted{};
+  }
+  try {
+    Value value = make();
+    promise.set_value(value);
+    return value;
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+    throw;
+  }
+}
+
+std::string References::key(const StudyCase& study_case, const MethodChoice& choice) const {
+  Json content = {{"program", program_hash()},
+                  {"reference", method_json(choice)},
+                  {"scene", study_case.scene_json},
+                  {"duration", study_case.duration},
+                  {"samples", study_case.samples}};
+  const bool marched = choice.name == marched_reference;
+  const auto* entry = marched ? nullptr : registry_.reference(choice.name);
+  if (entry && !entry->file.empty()) content["library"] = file_hash(entry->file);
+  const bool of_the_mesh = marched || entry->make(choice.parameters)->of_the_mesh();
+  if (of_the_mesh) {
+    content["mass"] = method_json(study_case.mass);
+    content["contact"] = method_json(study_case.contact);
+    for (const auto& [role, name] :
+         {std::pair(Role::mass, study_case.mass.name), {Role::contact, study_case.contact.name}})
+      if (const std::string file = registry_.file(role, name); !file.empty())
+        content["libraries"].push_back(file_hash(file));
+  }
+  if (marched) {
+    content["time"] = method_json(study_case.time);
+    if (const std::string file = registry_.file(Role::time, study_case.time.name); !file.empty())
+      content["libraries"].push_back(file_hash(file));
+    content["elements"] = study_case.elements;
+    content["refined"] = {smallest_step_, coarsest_, finest_};
+  } else if (of_the_mesh) {
+    content["elements"] = study_case.elements;
+    content["restitution"] = reference_problem(study_case, registry_).restitution;
+  } else {
+    const ReferenceProblem problem = reference_problem(study_case, registry_);
+    content["absent"] = problem.contact_absent;
+    if (problem.structure == "oscillator") content["restitution"] = problem.restitution;
+  }
+  return content_hash(content.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+KnownReference References::march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const {
+  KnownReference known{marched_reference, "", coarsest_ == finest_, {}};
+  const double smallest = smallest_step_;
+  const int finest = finest_;
+  const bool several = finest_ != coarsest_;
+  const int elements = several ? 2 * finest : study_case.elements;
+  const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
+  const Marched coarse = march(at(study_case, smallest / 4, elements), registry_, grid, nullptr, stop);
+  const Marched fine = march(at(study_case, smallest / 8, elements), registry_, grid, nullptr, stop);
+  for (const Marched* one : {&coarse, &fine})
+    if (!one->motion) {
+      known.refusal = one->refusal;
+      return known;
+    }
+  const double order = fine.motion->events.empty() ? fine.order : 1;
+  known.found.motion = extrapolated(*fine.motion, *coarse.motion, 2, order);
+  known.found.coarser = *fine.motion;
+  known.found.how = fmt::format("the method itself at h = {:g} and {:g} s on {} elements, extrapolated with order {:g}",
+                                smallest / 4, smallest / 8, elements, order);
+  if (several) {
+    const Marched other = march(at(study_case, smallest / 4, finest), registry_, grid, nullptr, stop);
+    if (other.motion) {
+      const auto size = [&](const SampledMotion& motion) {
+        return *motion_errors(motion, known.found.motion, grid, grid.times.back(), {"tip-linf"})[0].value;
+      };
+      if (size(*other.motion) > size(known.found.coarser)) {
+        known.found.coarser = *other.motion;
+        known.found.how += fmt::format("; its gap is that to {} elements", finest);
+      }
+    }
+  }
+  return known;
+}
+
+KnownReference References::compute(const StudyCase& study_case, const MethodChoice& choice,
+                                   const std::atomic<bool>& stop) const {
+  if (choice.name == marched_reference) return march_finer(study_case, stop);
+  const auto solver = registry_.reference(choice.name)->make(choice.parameters);
+  KnownReference known{choice.name, "", solver->of_the_mesh(), {}};
+  const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
+  ReferenceProblem problem = reference_problem(study_case, registry_);
+  DiscreteProblem discrete;
+  if (solver->of_the_mesh()) {
+    auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_));
+    if (const auto* refusal = std::get_if<Refusal>(&built)) {
+      known.refusal = refusal->sentence;
+      return known;
+    }
+    discrete = dense(std::get<SemiDiscrete>(built), grid);
+    problem.discrete = &discrete;
+  } else {
+    problem.contact_stiffness = 0;
+    problem.contact_nonlinear = false;
+    // A continuum's point of contact has no mass: no coefficient acts on it.
+    if (problem.structure != "oscillator") problem.restitution = 0;
+  }
+  auto solved = solver->solve(problem, grid);
+  if (const auto* refusal = std::get_if<Refusal>(&solved))
+    known.refusal = refusal->sentence;
+  else
+    known.found = std::get<ReferenceMotion>(std::move(solved));
+  return known;
+}
+
+ReferencePointer References::find(const StudyCase& study_case, const MethodChoice& choice,
+                                  const std::atomic<bool>& stop) {
+  const std::string name = key(study_case, choice);
+  return once<ReferencePointer>(known_, name, stop, [&]() -> ReferencePointer {
+    if (shelf_.find)
+      if (const std::string stored = shelf_.find(name); !stored.empty()) {
+        const bool marched = choice.name == marched_reference;
+        const bool mesh =
+            marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
+        return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, motion_from_bytes(stored)});
+      }
+    KnownReference known = compute(study_case, choice, stop);
+    if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
+    return std::make_shared<const KnownReference>(std::move(known));
+  });
+}
+
+References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {
+  // One pair of nearby runs per scene and mesh: the first case of them, at its own step.
+  const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
+  const auto first = std::find_if(study_.cases.begin(), study_.cases.end(), [&](const StudyCase& other) {
+    return !other.excluded && other.scene_json == study_case.scene_json && other.elements == study_case.elements &&
+           !(shelf_.failed && shelf_.failed(other.id));
+  });
+  const StudyCase& chosen = first == study_.cases.end() ? study_case : *first;
+  return once<Twin>(twins_, name.dump(), stop, [&]() -> Twin {
+    std::optional<CaseScope> blamed;
+    if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
+    constexpr double offset = 1e-6, share = 1e-2;
+    SampleGrid grid = comparison_grid(chosen.scene, chosen.duration, chosen.samples);
+    grid.places.clear();
+    grid.weights.clear();
+    const auto offset_by = [](LaneSpec& lane) {
+      lane.position *= 1 + offset;
+      lane.velocity *= 1 + offset;
+      lane.amplitude *= 1 + offset;
+    };
+    Marched one, other;
+    try {
+      one = march(chosen, registry_, grid, nullptr, stop);
+      other = march(chosen, registry_, grid, offset_by, stop);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (...) {
+      // The first case says in its own row what is wrong with it; the others are compared to their ends.
+    }
+    if (!one.motion || !other.motion) return {chosen.duration, "the end of the run"};
+    const double horizon = common_horizon(*one.motion, *other.motion, grid, share);
+    if (horizon >= chosen.duration) return {chosen.duration, "the end of the run"};
+    return {horizon, fmt::format("two runs whose states differ by {:g} at the start (relative) differ by {:g} of the "
+                                 "largest tip displacement from then on",
+                                 offset, share)};
+  });
+}
+
+ReferenceSet References::of(const StudyCase& study_case, const std::atomic<bool>& stop) {
+  ReferenceSet set;
+  set.grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
+  for (const MethodChoice& choice : study_case.references) {
+    ReferencePointer known = find(study_case, choice, stop);
+    if (known->refusal.empty())
+      set.applicable.push_back(std::move(known));
+    else
+      set.refusals.push_back(choice.name + ": " + known->refusal);
+  }
+  if (study_case.settings.contains("horizon")) {
+    set.horizon = study_case.settings["horizon"].get<double>();
+    set.horizon_why = "the study's horizon";
+    return set;
+  }
+  const Twin twin = twin_horizon(study_case, stop);
+  set.horizon = twin.horizon;
+  set.horizon_why = twin.why;
+  return set;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,103 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <ricochet/contract/reference.hpp>
+#include <ricochet/contract/registry.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/march/case_watch.hpp"
+#include "runners/store/record.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// Where computed references outlive the program: find(key) gives what keep(key, content) once stored, or "".
+struct MotionShelf {
+  std::function<std::string(const std::string& key)> find;
+  std::function<void(const std::string& key, const std::string& content)> keep;
+  /// Shows what a case under way has so far; empty where nobody looks.
+  std::function<void(const CaseRecord&)> show;
+  /// A case in whose stead something is computed that others need too: what its plugins do wrong is its own fault.
+  std::function<TicketPointer(const StudyCase&)> ticket;
+  /// Whether a case has failed: nothing is computed with its methods for others.
+  std::function<bool(const std::string& id)> failed;
+};
+
+/// A reference as cases are compared with it.
+struct KnownReference {
+  std::string name;
+  std::string refusal;       ///< why it does not apply; then nothing else is set
+  bool of_the_mesh = false;  ///< it has the case's own mesh: what differs is the time scheme's error alone
+  ReferenceMotion found;
+};
+using ReferencePointer = std::shared_ptr<const KnownReference>;
+
+/// What one case is compared with.
+struct ReferenceSet {
+  std::vector<ReferencePointer> applicable;  ///< in the study's order; the first is the reference
+  std::vector<std::string> refusals;         ///< "NAME: sentence" of those that do not apply
+  SampleGrid grid;
+  double horizon = 0;       ///< s
+  std::string horizon_why;  ///< what set it
+};
+
+/// The references of a comparing study. Each is computed once, when a case first asks for it, by whichever thread asks
+/// first, and kept on the shelf by a hash of all that determines it.
+///
+/// References of the scene (closed forms, the continuous problem) see rigid stops whatever the contact law: there a
+/// penalty is one more numerical choice, whose error is measured. Those of the mesh see the law itself: they leave the
+/// error of the time scheme alone.
+///
+/// `self`: the case's own methods at h/4 and h/8, h the smallest step of the study, on its own mesh, or twice the
+/// finest when the study has several; extrapolated (Richardson) with order 1 where the motion touches a stop, else the
+/// declared order. Its own gap (`coarser`) is the extrapolation's correction, or the two meshes' difference if larger.
+class References {
+ public:
+  References(const Study& study, const Registry& registry, MotionShelf shelf);
+
+  /// Throws Interrupted when `stop` became true.
+  ReferenceSet of(const StudyCase& study_case, const std::atomic<bool>& stop);
+
+ private:
+  struct Twin {
+    double horizon;
+    std::string why;
+  };
+  ReferencePointer find(const StudyCase& study_case, const MethodChoice& choice, const std::atomic<bool>& stop);
+  KnownReference compute(const StudyCase& study_case, const MethodChoice& choice, const std::atomic<bool>& stop) const;
+  KnownReference march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const;
+  std::string key(const StudyCase& study_case, const MethodChoice& choice) const;
+  Twin twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop);
+  /// What one thread computes and the others wait for; `owner`: the case of that thread.
+  template <class Value>
+  struct Promised {
+    std::shared_future<Value> value;
+    TicketPointer owner;
+  };
+  template <class Value>
+  Value once(std::map<std::string, Promised<Value>>& known, const std::string& key, const std::atomic<bool>& stop,
+             const std::function<Value()>& make);
+
+  const Study& study_;
+  const Registry& registry_;
+  MotionShelf shelf_;
+  double smallest_step_ = 0;
+  int coarsest_ = 0, finest_ = 0;  // elements
+  std::mutex mutex_;
+  std::map<std::string, Promised<ReferencePointer>> known_;
+  std::map<std::string, Promised<Twin>> twins_;
+};
+
+/// The grid on which a study's motions are compared: `samples` + 1 times from 0 to `duration`, 128 places.
+SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples);
+
+/// What a reference may read of a case. `discrete` is filled, and `problem.discrete` points to it, when the case has
+/// been discretised.
+ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry);
+
+}  // namespace ricochet

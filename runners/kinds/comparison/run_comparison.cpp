@@ -1,0 +1,127 @@
+#include "runners/kinds/comparison/run_comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/measure/motion/motion_errors.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+std::vector<std::string> errors_of(const StudyCase& study_case) {
+  return study_case.settings.at("errors").get<std::vector<std::string>>();
+}
+
+void put(CaseRecord& record, const std::string& name, double value) {
+  if (std::isfinite(value)) record.measures.emplace_back(name, value);
+}
+
+void say_references(CaseRecord& record, const ReferenceSet& set) {
+  for (std::size_t i = 0; i < set.applicable.size(); ++i) {
+    const KnownReference& known = *set.applicable[i];
+    record.notes.push_back(
+        fmt::format("{} {}: {}", i == 0 ? "reference" : "second reference", known.name, known.found.how));
+    for (const std::string& note : known.found.notes) record.notes.push_back(known.name + ": " + note);
+  }
+  for (const std::string& refusal : set.refusals) record.notes.push_back("reference that does not apply: " + refusal);
+  record.notes.push_back(fmt::format("compared up to t = {:g} s: {}", set.horizon, set.horizon_why));
+}
+
+void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet& set,
+             const std::vector<std::string>& names) {
+  const ReferenceMotion& reference = set.applicable.front()->found;
+  const auto found = motion_errors(motion, reference.motion, set.grid, set.horizon, names);
+  std::vector<double> floors(names.size(), 0.0);
+  const auto raise = [&](const SampledMotion& other) {
+    if (other.tip.empty()) return;
+    const auto gaps = motion_errors(other, reference.motion, set.grid, set.horizon, names);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (gaps[i].value) floors[i] = std::max(floors[i], *gaps[i].value);
+  };
+  raise(reference.coarser);
+  for (std::size_t i = 1; i < set.applicable.size(); ++i) raise(set.applicable[i]->found.motion);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!found[i].value) {
+      record.notes.push_back(fmt::format("no error {}: {}", names[i], found[i].reason));
+      continue;
+    }
+    put(record, "error." + names[i], *found[i].value);
+    put(record, "floor." + names[i], floors[i]);
+  }
+}
+
+}  // namespace
+
+CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry, References& references,
+                          const std::atomic<bool>& stop) {
+  const double set_up = thread_seconds();
+  Prepared prepared = prepare_case(study_case, registry);
+  CaseRecord record = begin_record(study_case, prepared);
+  if (!prepared.program) return record;
+  const bool rigid = !prepared.program->law->reads();
+  const SchemeFacts facts = prepared.program->plan.facts;
+  const bool point_mass = prepared.problem->space.elements.empty();
+  Marcher marcher(std::move(*prepared.program));
+  record.setup_seconds = thread_seconds() - set_up;
+
+  const ReferenceSet set = references.of(study_case, stop);
+  if (set.applicable.empty()) {
+    record.status = "refused";
+    record.reason = fmt::format("no reference applies: {}", fmt::join(set.refusals, "; "));
+    return record;
+  }
+  say_references(record, set);
+
+  const double run = thread_seconds(), budget = budget_of(study_case);
+  MotionSampler sampler(marcher, set.grid);
+  sampler.march([&] {
+    if (stop) throw Interrupted{};
+    return thread_seconds() - run <= budget;
+  });
+  record.run_seconds = thread_seconds() - run;
+  record.steps = std::min(marcher.step(), prepared.steps);
+  const bool whole = sampler.sampled() == set.grid.times.size();
+  const auto& events = sampler.contact().events();
+  put(record, "horizon", set.horizon);
+  put(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
+  put(record, "impacts", static_cast<double>(std::count_if(events.begin(), events.end(), [](const ContactEvent& event) {
+        return event.begins;
+      })));
+  put(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
+  if (whole) {
+    record.status = "done";
+    if (events.empty())
+      put(record, "declared_order", facts.order);
+    else if (rigid && point_mass && facts.contact_order)
+      put(record, "declared_order", std::min(facts.order, *facts.contact_order));
+    put(record, "tip_displacement_end", sampler.motion().tip.back());
+    put(record, "energy_start", sampler.motion().energy.front());
+    put(record, "energy_end", sampler.motion().energy.back());
+    put(record, "microseconds_per_step", 1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
+    compare(record, sampler.finish(), set, errors_of(study_case));
+  } else {
+    record_early_end(record, marcher, prepared.steps, budget);
+  }
+  return record;
+}
+
+std::optional<double> time_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
+  Prepared prepared = prepare_case(study_case, registry);
+  if (!prepared.program) return std::nullopt;
+  Marcher marcher(std::move(*prepared.program));
+  const double begin = thread_seconds();
+  marcher.start();
+  constexpr long long chunk = 200000;
+  while (marcher.step() < prepared.steps && marcher.any_running()) {
+    if (stop) throw Interrupted{};
+    marcher.march(std::min(chunk, prepared.steps - marcher.step()));
+  }
+  const double seconds = thread_seconds() - begin;
+  if (!marcher.any_running()) return std::nullopt;
+  return seconds;
+}
+
+}  // namespace ricochet

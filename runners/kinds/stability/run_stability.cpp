@@ -1,0 +1,428 @@
+#include "runners/kinds/stability/run_stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ricochet/measure/stability/observed_stability.hpp>
+#include <ricochet/measure/stability/stability.hpp>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+using Cell = nlohmann::ordered_json;
+
+// A growth per step that 3000 steps without contact show beyond doubt: by a factor of twenty.
+constexpr double plain_growth = 1e-3;
+// Scenes march this many steps at most, whatever their duration, and free structures always 3000.
+constexpr long long most_scene_steps = 200000, least_scene_steps = 200, free_steps = 3000;
+
+std::vector<double> steps_of(const StudyCase& study_case) {
+  const Json& range = study_case.settings.at("steps");
+  const double from = range.at("from").get<double>(), to = range.at("to").get<double>();
+  const int count = range.at("count").get<int>();
+  if (!std::isfinite(to / from) || !std::isnormal(from))
+    throw InputError("/steps/from", fmt::format("steps from {:g} to {:g} s span more than numbers can hold", from, to));
+  std::vector<double> steps;
+  // Twelve digits: 1e-05 rather than 9.999999999999999e-06.
+  for (int i = 0; i < count; ++i)
+    steps.push_back(
+        std::stod(fmt::format("{:.12g}", count == 1 ? from : from * std::pow(to / from, i / (count - 1.0)))));
+  return steps;
+}
+
+Cell number(double value) {
+  return std::isfinite(value) ? Cell(value) : Cell(nullptr);
+}
+Cell number(const std::optional<double>& value) {
+  return value ? number(*value) : Cell(nullptr);
+}
+
+void append(std::string& reason, const std::string& sentence) {
+  if (!sentence.empty()) reason += (reason.empty() ? "" : "; ") + sentence;
+}
+
+// One contact state over the whole range.
+struct Side {
+  bool closed = false;
+  const char* name() const { return closed ? "closed" : "open"; }
+  std::vector<std::optional<SpectrumOrRefusal>> spectra;
+  std::vector<std::optional<ObservedCell>> cells;
+  StepLimit predicted;
+  ObservedLimit observed;
+
+  /// Marched somewhere, and stable nowhere.
+  bool never_stable() const {
+    const auto stable = [](const auto& cell) { return cell && cell->stable(); };
+    const auto marched = [](const auto& cell) { return cell.has_value(); };
+    return std::any_of(cells.begin(), cells.end(), marched) && std::none_of(cells.begin(), cells.end(), stable);
+  }
+  /// Without contact a step is linear: it does what its spectrum says, or the plan is not what is marched.
+  bool contradicts(std::size_t i) const {
+    const StepSpectrum* known = spectrum(i);
+    if (closed || !known || cells.size() <= i || !cells[i]) return false;
+    if (cells[i]->stable()) return known->radius > 1 + plain_growth && cells[i]->steps >= free_steps;
+    return known->stable() && known->marginal.empty();
+  }
+  const StepSpectrum* spectrum(std::size_t i) const {
+    return spectra[i] ? std::get_if<StepSpectrum>(&*spectra[i]) : nullptr;
+  }
+};
+
+class StabilityRun {
+ public:
+  StabilityRun(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop)
+      : case_(study_case), registry_(registry), stop_(stop), steps_(steps_of(study_case)) {
+    record_.id = study_case.id;
+    record_.axes = study_case.axes;
+  }
+
+  CaseRecord run() {
+    begin_ = thread_seconds();
+    auto discretised = discretise(case_.scene, case_.elements, *make_mass(case_, registry_));
+    if (const auto* refusal = std::get_if<Refusal>(&discretised)) return refused(refusal->sentence);
+    problem_ = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
+    record_.notes = problem_->notes;
+    scheme_ = make_scheme(case_, registry_);
+    const auto law = make_law(case_, registry_);
+    facts_ = problem_facts(*problem_, *law);
+    const LinearLaw linear = linear_law(*law, problem_->points(), case_.contact.parameters);
+    if (law->reads_rate())
+      record_.notes.push_back("closed contact is predicted without the law's own damping, which only its marches show");
+    touches_ = !linear.absent && stops_somewhere();
+    predictor_.emplace(problem_, linear);
+    record_.notes.insert(record_.notes.end(), predictor_->notes().begin(), predictor_->notes().end());
+    if (const auto refusal = refused_everywhere()) return refused(*refusal);
+
+    std::vector<Side> sides(touches_ ? 2 : 1);
+    if (touches_) sides[1].closed = true;
+    for (Side& side : sides) predict(side);
+    record_.setup_seconds = thread_seconds() - begin_;
+    const bool observe = case_.settings.value("observe", true);
+    if (observe) {
+      say_horizon();
+      for (Side& side : sides) this->observe(side);
+    }
+    record_.run_seconds = thread_seconds() - begin_ - record_.setup_seconds;
+    record_.status = "done";
+    tabulate(sides, observe);
+    measure(sides);
+    return std::move(record_);
+  }
+
+ private:
+  bool stops_somewhere() const {
+    for (int i = 0; i < problem_->points(); ++i)
+      if (std::isfinite(problem_->lower[i]) || std::isfinite(problem_->upper[i])) return true;
+    return false;
+  }
+
+  PlanOrRefusal plan(double h) const { return scheme_->plan(h, facts_); }
+
+  // The sentence, when no step of the range has a plan.
+  std::optional<std::string> refused_everywhere() const {
+    std::optional<std::string> sentence;
+    for (const double h : steps_) {
+      const auto made = plan(h);
+      const auto* refusal = std::get_if<Refusal>(&made);
+      if (!refusal) return std::nullopt;
+      sentence = refusal->sentence;
+    }
+    return sentence;
+  }
+
+  CaseRecord refused(const std::string& sentence) {
+    record_.status = "refused";
+    record_.reason = sentence;
+    DerivedTable table = rows_table();
+    for (const double h : steps_) table.rows.push_back({h, "open", nullptr, "", nullptr, nullptr, "refused", sentence});
+    record_.tables.push_back(std::move(table));
+    return std::move(record_);
+  }
+
+  void check_stop() const {
+    if (stop_) throw Interrupted{};
+  }
+  bool spent() const { return thread_seconds() - begin_ > budget_of(case_); }
+
+  SpectrumOrRefusal spectrum(const Side& side, double h, Detail detail) const {
+    check_stop();
+    const auto made = plan(h);
+    if (const auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
+    const StepPlan& step = std::get<StepPlan>(made);
+    return side.closed ? predictor_->worst_closed(step, h, detail) : predictor_->open(step, h, detail);
+  }
+
+  void predict(Side& side) const {
+    for (const double h : steps_)
+      side.spectra.push_back(spent() ? std::nullopt : std::optional(spectrum(side, h, Detail::full)));
+    // The limit is searched with radii alone; the spectrum beyond it is told whole.
+    side.predicted = step_limit(
+        [&](double h) -> SpectrumOrRefusal {
+          if (spent()) return Refusal{"the budget is spent"};
+          return spectrum(side, h, Detail::radius);
+        },
+        steps_);
+    if (side.predicted.step) {
+      const double beyond = *side.predicted.step * (1 + 1e-4);
+      const auto whole = spectrum(side, beyond, Detail::full);
+      if (const auto* known = std::get_if<StepSpectrum>(&whole)) side.predicted.beyond = *known;
+    }
+  }
+
+  long long scene_steps(double h) const {
+    const double ratio = duration_ / h;
+    if (!(ratio < static_cast<double>(most_scene_steps))) return most_scene_steps;
+    return std::max(least_scene_steps, static_cast<long long>(std::ceil(ratio)));
+  }
+
+  void say_horizon() {
+    record_.notes.push_back(
+        fmt::format("open cells are marched {} steps without loads from a state that excites every mode: a growth "
+                    "of 3.5e-4 per step shows",
+                    free_steps));
+    if (!touches_) return;
+    const double first = predictor_->first_pulsation();
+    duration_ = case_.duration > 0 ? case_.duration : first > 0 ? 3 * 2 * std::numbers::pi / first : 0;
+    record_.notes.push_back(fmt::format(
+        "closed cells are the scene itself, marched {}{} at most {} steps{}", duration_ > 0 ? "" : "for ",
+        duration_ > 0 ? fmt::format("to t = {:.4g} s,", duration_) : fmt::format("{} steps,", least_scene_steps),
+        most_scene_steps,
+        duration_ > 0 && steps_.front() * static_cast<double>(most_scene_steps) < duration_
+            ? fmt::format(" (steps below {:.3g} s do not get there)", duration_ / static_cast<double>(most_scene_steps))
+            : std::string()));
+  }
+
+  std::optional<ObservedCell> march(const Side& side, double h) {
+    check_stop();
+    const auto made = plan(h);
+    if (spent() || std::holds_alternative<Refusal>(made)) return std::nullopt;
+    const StepPlan& step = std::get<StepPlan>(made);
+    Horizon horizon;
+    horizon.steps = side.closed ? scene_steps(h) : free_steps;
+    bool whole = true;
+    horizon.go_on = [&] {
+      check_stop();
+      return whole = !spent();
+    };
+    const auto seen =
+        side.closed ? observe_scene(problem_, step, h, make_law(case_, registry_), case_.contact.parameters, horizon)
+                    : observe_free(problem_, step, h, predictor_->excitation(h), horizon);
+    const auto* cell = std::get_if<ObservedCell>(&seen);
+    if (!cell) return std::nullopt;
+    record_.steps += cell->steps;
+    return whole ? std::optional(*cell) : std::nullopt;
+  }
+
+  void observe(Side& side) {
+    for (const double h : steps_) side.cells.push_back(march(side, h));
+    // Below the range a scene would be cut short before anything happens in it.
+    side.observed = observed_limit(
+        steps_, side.cells, [&](double h) { return march(side, h); }, !side.closed);
+    if (spent())
+      record_.notes.push_back(
+          fmt::format("the budget of {:g} s was spent: some cells were not observed", budget_of(case_)));
+  }
+
+  static DerivedTable rows_table() {
+    return {"stability",
+            {"step", "contact", "radius", "marginal", "limit_predicted", "limit_observed", "status", "reason"},
+            {}};
+  }
+
+  static std::string growth_text(const StepSpectrum& known, bool closed) {
+    const double growth = known.radius - 1;
+    return fmt::format(
+        "grows {} per step{} on {}",
+        growth < 1 ? fmt::format("by {:.3g} %", 100 * growth) : fmt::format("{:.3g} times", known.radius),
+        closed ? " with " + known.contact + " closed" : "", known.mode);
+  }
+
+  // Status and reason of one row: the prediction, what was seen, and whether they agree. A scene is open now and then:
+  // what grows there grows in it.
+  static std::pair<std::string, std::string> verdict(const Side& open, const Side& side, std::size_t i, bool observed) {
+    std::string status, reason;
+    bool grows = false;
+    if (const StepSpectrum* known = side.spectrum(i)) {
+      const StepSpectrum* apart = side.closed ? open.spectrum(i) : nullptr;
+      const bool grows_open = apart && !apart->stable();
+      grows = !known->stable() || grows_open;
+      status = grows ? "unstable" : known->marginal.empty() ? "stable" : "marginal";
+      if (!known->stable())
+        append(reason, growth_text(*known, side.closed));
+      else if (side.closed && !known->marginal.empty())
+        append(reason, known->contact + " closed");
+      if (grows_open) append(reason, "open, it " + growth_text(*apart, false));
+    } else if (side.spectra[i]) {
+      status = "refused";
+      append(reason, "not predicted: " + std::get<Refusal>(*side.spectra[i]).sentence);
+    } else {
+      append(reason, "not predicted: the budget was spent");
+    }
+    const auto& cell = observed ? side.cells[i] : std::optional<ObservedCell>();
+    if (!cell) {
+      if (observed && status != "refused") append(reason, "not observed: the budget was spent");
+      return {status.empty() ? "failed" : status, reason};
+    }
+    const std::string seen = cell->behaviour == Behaviour::failed ? "failed" : cell->stable() ? "stable" : "unstable";
+    if (seen != "stable") append(reason, "observed: " + cell->cause);
+    if (side.spectrum(i) && grows != (seen != "stable"))
+      append(reason, grows ? fmt::format("not observed in {} steps", cell->steps) : "the spectrum does not see it");
+    if (cell->chatters())
+      append(reason, fmt::format("chatter: {:.0f} % of the force's power is fast, {:.3g} changes of the active set per "
+                                 "impact",
+                                 100 * cell->fast_share, cell->changes_per_impact));
+    if (seen != "stable" || status == "refused" || status.empty()) status = seen;
+    return {status, reason};
+  }
+
+  void tabulate(const std::vector<Side>& sides, bool observed) {
+    DerivedTable table = rows_table();
+    DerivedTable seen{"stability_observed",
+                      {"step", "contact", "behaviour", "growth", "gain", "impacts", "changes_per_impact", "fast_share",
+                       "chatter", "first_bad_step", "steps", "cause"},
+                      {}};
+    for (const Side& side : sides)
+      for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const StepSpectrum* known = side.spectrum(i);
+        const auto [status, reason] = verdict(sides.front(), side, i, observed);
+        table.rows.push_back({steps_[i], side.name(), known ? number(known->radius) : Cell(nullptr),
+                              known ? known->marginal : "", number(side.predicted.step), number(side.observed.step),
+                              status, reason});
+        if (!observed || !side.cells[i]) continue;
+        const ObservedCell& cell = *side.cells[i];
+        const bool touched = cell.impacts > 0;
+        seen.rows.push_back(
+            {steps_[i], side.name(), behaviour_word(cell.behaviour), number(cell.growth),
+             side.closed ? number(cell.gain) : Cell(nullptr), side.closed ? Cell(cell.impacts) : Cell(nullptr),
+             touched ? number(cell.changes_per_impact) : Cell(nullptr),
+             touched ? number(cell.fast_share) : Cell(nullptr), Cell(cell.chatters()),
+             cell.first_bad_step >= 0 ? Cell(cell.first_bad_step) : Cell(nullptr), Cell(cell.steps), cell.cause});
+      }
+    record_.tables.push_back(std::move(table));
+    if (observed) record_.tables.push_back(std::move(seen));
+    for (const Side& side : sides) say_limits(sides, side, observed);
+    if (observed) say_contradictions(sides.front());
+  }
+
+  void say_contradictions(const Side& open) {
+    std::vector<double> where;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (open.contradicts(i)) where.push_back(steps_[i]);
+    if (where.empty()) return;
+    record_.measures.emplace_back("contradictions", static_cast<double>(where.size()));
+    record_.notes.push_back(fmt::format(
+        "open: spectrum and march disagree without contact at {} of {} steps, first at h = {:g} s: an error of the "
+        "method, not of the step",
+        where.size(), steps_.size(), where.front()));
+  }
+
+  // The smaller of what is predicted for the contact state and, for scenes, for the open structure.
+  static std::optional<double> expected(const std::vector<Side>& sides, const Side& side) {
+    const auto &own = side.predicted.step, &open = sides.front().predicted.step;
+    return own && open ? std::optional(std::min(*own, *open)) : own ? own : open;
+  }
+
+  void say_limits(const std::vector<Side>& sides, const Side& side, bool observed) {
+    const auto say = [&](std::string sentence) { record_.notes.push_back(std::string(side.name()) + ": " + sentence); };
+    if (const auto& limit = side.predicted.step)
+      say(fmt::format(
+          "stable up to h = {:.6g} s; beyond, {} grows{}", *limit,
+          side.predicted.beyond ? side.predicted.beyond->mode : "a mode",
+          side.closed && side.predicted.beyond ? " with " + side.predicted.beyond->contact + " closed" : ""));
+    else if (side.predicted.beyond)
+      say("no stable step is predicted");
+    if (!observed) return;
+    const auto limit = expected(sides, side);
+    if (side.observed.step && limit)
+      say(fmt::format("observed up to h = {:.4g} s, {:.4g} times the prediction", *side.observed.step,
+                      *side.observed.step / *limit));
+    else if (side.observed.step)
+      say(fmt::format("observed up to h = {:.4g} s, where the spectrum sees no limit", *side.observed.step));
+    else if (side.never_stable())
+      say("unstable at every step marched");
+    else if (side.observed.below_range)
+      say("unstable already at the smallest step of the range");
+    else if (limit && *limit < steps_.back() && !side.predicted.below_range)
+      say("no limit was observed");
+    if (side.observed.returns) say("beyond the observed limit some steps are stable again");
+  }
+
+  void measure(const std::vector<Side>& sides) {
+    const auto put = [&](const char* name, double value) {
+      if (std::isfinite(value)) record_.measures.emplace_back(name, value);
+    };
+    const double none = std::numeric_limits<double>::infinity();
+    double predicted = none, observed = none, radius = -1, agreement = none;
+    for (const Side& side : sides) {
+      predicted = std::min(predicted, side.predicted.step.value_or(none));
+      observed = std::min(observed, side.observed.step.value_or(none));
+      for (std::size_t i = 0; i < steps_.size(); ++i)
+        if (const StepSpectrum* known = side.spectrum(i)) radius = std::max(radius, known->radius);
+      const auto limit = expected(sides, side);
+      if (limit && side.observed.step && !std::isfinite(agreement)) agreement = *side.observed.step / *limit;
+    }
+    put("limit_predicted", predicted);
+    put("limit_observed", observed);
+    if (radius >= 0) put("largest_radius", radius);
+    put("agreement", agreement);
+  }
+
+  const StudyCase& case_;
+  const Registry& registry_;
+  const std::atomic<bool>& stop_;
+  std::vector<double> steps_;
+  CaseRecord record_;
+  std::shared_ptr<const SemiDiscrete> problem_;
+  std::unique_ptr<TimeScheme> scheme_;
+  ProblemFacts facts_;
+  std::optional<StabilityPredictor> predictor_;
+  bool touches_ = false;
+  double duration_ = 0, begin_ = 0;
+};
+
+}  // namespace
+
+CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  const auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry));
+  if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
+    out.refusal = refusal->sentence;
+    return out;
+  }
+  const SemiDiscrete& problem = std::get<SemiDiscrete>(discretised);
+  out.notes = problem.notes;
+  const auto law = make_law(study_case, registry);
+  const auto scheme = make_scheme(study_case, registry);
+  const std::vector<double> steps = steps_of(study_case);
+  const auto made = scheme->plan(steps.front(), problem_facts(problem, *law));
+  if (const auto* refusal = std::get_if<Refusal>(&made)) {
+    out.refusal = refusal->sentence;
+    return out;
+  }
+  const auto n = static_cast<double>(problem.dofs());
+  // Eigenvalues of a step with the contact closed, per step of the range and for the bisection.
+  out.predicted_seconds = 1e-8 * n * n * n * static_cast<double>(std::min<std::size_t>(steps.size(), 40) + 20);
+  if (!study_case.settings.value("observe", true)) return out;
+  const bool touches = problem.points() > 0 && !law->absent();
+  for (const double h : steps) {
+    out.steps += free_steps;
+    if (touches && study_case.duration > 0)
+      out.steps += std::clamp(static_cast<long long>(std::min(study_case.duration / h, 1e9)), least_scene_steps,
+                              most_scene_steps);
+    else if (touches)
+      out.steps += 10 * free_steps;
+  }
+  out.predicted_seconds += static_cast<double>(out.steps) * (6e-7 + 2e-8 * n);
+  return out;
+}
+
+CaseRecord run_stability(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
+  return StabilityRun(study_case, registry, stop).run();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,27 @@
+#pragma once
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/sweep/orbit_scheduler.hpp"
+
+namespace ricochet {
+
+/// What an interrupted set of orbits had marched, on a shelf: finished orbits in parts that are written once, those on
+/// their way anew each time. Without a shelf nothing is kept.
+class OrbitCheckpoints {
+ public:
+  /// `key` tells this set of orbits from every other.
+  OrbitCheckpoints(const MotionShelf& shelf, std::string key) : shelf_(shelf), key_(std::move(key)) {}
+
+  /// Everything that was saved; further parts follow it. Call it first.
+  MarchedOrbits find();
+  void save(const MarchedOrbits& marched);
+  void forget();
+
+ private:
+  std::string part(int number) const;
+
+  const MotionShelf& shelf_;
+  std::string key_;
+  int parts_ = 0;
+};
+
+}  // namespace ricochet

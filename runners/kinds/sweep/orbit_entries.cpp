@@ -1,0 +1,84 @@
+#include "runners/kinds/sweep/orbit_entries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t state_counts = 3, entry_columns = 4;  // numbers in front of a state; columns of the table
+
+std::vector<double> flat(const LaneState& state) {
+  std::vector<double> all;
+  for (const auto* part : {&state.slots, &state.efforts, &state.fastest})
+    all.push_back(static_cast<double>(part->size()));
+  for (const auto* part : {&state.slots, &state.efforts, &state.fastest})
+    all.insert(all.end(), part->begin(), part->end());
+  // What the law remembers stands last: the count of the others says where.
+  all.insert(all.end(), state.memory.begin(), state.memory.end());
+  return all;
+}
+
+LaneState lane_state(const std::vector<double>& all) {
+  LaneState state;
+  std::array<std::vector<double>*, state_counts> parts = {&state.slots, &state.efforts, &state.fastest};
+  std::size_t at = state_counts;
+  for (std::size_t k = 0; k < state_counts; ++k) {
+    const double count = k < all.size() ? all[k] : -1;
+    if (!(count >= 0) || count > static_cast<double>(all.size() - at))
+      throw std::runtime_error("a stored state is cut short");
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(at);
+    parts[k]->assign(first, first + static_cast<std::ptrdiff_t>(count));
+    at += static_cast<std::size_t>(count);
+  }
+  state.memory.assign(all.begin() + static_cast<std::ptrdiff_t>(at), all.end());
+  return state;
+}
+
+}  // namespace
+
+void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
+  NumberTable table;
+  table.name = "entries";
+  table.exported = false;
+  table.names = {"parameter", "start", "index", "value"};
+  table.columns.resize(entry_columns);
+  table.words = {{"start", starts}};
+  for (const OrbitView& view : views) {
+    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    const std::vector<double> state = flat(view.orbit->entry);
+    if (entry_columns * (table.rows() + state.size()) > most_entry_numbers) {
+      record.notes.push_back(
+          fmt::format("the states that \"ricochet point\" begins with would take more than {} numbers: none are kept",
+                      most_entry_numbers));
+      return;
+    }
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      table.columns[0].push_back(view.value);
+      table.columns[1].push_back(static_cast<double>(view.start));
+      table.columns[2].push_back(static_cast<double>(i));
+      table.columns[3].push_back(state[i]);
+    }
+  }
+  record.numbers.push_back(std::move(table));
+}
+
+std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
+  for (const NumberTable& table : record.numbers) {
+    if (table.name != "entries" || table.columns.size() != entry_columns || table.words.empty()) continue;
+    const std::vector<std::string>& starts = table.words.front().second;
+    const auto word = std::find(starts.begin(), starts.end(), start);
+    const auto index = static_cast<double>(word - starts.begin());
+    std::vector<double> all;
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      if (table.columns[0][row] == parameter && table.columns[1][row] == index) all.push_back(table.columns[3][row]);
+    if (all.size() >= state_counts) return lane_state(all);
+  }
+  return std::nullopt;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,203 @@
+#include "runners/kinds/sweep/orbit_exponents.hpp"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
+
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <ricochet/measure/orbits/lyapunov.hpp>
+#include <ricochet/measure/stability/stability.hpp>
+
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/bytes.hpp"
+#include "runners/march/case_watch.hpp"
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr int block_width = 16;
+constexpr double twin_offset = 1e-7;  // m
+
+// Orbits of one group that march together.
+struct Batch {
+  int group = 0;
+  std::vector<std::size_t> orbits;
+};
+
+Interval interval_of(const std::vector<double>& rates) {
+  if (rates.size() >= static_cast<std::size_t>(fewest_resampled)) return block_bootstrap_mean(rates);
+  double mean = 0;
+  for (const double rate : rates) mean += rate / static_cast<double>(rates.size());
+  return {mean, mean, mean};
+}
+
+double spread(const std::vector<double>& a, const std::vector<double>& b) {
+  double mean = 0, sum = 0;
+  const auto count = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) mean += (a[i] + b[i]) / count;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] + b[i] - mean) * (a[i] + b[i] - mean) / count;
+  return sum;
+}
+
+// Exponents of the columns. Two multipliers that are a complex pair turn their plane: each column's growth swings from
+// period to period while that of the area does not, and both exponents are half of it.
+std::vector<Interval> intervals_of(const std::vector<std::vector<double>>& rates, int count) {
+  constexpr double steadier = 0.05;  // variance of the area's growth over that of one column
+  std::vector<Interval> found;
+  for (std::size_t k = 0; k < rates.size() && static_cast<int>(found.size()) < count; ++k) {
+    if (k + 1 < rates.size()) {
+      const double alone = spread(rates[k], std::vector<double>(rates[k].size(), 0.0));
+      const auto count_of = static_cast<double>(rates[k].size());
+      double apart = 0;
+      for (std::size_t i = 0; i < rates[k].size(); ++i) apart += (rates[k][i] - rates[k + 1][i]) / count_of;
+      // Two real multipliers stay apart; the means of a pair's columns agree up to their swing.
+      const bool together = apart * apart <= 16 * alone / count_of;
+      if (together && spread(rates[k], rates[k + 1]) < steadier * alone) {
+        std::vector<double> half(rates[k].size());
+        for (std::size_t i = 0; i < half.size(); ++i) half[i] = 0.5 * (rates[k][i] + rates[k + 1][i]);
+        found.insert(found.end(), 2, interval_of(half));
+        ++k;
+        continue;
+      }
+    }
+    found.push_back(interval_of(rates[k]));
+  }
+  found.resize(std::min(found.size(), static_cast<std::size_t>(count)));
+  return found;
+}
+
+template <class Archive, class Exponents>
+void describe_exponents(Archive& archive, Exponents& exponents) {
+  bool twin = exponents.twin.has_value();
+  archive(exponents.values);
+  archive(twin);
+  if (twin && !exponents.twin) exponents.twin.emplace();
+  if (twin)
+    for (auto Interval::*part : {&Interval::value, &Interval::low, &Interval::high}) archive((*exponents.twin).*part);
+  archive(exponents.method);
+  archive(exponents.cause);
+}
+
+bool usable(const std::vector<double>& rates) {
+  return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
+}
+
+}  // namespace
+
+MarginalRoots marginal_roots(const ForcedScenes& scenes, int group) {
+  const StabilityPredictor predictor(scenes.shared_problem(group),
+                                     LinearLaw{.absent = true, .evaluation = {}, .stiffness = {}});
+  const auto found = predictor.open(scenes.plan(group), scenes.step(group));
+  const auto* spectrum = std::get_if<StepSpectrum>(&found);
+  if (!spectrum || spectrum->marginal.empty()) return {};
+  return {spectrum->marginal, std::abs(spectrum->root + 1.0) < 1e-4 && spectrum->on_kernel};
+}
+
+std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
+                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop) {
+  const auto& orbits = task.orbits;
+  const int count = task.count;
+  std::vector<OrbitExponents> found(orbits.size());
+  std::map<int, std::vector<std::size_t>> by_group;
+  for (std::size_t i = 0; i < orbits.size(); ++i) by_group[task.groups[i]].push_back(i);
+  std::vector<Batch> batches;
+  // One column more than asked for: it may belong to the last one as a complex pair.
+  const int columns =
+      task.groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(task.groups.front()).dofs()});
+  const auto most = static_cast<std::size_t>(std::max(1, block_width / (1 + columns)));
+  for (const auto& [group, members] : by_group)
+    for (std::size_t first = 0; first < members.size(); first += most)
+      batches.push_back({group,
+                         {members.begin() + static_cast<std::ptrdiff_t>(first),
+                          members.begin() + static_cast<std::ptrdiff_t>(std::min(first + most, members.size()))}});
+  LyapunovPlan base;
+  base.steps_per_period = plan.steps_per_period;
+  base.strobe = plan.strobe;
+  base.pulsation = plan.pulsation;
+  base.discard = std::clamp(plan.keep / 10, 2, 20);
+  base.periods = plan.keep;
+  const auto measure = [&](const Batch& batch) {
+    LyapunovPlan one = base;
+    one.without_sawtooth = task.sawtooth[static_cast<std::size_t>(batch.group)];
+    std::vector<LaneSpec> lanes;
+    std::vector<LaneState> states;
+    for (const std::size_t i : batch.orbits) {
+      lanes.push_back(orbits[i]->lane);
+      states.push_back(orbits[i]->entry);
+    }
+    bool tangents = true;
+    one.keep_orbit = !one.without_sawtooth;
+    std::vector<LyapunovRates> rates;
+    try {
+      rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
+      for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
+        OrbitExponents& exponents = found[batch.orbits[b]];
+        exponents.cause = rates[b].cause;
+        if (!rates[b].cause.empty()) continue;
+        // A column beyond what the state can tell apart has no growth to speak of.
+        const auto& all = rates[b].rates;
+        exponents.values = intervals_of({all.begin(), std::find_if_not(all.begin(), all.end(), usable)}, count);
+        exponents.method = rates[b].jumps > 0 ? "tangent+jump" : "tangent";
+      }
+    } catch (const Refusal&) {
+      tangents = false;  // the law has none: twins alone
+      one.keep_orbit = true;
+      rates = lyapunov_rates(scenes.program(batch.group, lanes), states, one);
+    }
+    // A twin carries the sawtooth of single steps, which its distance cannot be rid of.
+    if (!one.keep_orbit) return;
+    const auto twin = twin_rates(scenes.program(batch.group, lanes), states, rates, one, twin_offset);
+    for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
+      OrbitExponents& exponents = found[batch.orbits[b]];
+      if (!twin[b].cause.empty() || !usable(twin[b].rates[0])) continue;
+      exponents.twin = interval_of(twin[b].rates[0]);
+      if (tangents) continue;
+      exponents.values = {*exponents.twin};
+      exponents.method = fmt::format("twin({:g})", twin_offset);
+    }
+  };
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const TicketPointer ticket = current_ticket();
+  const auto work = [&] {
+    const CaseScope scope(ticket);
+    const double began = thread_seconds();
+    try {
+      for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
+        const std::string known = task.find ? task.find(i) : "";
+        if (!known.empty()) {
+          ByteReader reader(known);
+          for (const std::size_t orbit : batches[i].orbits) describe_exponents(reader, found[orbit]);
+          continue;
+        }
+        measure(batches[i]);
+        if (!task.keep) continue;
+        ByteWriter writer;
+        for (const std::size_t orbit : batches[i].orbits) describe_exponents(writer, found[orbit]);
+        task.keep(i, writer.bytes);
+      }
+    } catch (...) {
+      const std::lock_guard guard(mutex);
+      failure = std::current_exception();
+    }
+    const std::lock_guard guard(mutex);
+    seconds += thread_seconds() - began;
+  };
+  tbb::task_arena arena(task.workers);
+  arena.execute([&] {
+    tbb::task_group group;
+    for (int worker = 1; worker < task.workers; ++worker) group.run(work);
+    work();
+    group.wait();
+  });
+  if (failure) std::rethrow_exception(failure);
+  if (stop) throw Interrupted{};
+  return found;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,45 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <ricochet/measure/statistics/block_bootstrap.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/kinds/sweep/forced_scenes.hpp"
+
+namespace ricochet {
+
+/// The Lyapunov exponents of one orbit, 1/s, with 95 % block bootstrap intervals.
+struct OrbitExponents {
+  std::vector<Interval> values;  ///< largest first; those owed to the scheme set apart
+  std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
+  std::string method;            ///< "tangent", "tangent+jump", "twin(1e-07)"; "" where none could be measured
+  std::string cause;             ///< why not
+};
+
+/// What the stability analysis says of roots of modulus one that are the scheme's.
+struct MarginalRoots {
+  std::string sentence;   ///< "" when there are none
+  bool sawtooth = false;  ///< one of them is −1: a sawtooth of single steps
+};
+MarginalRoots marginal_roots(const ForcedScenes& scenes, int group);
+
+/// What is measured, of which orbits.
+struct ExponentTask {
+  std::vector<const Orbit*> orbits;
+  std::vector<int> groups;     ///< of each orbit
+  std::vector<bool> sawtooth;  ///< per group: see MarginalRoots
+  int count = 1;               ///< exponents
+  int workers = 1;             ///< threads
+  /// Where batches outlive the program: find(number) gives what keep(number, bytes) was given, or "". May be empty.
+  std::function<std::string(std::size_t)> find;
+  std::function<void(std::size_t, const std::string&)> keep;
+};
+
+/// Measures the exponents over the kept periods of each orbit, by tangent columns in blocks of lanes, and one twin
+/// each. Adds the processor seconds. Throws Interrupted when `stop` becomes true.
+std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const ExponentTask& task,
+                                              const SectionPlan& plan, double& seconds, const std::atomic<bool>& stop);
+
+}  // namespace ricochet

@@ -1,0 +1,260 @@
+#include "runners/kinds/sweep/orbit_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <ricochet/measure/orbits/zero_one_test.hpp>
+#include <span>
+
+#include "runners/march/prepare_case.hpp"
+#include "runners/study/with_parameter.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+double impacts_per_period(const Orbit& orbit) {
+  if (orbit.impact_counts.empty()) return 0;
+  const double sum = std::accumulate(orbit.impact_counts.begin(), orbit.impact_counts.end(), 0.0);
+  return sum / static_cast<double>(orbit.impact_counts.size());
+}
+
+std::string class_text(const OrbitView& view) {
+  std::string text = regime_name(view.verdict.regime);
+  if (view.verdict.regime == Regime::periodic) text += fmt::format(" {}", view.verdict.period);
+  return text;
+}
+
+std::vector<std::string> value_columns(int exponents) {
+  std::vector<std::string> columns = {"parameter", "start", "class", "period", "impacts_per_period", "symmetric"};
+  for (int k = 1; k <= exponents; ++k)
+    for (const char* suffix : {"", "_low", "_high"}) columns.push_back(fmt::format("exponent_{}{}", k, suffix));
+  for (const char* name :
+       {"exponent_method", "exponent_twin", "marginal", "attractor", "alpha_equivalent", "recurrence", "contraction",
+        "zero_one", "transient_periods", "settled", "chatter", "sticking", "evidence", "status", "reason"})
+    columns.push_back(name);
+  return columns;
+}
+
+std::vector<Json> value_row(const OrbitView& view, const std::string& start, int exponents, const SectionPlan& plan) {
+  const bool complete = view.orbit && view.orbit->stage == Orbit::Stage::complete;
+  const RegimeVerdict& verdict = view.verdict;
+  std::vector<Json> row = {view.value, start, regime_name(complete ? verdict.regime : Regime::failed)};
+  row.push_back(complete && verdict.period > 0 ? Json(verdict.period) : Json(nullptr));
+  row.push_back(complete ? Json(impacts_per_period(*view.orbit)) : Json(nullptr));
+  row.push_back(complete && view.symmetric ? Json(*view.symmetric) : Json(nullptr));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(exponents); ++k) {
+    const bool known = k < view.exponents.values.size();
+    for (const double Interval::*part : {&Interval::value, &Interval::low, &Interval::high})
+      row.push_back(known ? number(view.exponents.values[k].*part) : Json(nullptr));
+  }
+  row.push_back(view.exponents.method);
+  row.push_back(view.exponents.twin ? number(view.exponents.twin->value) : Json(nullptr));
+  row.push_back(view.marginal);
+  row.push_back(nullptr);  // the attractor: told apart over all cases
+  row.push_back(view.viscosity ? number(view.viscosity->numerical) : Json(nullptr));
+  if (complete) {
+    const Orbit& orbit = *view.orbit;
+    row.insert(row.end(), {number(view.recurrence.distance), number(view.recurrence.contraction),
+                           view.zero_one ? number(*view.zero_one) : Json(nullptr), Json(orbit.transient_periods),
+                           Json(orbit.settled), Json(orbit.most_on_a_side >= chatter_impacts),
+                           Json(static_cast<double>(orbit.contact_steps) /
+                                (static_cast<double>(orbit.kept_periods) * plan.steps_per_period)),
+                           Json(verdict.evidence)});
+  } else {
+    row.insert(row.end(), 7, Json(nullptr));
+    row.push_back("");
+  }
+  const auto [status, reason] = status_of(view);
+  row.push_back(status);
+  row.push_back(reason);
+  return row;
+}
+
+// The impacts of one period of what repeats, of all periods kept otherwise.
+std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
+  const std::span<const ImpactPoint> all(view.orbit->impacts);
+  const std::vector<int>& counts = view.orbit->impact_counts;
+  const auto periods = static_cast<std::size_t>(view.recurrence.period);
+  if (periods == 0 || periods > counts.size()) return all;
+  const auto last =
+      static_cast<std::size_t>(std::accumulate(counts.end() - static_cast<std::ptrdiff_t>(periods), counts.end(), 0));
+  return all.last(std::min(last, all.size()));
+}
+
+DerivedTable changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
+  DerivedTable table{"bifurcations", {"start", "from", "to", "kind", "value", "low", "high", "steps"}, {}};
+  const OrbitView* before = nullptr;
+  for (const OrbitView& view : views) {
+    if (before && before->start != view.start) before = nullptr;
+    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    if (before) {
+      const std::string from = class_text(*before), to = class_text(view);
+      const bool grazing =
+          (before->verdict.regime == Regime::no_contact) != (view.verdict.regime == Regime::no_contact);
+      if (from != to)
+        table.rows.push_back({starts[view.start], from, to, grazing ? "grazing" : "change",
+                              0.5 * (before->value + view.value), before->value, view.value, nullptr});
+    }
+    before = &view;
+  }
+  return table;
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> status_of(const OrbitView& view) {
+  if (!view.orbit) return {"refused", view.refusal};
+  if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
+  const bool failed = view.orbit->cause.starts_with("the contact law");
+  return {failed ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, view.orbit->cause)};
+}
+
+bool touches(const Orbit& orbit) {
+  return orbit.contact_steps > 0;
+}
+
+SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes) {
+  const Json& settings = study_case.settings;
+  SectionPlan plan;
+  plan.steps_per_period = study_case.steps_per_period;
+  plan.transient = settings.at("transient").at("periods").get<int>();
+  plan.at_most = settings.at("transient").at("at_most").get<int>();
+  plan.keep = settings.at("keep").get<int>();
+  const auto word = settings.at("section").get<std::string>();
+  plan.section =
+      word == "impact" ? SectionKind::impact : (word == "extremum" ? SectionKind::extremum : SectionKind::strobe);
+  const double turns = settings.at("phase").get<double>() / (2 * std::numbers::pi);
+  const auto strobe = std::llround((turns - std::floor(turns)) * plan.steps_per_period);
+  plan.strobe = static_cast<int>(strobe % plan.steps_per_period);
+  for (int i = 0; i < scenes.count(); ++i) {
+    const ForcedScene& scene = scenes[i];
+    if (!scene.refusal.empty()) continue;
+    plan.pulsation = scene.pulsation;
+    double gap = std::numeric_limits<double>::infinity();
+    for (Eigen::Index p = 0; p < scene.lane.lower.size(); ++p) {
+      const double lower = scene.lane.lower[p], upper = scene.lane.upper[p];
+      if (std::isfinite(lower) && std::isfinite(upper))
+        gap = std::min(gap, (upper - lower) / 2);
+      else if (std::isfinite(lower) || std::isfinite(upper))
+        gap = std::min(gap, std::abs(std::isfinite(lower) ? lower : upper));
+    }
+    plan.scale = std::isfinite(gap) && gap > 0 ? gap : std::max(std::abs(scene.lane.amplitude), 0.0);
+    if (plan.scale == 0) plan.scale = 1;
+    break;
+  }
+  return plan;
+}
+
+std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scenes, int group,
+                                                       const StudyCase& study_case, const Registry& registry) {
+  const SemiDiscrete& problem = scenes.problem(group);
+  ProblemFacts facts = problem_facts(problem, *make_law(study_case, registry));
+  facts.damped = false;
+  const auto plan = make_scheme(study_case, registry)->plan(scenes.step(group), facts);
+  // A scheme that does not apply without damping has no undamped decay to speak of.
+  if (!std::holds_alternative<StepPlan>(plan)) return std::nullopt;
+  return equivalent_viscosity(problem, std::get<StepPlan>(plan), scenes.step(group));
+}
+
+void judge(OrbitView& view, const SectionPlan& plan) {
+  if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) return;
+  const Orbit& orbit = *view.orbit;
+  view.recurrence = find_recurrence(orbit.readings, plan.reading_scale(), recurrence_tolerance);
+  std::vector<double> displacements;
+  std::vector<std::array<double, 2>> here, opposite;
+  for (const SectionPoint& point : orbit.strobed) {
+    displacements.push_back(point.displacement);
+    here.push_back({point.displacement, point.velocity});
+    opposite.push_back({point.opposite_displacement, point.opposite_velocity});
+  }
+  view.zero_one = zero_one_test(displacements);
+  RegimeInput input;
+  input.contact = touches(orbit);
+  input.recurrence = view.recurrence;
+  input.zero_one = view.zero_one;
+  if (!view.exponents.values.empty()) input.exponent = view.exponents.values.front();
+  input.impacts_per_period = impacts_per_period(orbit);
+  input.settled = orbit.settled;
+  input.tolerance = recurrence_tolerance;
+  input.forcing_period = 2 * std::numbers::pi / plan.pulsation;
+  view.verdict = classify(input);
+  if (view.recurrence.period > 0) {
+    // The last rounds of the orbit against its image under x → −x, t → t + T/2.
+    const auto last = std::min(here.size(), static_cast<std::size_t>(view.recurrence.period));
+    const std::vector<std::array<double, 2>> a(here.end() - static_cast<std::ptrdiff_t>(last), here.end());
+    const std::vector<std::array<double, 2>> b(opposite.end() - static_cast<std::ptrdiff_t>(last), opposite.end());
+    view.symmetric = same_cloud(a, b, {plan.scale, plan.scale * plan.pulsation}, 10 * recurrence_tolerance);
+  }
+}
+
+void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
+                      int exponents, const SectionPlan& plan) {
+  DerivedTable values{"values", value_columns(exponents), {}};
+  NumberTable points, impacts;
+  points.name = "points";
+  points.names = {"parameter",        "start", "index", "tip_displacement", "tip_velocity", "opposite_displacement",
+                  "opposite_velocity"};
+  points.columns.resize(points.names.size());
+  points.words = {{"start", starts}};
+  impacts.name = "impacts";
+  impacts.names = {"parameter", "start", "phase", "side", "speed"};
+  impacts.columns.resize(impacts.names.size());
+  impacts.words = {{"start", starts}, {"side", {"lower", "upper"}}};
+  const auto add = [](NumberTable& table, std::initializer_list<double> row) {
+    std::size_t column = 0;
+    for (const double x : row) table.columns[column++].push_back(x);
+  };
+  for (const OrbitView& view : views) {
+    values.rows.push_back(value_row(view, starts[view.start], exponents, plan));
+    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    const auto start = static_cast<double>(view.start);
+    const auto& section = plan.section == SectionKind::strobe ? view.orbit->strobed : view.orbit->points;
+    for (std::size_t i = 0; i < section.size(); ++i)
+      add(points, {view.value, start, static_cast<double>(i), section[i].displacement, section[i].velocity,
+                   section[i].opposite_displacement, section[i].opposite_velocity});
+    for (const ImpactPoint& impact : impacts_shown(view))
+      add(impacts, {view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed});
+  }
+  record.tables.push_back(std::move(values));
+  record.tables.push_back(changes(views, starts));
+  record.numbers.push_back(std::move(points));
+  record.numbers.push_back(std::move(impacts));
+}
+
+void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
+  double orbits = 0, periodic = 0, chaotic = 0, impacts = 0;
+  std::optional<double> largest;
+  for (const OrbitView& view : views) {
+    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    ++orbits;
+    periodic += view.verdict.regime == Regime::periodic;
+    chaotic += view.verdict.regime == Regime::chaotic;
+    impacts += impacts_per_period(*view.orbit);
+    if (!view.exponents.values.empty())
+      largest = std::max(largest.value_or(-std::numeric_limits<double>::infinity()), view.exponents.values[0].value);
+  }
+  if (orbits == 0) return;
+  record.measures.insert(record.measures.end(), {{"share_periodic", periodic / orbits},
+                                                 {"share_chaotic", chaotic / orbits},
+                                                 {"impacts_per_period", impacts / orbits}});
+  if (largest && std::isfinite(*largest)) record.measures.emplace_back("largest_exponent", *largest);
+}
+
+void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps) {
+  for (DerivedTable& table : record.tables)
+    if (table.name == "bifurcations")
+      table.rows.push_back({"open orbit", opens_below ? "no contact" : "contact",
+                            opens_below ? "contact" : "no contact", "grazing", value, low, high, steps});
+}
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+#pragma once
+#include <optional>
+#include <ricochet/measure/orbits/regime.hpp>
+#include <ricochet/measure/stability/equivalent_viscosity.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/kinds/sweep/orbit_exponents.hpp"
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// Relative distance at which two readings of an orbit count as the same (see SectionPlan::scale for the unit). An
+/// orbit that is still approaching repeats when the limit it approaches does.
+constexpr double recurrence_tolerance = 1e-4;
+/// Impacts on one side within one forcing period from which a motion is said to chatter.
+constexpr int chatter_impacts = 10;
+
+/// One row of values.csv in the making.
+struct OrbitView {
+  double value = 0;       ///< of the parameter
+  std::size_t start = 0;  ///< which of the case's starts
+  std::string refusal;    ///< why there is no orbit
+  const Orbit* orbit = nullptr;
+  int group = -1;
+  std::string marginal;  ///< what the stability analysis says of roots that are the scheme's
+  std::optional<EquivalentViscosity> viscosity;
+  OrbitExponents exponents;
+  Recurrence recurrence;
+  std::optional<double> zero_one;
+  std::optional<bool> symmetric;
+  RegimeVerdict verdict;
+};
+
+/// Whether a stop was touched while the orbit was kept.
+bool touches(const Orbit& orbit);
+
+/// What the section's settings say, for the scenes of a case. The unit of displacements is half the gap between the
+/// stops (the distance to the one there is; the amplitude without any).
+SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes);
+
+/// α_eq of the scheme on the undamped structure of a group.
+std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scenes, int group,
+                                                       const StudyCase& study_case, const Registry& registry);
+
+/// Classifies a complete orbit from its readings and exponents.
+void judge(OrbitView& view, const SectionPlan& plan);
+
+/// Status (done, refused, diverged, failed) and reason of a value, as of a case.
+std::pair<std::string, std::string> status_of(const OrbitView& view);
+
+/// Tables `values` and `bifurcations`, numbers `points` and `impacts`. Views are sorted by start, then by value.
+void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
+                      int exponents, const SectionPlan& plan);
+
+/// Measures of the case as a whole: shares of regimes, impacts per period, the largest exponent.
+void add_shares(CaseRecord& record, const std::vector<OrbitView>& views);
+
+/// One more row of `bifurcations`: where the motion without contact grazes a stop.
+void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps);
+
+}  // namespace ricochet

@@ -1,0 +1,166 @@
+#include "runners/kinds/trajectory/run_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+// The audit of every step costs about this much more than the step alone.
+constexpr double audit_seconds_per_step = 6e-7;
+
+// The sampled series of one lane, in the columns of a trajectory's curve.
+class Sampler {
+ public:
+  Sampler() {
+    curve_.names = {"t",      "tip_displacement", "tip_velocity",  "kinetic",     "elastic", "contact",
+                    "energy", "scheme_energy",    "contact_force", "penetration", "active"};
+    curve_.columns.resize(curve_.names.size());
+  }
+  void take(const Marcher& marcher, const EnergyAudit& audit) {
+    const EnergySample& energy = audit.energy(0);
+    const ContactTotals& contact = audit.contact(0);
+    const double row[] = {marcher.time(),
+                          marcher.tip(0),
+                          audit.tip_velocity(0),
+                          energy.kinetic,
+                          energy.elastic,
+                          energy.contact,
+                          energy.common(),
+                          energy.scheme,
+                          contact.force,
+                          audit.penetration(0),
+                          static_cast<double>(contact.active)};
+    for (const double value : row)
+      if (!std::isfinite(value)) return;
+    for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
+  }
+  Curve finish() { return std::move(curve_); }
+
+ private:
+  Curve curve_;
+};
+
+void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem) {
+  const EnergyTotals& energy = audit.totals(0);
+  const ContactTotals& contact = audit.contact(0);
+  const auto put = [&](const char* name, double value) {
+    if (std::isfinite(value)) record.measures.emplace_back(name, value);
+  };
+  const double start = energy.first.common(), end = energy.last.common();
+  const StepPlan& plan = marcher.program().plan;
+  const bool balances = audit.balances(), loads = marcher.program().support || marcher.program().load;
+  if (!plan.energy.empty()) {
+    put("scheme_energy_start", energy.scheme_start);
+    put("scheme_energy_end", energy.last.scheme);
+  } else {
+    record.notes.push_back("the scheme declares no energy of its own: its steps are judged by the common one");
+  }
+  put("energy_start", start);
+  put("energy_end", end);
+  if (start > 0) put("energy_ratio", end / start);
+  if (balances || !loads) put("largest_step_gain", energy.largest_step_gain);
+  if (!balances)
+    record.notes.push_back(
+        "the scheme declares no work form: the works of damping and loads, what contact dissipates and the balance are "
+        "not "
+        "known");
+  if (contact.impacts > 0 && balances)
+    put("drift_per_impact", (energy.last.scheme - energy.scheme_start - energy.work_of_loads + energy.work_of_damping) /
+                                static_cast<double>(contact.impacts));
+  if (balances) {
+    put("work_of_damping", energy.work_of_damping);
+    put("work_of_loads", energy.work_of_loads);
+    // What the stops give back (a spring's potential) is not dissipated.
+    put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
+    put("balance_residual", energy.balance_residual());
+  }
+  put("projection_energy", problem.projection_energy);
+  put("kernel_energy", problem.kernel_energy);
+  put("deepest_penetration", contact.deepest_penetration);
+  put("impacts", static_cast<double>(contact.impacts));
+  put("active_set_changes", static_cast<double>(contact.active_set_changes));
+  put("impulse", contact.impulse);
+  put("complementarity_residual", contact.residual);
+  put("law_iterations", contact.most_iterations);
+  if (marcher.law().reads()) put("dissipated_by_law", energy.work_of_law);
+  const std::vector<Stage>& stages = marcher.program().plan.stages;
+  if (std::any_of(stages.begin(), stages.end(), [](const Stage& stage) { return !stage.loss.empty(); }))
+    put("dissipated_by_scheme", energy.work_of_scheme);
+  if (contact.first_impact >= 0) put("first_impact", contact.first_impact);
+  if (contact.first_release >= 0) put("first_release", contact.first_release);
+  if (marcher.status(0).running) put("tip_displacement_end", marcher.tip(0));
+  if (record.steps > 0) put("microseconds_per_step", 1e6 * record.run_seconds / static_cast<double>(record.steps));
+}
+
+}  // namespace
+
+CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
+  CasePlan plan;
+  const Prepared prepared = prepare_case(study_case, registry);
+  plan.refusal = prepared.refusal;
+  plan.steps = prepared.steps;
+  plan.notes = prepared.notes;
+  if (!prepared.program) return plan;
+  plan.operator_name = operator_name(prepared.program->kind);
+  plan.left_out = left_out_pairs(prepared.program->left_out);
+  plan.predicted_seconds =
+      prepared.program->predicted_setup_seconds +
+      static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + audit_seconds_per_step);
+  return plan;
+}
+
+CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
+  const double set_up = thread_seconds();
+  Prepared prepared = prepare_case(study_case, registry);
+  CaseRecord record = begin_record(study_case, prepared);
+  if (!prepared.program) return record;
+  const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
+  Marcher marcher(std::move(*prepared.program));
+  EnergyAudit audit(marcher);
+  Sampler sampler;
+  record.setup_seconds = thread_seconds() - set_up;
+
+  const double run = thread_seconds(), budget = budget_of(study_case);
+  bool spent = false;
+  long long chunk = 16;
+  marcher.start(&audit);
+  if (marcher.step() > 0) sampler.take(marcher, audit);
+  const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
+  for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
+    // Samples at equal fractions of the run, on whole steps.
+    const auto target = static_cast<long long>(
+        std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
+    while (marcher.step() < target && marcher.any_running() && !spent) {
+      if (stop) throw Interrupted{};
+      const double before = thread_seconds();
+      marcher.march(std::min(target - marcher.step(), chunk), &audit);
+      const double now = thread_seconds();
+      spent = now - run > budget;
+      // Long enough to cost nothing, short enough to stop soon.
+      chunk =
+          now - before < 0.01 ? std::min(2 * chunk, 20000LL) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
+    }
+    if (marcher.any_running() && marcher.step() == target) sampler.take(marcher, audit);
+  }
+  record.run_seconds = thread_seconds() - run;
+  record.steps = marcher.step();
+  record.curve = sampler.finish();
+  if (marcher.status(0).running && marcher.step() >= prepared.steps)
+    record.status = "done";
+  else
+    record_early_end(record, marcher, prepared.steps, budget);
+  fill_measures(record, marcher, audit, *problem);
+  if (marcher.delassus_columns() > 0)
+    record.notes.push_back(
+        fmt::format("Delassus columns computed: {} of {}", marcher.delassus_columns(), problem->points()));
+  return record;
+}
+
+}  // namespace ricochet

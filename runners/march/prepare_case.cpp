@@ -1,0 +1,132 @@
+#include "runners/march/prepare_case.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+namespace ricochet {
+namespace {
+
+// Steps that fit in the duration; what is left over is said.
+long long whole_steps(const StudyCase& study_case, std::vector<std::string>& notes) {
+  const double ratio = study_case.duration / study_case.step;
+  const auto nearest = std::llround(ratio);
+  // A ratio of two decimal numbers is whole up to a few roundings.
+  if (std::abs(ratio - static_cast<double>(nearest)) <= 1e-9 * ratio) return nearest;
+  const auto steps = static_cast<long long>(std::floor(ratio));
+  notes.push_back(
+      fmt::format("the duration {:g} s is no multiple of the step {:g} s: the run ends at the last whole step, "
+                  "t = {:.9g} s",
+                  study_case.duration, study_case.step, static_cast<double>(steps) * study_case.step));
+  return steps;
+}
+
+template <class Found>
+const Found& registered(const Found* found, Role role, const std::string& name) {
+  if (!found) throw std::logic_error(fmt::format("{} '{}' is not registered", role_name(role), name));
+  return *found;
+}
+
+}  // namespace
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double budget_of(const StudyCase& study_case) {
+  return study_case.settings.is_object() ? study_case.settings.value("budget", std::numeric_limits<double>::infinity())
+                                         : std::numeric_limits<double>::infinity();
+}
+
+std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry) {
+  return registered(registry.mass(study_case.mass.name), Role::mass, study_case.mass.name)
+      .make(study_case.mass.parameters);
+}
+std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry) {
+  return registered(registry.contact(study_case.contact.name), Role::contact, study_case.contact.name)
+      .make(study_case.contact.parameters);
+}
+std::unique_ptr<TimeScheme> make_scheme(const StudyCase& study_case, const Registry& registry) {
+  return registered(registry.time(study_case.time.name), Role::time, study_case.time.name)
+      .make(study_case.time.parameters);
+}
+
+std::optional<double> scheme_restitution(const StudyCase& study_case, const Registry& registry) {
+  const auto& scheme = registered(registry.time(study_case.time.name), Role::time, study_case.time.name);
+  return value_of_role(scheme.manual.parameters, study_case.time.parameters, ParameterRole::restitution);
+}
+
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
+  Prepared prepared;
+  prepared.steps = whole_steps(study_case, prepared.notes);
+  const auto mass = make_mass(study_case, registry);
+  auto law = make_law(study_case, registry);
+  const auto scheme = make_scheme(study_case, registry);
+
+  auto discretised = discretise(study_case.scene, study_case.elements, *mass);
+  if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
+    prepared.refusal = refusal->sentence;
+    return prepared;
+  }
+  prepared.problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
+  prepared.notes.insert(prepared.notes.end(), prepared.problem->notes.begin(), prepared.problem->notes.end());
+  auto plan = scheme->plan(study_case.step, problem_facts(*prepared.problem, *law));
+  if (const auto* refusal = std::get_if<Refusal>(&plan)) {
+    prepared.refusal = refusal->sentence;
+    return prepared;
+  }
+  const StepPlan& steps = std::get<StepPlan>(plan);
+  if (law->reads() && steps.facts.restitution != Restitution::ignored &&
+      scheme_restitution(study_case, registry).value_or(0) != 0)
+    prepared.notes.push_back(
+        "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
+  CompileOptions options;
+  options.expected_steps = prepared.steps;
+  auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
+                          {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
+  if (const auto* refusal = std::get_if<Refusal>(&compiled))
+    prepared.refusal = refusal->sentence;
+  else
+    prepared.program.emplace(std::move(std::get<Program>(compiled)));
+  return prepared;
+}
+
+CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
+  CaseRecord record;
+  record.id = study_case.id;
+  record.axes = study_case.axes;
+  record.notes = prepared.notes;
+  if (prepared.program) {
+    record.operator_name = operator_name(prepared.program->kind);
+    record.left_out = left_out_pairs(prepared.program->left_out);
+  } else {
+    record.status = "refused";
+    record.reason = prepared.refusal;
+  }
+  return record;
+}
+
+void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget) {
+  const LaneStatus& status = marcher.status(0);
+  if (status.running) {
+    record.status = "failed";
+    record.reason = fmt::format("the budget of {:g} s was spent at step {} of {}, t = {:.6g} s", budget, marcher.step(),
+                                steps, marcher.time());
+    return;
+  }
+  record.status = status.cause.starts_with("the contact law") ? "failed" : "diverged";
+  record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, status.cause);
+  record.steps = status.step;
+}
+
+std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const LeftOut& item : items) pairs.emplace_back(item.item, item.reason);
+  return pairs;
+}
+
+}  // namespace ricochet

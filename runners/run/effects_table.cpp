@@ -1,0 +1,73 @@
+#include "runners/run/effects_table.hpp"
+
+#include <algorithm>
+#include <ricochet/measure/statistics/effects.hpp>
+#include <set>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string cell_text(const Json& value) {
+  return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+// Measures whose spread says nothing of the motion.
+bool of_the_motion(const std::string& measure) {
+  static const std::set<std::string> others = {
+      "microseconds_per_step", "timed_seconds", "timed_low",         "timed_high",
+      "declared_order",        "horizon",       "reference_of_mesh", "exponent_seconds",
+      "lane_steps_per_second", "orbits",        "contradictions"};
+  return others.count(measure) == 0 && !measure.starts_with("floor.");
+}
+
+// Whether the cases of some level that were run to their end never have this measure while those of another do: then
+// the method (or the step, the mesh) has none, and what is absent may neither be filled in nor taken for zero.
+bool absent_by_level(const StudyResults& results, const std::vector<Factor>& factors,
+                     const std::vector<std::optional<double>>& values) {
+  for (const Factor& factor : factors) {
+    std::vector<int> done(factor.levels.size(), 0), present(factor.levels.size(), 0);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      done[factor.level[c]] += results.cases[c].status == "done" ? 1 : 0;
+      present[factor.level[c]] += values[c] ? 1 : 0;
+    }
+    for (std::size_t l = 0; l < done.size(); ++l)
+      if (done[l] > 0 && present[l] == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+DerivedTable effects_table(const StudyResults& results) {
+  DerivedTable table{"effects", {"measure", "factor", "share", "low", "high", "log"}, {}};
+  std::vector<std::vector<std::string>> cells;
+  std::vector<std::string> measures;
+  for (const CaseRecord& record : results.cases) {
+    std::vector<std::string> row;
+    for (const Json& value : axes_of(record, results.columns)) row.push_back(cell_text(value));
+    cells.push_back(std::move(row));
+    for (const auto& [name, value] : record.measures)
+      if (of_the_motion(name) && std::find(measures.begin(), measures.end(), name) == measures.end())
+        measures.push_back(name);
+  }
+  std::vector<Factor> factors = factors_of(results.columns, cells).factors;
+  std::erase_if(factors, [](const Factor& factor) { return factor.levels.size() < 2; });
+  if (factors.size() < 2) return table;
+  for (const std::string& name : measures) {
+    std::vector<std::optional<double>> values;
+    for (const CaseRecord& record : results.cases)
+      values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
+    if (absent_by_level(results, factors, values)) continue;
+    const Effects effects = effects_of(name, factors, values);
+    for (const EffectShare& share : effects.shares)
+      table.rows.push_back(
+          {name, share.factor, number(share.share), number(share.low), number(share.high), effects.log});
+  }
+  return table;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,134 @@
+#include "runners/run/environment.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <oneapi/tbb/version.h>
+#include <sqlite3.h>
+#include <sys/utsname.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/version.hpp>
+#include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#if __has_include(<suitesparse/cholmod.h>)
+#include <suitesparse/cholmod.h>
+#endif
+
+#include "runners/store/fingerprint.hpp"
+
+#ifndef RICOCHET_VERSION
+#define RICOCHET_VERSION "unknown"
+#endif
+#ifndef RICOCHET_COMMIT
+#define RICOCHET_COMMIT "unknown"
+#endif
+#ifndef RICOCHET_BUILD_TYPE
+#define RICOCHET_BUILD_TYPE "unknown"
+#endif
+#ifndef RICOCHET_FLAGS
+#define RICOCHET_FLAGS "unknown"
+#endif
+
+namespace ricochet {
+namespace {
+
+constexpr const char* kEarlier = " (earlier cases)";
+constexpr const char* kStarted = "started";
+
+std::string compiler() {
+#if defined(__clang__)
+  return "clang " __clang_version__;
+#else
+  return "g++ " __VERSION__;
+#endif
+}
+
+std::string processor() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("model name")) {
+      const std::size_t at = line.find(": ");
+      if (at != std::string::npos) return line.substr(at + 2);
+    }
+  return "unknown";
+}
+
+std::string instruction_sets() {
+#if defined(__x86_64__)
+  std::vector<std::string> sets;
+  if (__builtin_cpu_supports("sse4.2")) sets.emplace_back("sse4.2");
+  if (__builtin_cpu_supports("avx")) sets.emplace_back("avx");
+  if (__builtin_cpu_supports("avx2")) sets.emplace_back("avx2");
+  if (__builtin_cpu_supports("fma")) sets.emplace_back("fma");
+  if (__builtin_cpu_supports("avx512f")) sets.emplace_back("avx512f");
+  return fmt::format("{}", fmt::join(sets, " "));
+#else
+  return "unknown";
+#endif
+}
+
+std::string kernel() {
+  utsname name{};
+  return ::uname(&name) == 0 ? fmt::format("{} {} {}", name.sysname, name.release, name.machine) : "unknown";
+}
+
+std::string libraries() {
+  std::vector<std::string> names = {
+      fmt::format("Eigen {}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
+      fmt::format("Boost {}.{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100),
+      fmt::format("fmt {}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100),
+      fmt::format("nlohmann-json {}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                  NLOHMANN_JSON_VERSION_PATCH),
+      fmt::format("oneTBB {}", TBB_runtime_version()),
+      fmt::format("SQLite {}", sqlite3_libversion()),
+      fmt::format("SQLiteCpp {}", SQLITECPP_VERSION),
+#ifdef CHOLMOD_MAIN_VERSION
+      fmt::format("CHOLMOD {}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION),
+#endif
+  };
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries) {
+  Environment environment;
+  environment.entries = {
+      {"program", "ricochet " RICOCHET_VERSION},
+      {"commit", RICOCHET_COMMIT},
+      {"compiler", compiler()},
+      {"build type", RICOCHET_BUILD_TYPE},
+      {"flags", RICOCHET_FLAGS},
+      {"processor", processor()},
+      {"cores", std::to_string(std::thread::hardware_concurrency())},
+      {"instruction sets", instruction_sets()},
+      {"kernel", kernel()},
+      {"libraries", libraries()},
+  };
+  for (const auto& library : plugin_libraries) {
+    constexpr std::size_t digits = 12;
+    environment.entries.emplace_back("plugin " + library.filename().string(),
+                                     fmt::format("{} ({})", library.string(), file_hash(library).substr(0, digits)));
+  }
+  environment.entries.emplace_back(kStarted, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
+  return environment;
+}
+
+Environment merge_environments(const Environment& now, const Environment& earlier) {
+  Environment merged = now;
+  const auto has = [&](const std::pair<std::string, std::string>& entry) {
+    return std::find(merged.entries.begin(), merged.entries.end(), entry) != merged.entries.end();
+  };
+  for (const auto& [name, value] : earlier.entries) {
+    const std::pair<std::string, std::string> entry = {name.ends_with(kEarlier) ? name : name + kEarlier, value};
+    if (name != kStarted && !has({name, value}) && !has(entry)) merged.entries.push_back(entry);
+  }
+  return merged;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,90 @@
+#include "runners/run/plan_cases.hpp"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <ricochet/loader/child.hpp>
+
+#include "runners/run/run_study.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Method = std::pair<std::string, std::string>;  // role, name
+
+// A large mesh may take its time; a plugin that is not done by then never is.
+constexpr double longest_plan = 60;
+
+std::array<Method, 3> methods_of(const StudyCase& study_case) {
+  return {Method{role_name(Role::mass), study_case.mass.name},
+          Method{role_name(Role::contact), study_case.contact.name},
+          Method{role_name(Role::time), study_case.time.name}};
+}
+
+std::string to_text(const CasePlan& plan) {
+  return Json{{"refusal", plan.refusal},           {"operator", plan.operator_name}, {"steps", plan.steps},
+              {"seconds", plan.predicted_seconds}, {"left_out", plan.left_out},      {"notes", plan.notes}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+CasePlan from_text(const Json& json) {
+  CasePlan plan;
+  json.at("refusal").get_to(plan.refusal);
+  json.at("operator").get_to(plan.operator_name);
+  json.at("steps").get_to(plan.steps);
+  // JSON has no infinity: a cost that cannot be told is null.
+  if (json.at("seconds").is_number()) json.at("seconds").get_to(plan.predicted_seconds);
+  json.at("left_out").get_to(plan.left_out);
+  json.at("notes").get_to(plan.notes);
+  return plan;
+}
+
+}  // namespace
+
+bool CasePlanner::uses_foreign(const StudyCase& study_case) const {
+  for (const auto& [role, name] : {std::pair(Role::mass, study_case.mass.name),
+                                   {Role::contact, study_case.contact.name},
+                                   {Role::time, study_case.time.name}})
+    if (const std::string file = registry_.file(role, name); !file.empty() && catalogue_.foreign(file)) return true;
+  return false;
+}
+
+PlanOutcome CasePlanner::plan(const StudyCase& study_case) {
+  if (uses_foreign(study_case)) return plan_in_child(study_case);
+  try {
+    return {plan_for(study_.kind, study_case, registry_), ""};
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return {{}, "not enough memory"};
+  } catch (const std::exception& error) {
+    return {{}, error.what()};
+  }
+}
+
+PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
+  for (const Method& method : methods_of(study_case))
+    if (const auto found = endless_.find(method); found != endless_.end()) return {{}, found->second};
+  const ChildOutcome outcome = run_in_child(
+      [&] {
+        try {
+          return to_text(plan_for(study_.kind, study_case, registry_));
+        } catch (const InputError& error) {
+          return Json{{"pointer", error.pointer()}, {"wrong", error.what()}}.dump(-1, ' ', false,
+                                                                                  Json::error_handler_t::replace);
+        }
+      },
+      longest_plan);
+  if (!outcome.ok()) {
+    const std::string sentence = outcome.sentence();
+    if (outcome.end == ChildOutcome::End::timeout && !outcome.function.empty())
+      endless_[{outcome.plugin.role, outcome.plugin.name}] =
+          sentence + " in case " + study_case.id + "; not tried again";
+    return {{}, sentence};
+  }
+  const Json json = Json::parse(outcome.text);
+  if (json.contains("wrong")) throw InputError(json["pointer"].get<std::string>(), json["wrong"].get<std::string>());
+  return {from_text(json), ""};
+}
+
+}  // namespace ricochet

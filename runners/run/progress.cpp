@@ -1,0 +1,168 @@
+#include "runners/run/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/run/say.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr double kLineEverySeconds = 2;
+constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
+// A case in flight counts as its prediction says, but never as finished.
+constexpr double kAlmost = 0.95;
+// s beyond twice the prediction after which a case is waited for.
+constexpr double kPatience = 5;
+
+double seconds_since(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+int terminal_width(std::FILE* out) {
+  winsize size{};
+  constexpr int usual = 80;
+  return ::ioctl(::fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  constexpr long long minute = 60, hour = 3600;
+  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+  const long long whole = std::llround(seconds);
+  if (whole < minute) return fmt::format("{} s", whole);
+  if (whole < hour) return fmt::format("{} min {:02} s", whole / minute, whole % minute);
+  return fmt::format("{} h {:02} min", whole / hour, whole % hour / minute);
+}
+
+double progress_fraction(const ProgressState& state) {
+  if (state.total == 0 || state.done >= state.total) return 1;
+  if (state.work_total > 0) return std::clamp(state.work_done / state.work_total, 0.0, 1.0);
+  return static_cast<double>(state.done) / state.total;
+}
+
+std::string progress_text(const ProgressState& state) {
+  const double fraction = progress_fraction(state);
+  std::string text = fmt::format("{}/{} cases, {:.0f} %", state.done, state.total, std::floor(100 * fraction));
+  if (state.done > 0 && state.elapsed > 0) {
+    const double rate = state.done / state.elapsed;
+    text += rate >= 1 ? fmt::format(", {:.1f} cases/s", rate) : fmt::format(", {:.1f} cases/min", 60 * rate);
+  }
+  if (!state.waits_for.empty()) return text + ", waiting for " + state.waits_for;
+  if (fraction > 0 && fraction < 1 && state.elapsed > 1)
+    text += fmt::format(", {} left", duration_text(state.elapsed * (1 - fraction) / fraction));
+  return text;
+}
+
+std::string progress_bar(const ProgressState& state, int width) {
+  const std::string text = progress_text(state);
+  constexpr int widest = 40, narrowest = 5, frame = 3;
+  const int cells = std::min(widest, width - frame - static_cast<int>(text.size()));
+  if (cells < narrowest) return text.substr(0, static_cast<std::size_t>(std::max(width, 0)));
+  const int full = static_cast<int>(progress_fraction(state) * cells);
+  return fmt::format("[{:#>{}}{:->{}}] {}", "", full, "", cells - full, text);
+}
+
+Progress::Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop)
+    : out_(out), terminal_(terminal), stop_(stop), total_(total), work_total_(predicted_seconds) {
+  refresher_ = std::thread([this] { refresh(); });
+}
+
+Progress::~Progress() {
+  {
+    const std::lock_guard guard(mutex_);
+    ended_ = true;
+  }
+  wake_.notify_all();
+  refresher_.join();
+  erase();
+}
+
+void Progress::started(const std::string& id, double predicted_seconds) {
+  const std::lock_guard guard(mutex_);
+  in_flight_[id] = {Clock::now(), predicted_seconds};
+}
+
+void Progress::finished(const std::string& id) {
+  const std::lock_guard guard(mutex_);
+  const auto found = in_flight_.find(id);
+  if (found != in_flight_.end()) {
+    work_done_ += found->second.predicted;
+    measured_ += seconds_since(found->second.since);
+    in_flight_.erase(found);
+  }
+  ++done_;
+  if (terminal_) {
+    draw();
+  } else if (done_ < total_ && seconds_since(last_line_) >= kLineEverySeconds) {
+    draw();
+  }
+}
+
+void Progress::note(const std::string& line) {
+  const std::lock_guard guard(mutex_);
+  erase();
+  say(out_, fmt::format("{}\n", line));
+  draw();
+}
+
+void Progress::waiting(std::map<std::string, std::string> calls) {
+  const std::lock_guard guard(mutex_);
+  calls_ = std::move(calls);
+}
+
+// The case that is most beyond what was predicted of it, "" where none is by far.
+std::string Progress::overdue(double slowness) const {
+  double most = kPatience;
+  std::string text;
+  for (const auto& [id, flight] : in_flight_) {
+    const double seconds = seconds_since(flight.since), predicted = slowness * flight.predicted;
+    if (seconds - 2 * predicted < most) continue;
+    most = seconds - 2 * predicted;
+    const auto call = calls_.find(id);
+    text = fmt::format("case {}, {} so far, {} predicted{}", id, duration_text(seconds), duration_text(predicted),
+                       call == calls_.end() ? "" : ": " + call->second);
+  }
+  return text;
+}
+
+ProgressState Progress::state() const {
+  // Predictions are in seconds of another machine at worst: what finished says by how much they are off.
+  const double slowness = work_done_ > 0 ? std::max(measured_ / work_done_, 1e-6) : 1.0;
+  double flying = 0;
+  for (const auto& [id, flight] : in_flight_)
+    flying += std::min(seconds_since(flight.since) / slowness, kAlmost * flight.predicted);
+  return {done_, total_, work_done_ + flying, work_total_, seconds_since(begin_), overdue(slowness)};
+}
+
+void Progress::draw() {
+  last_line_ = Clock::now();
+  if (terminal_)
+    say(out_, fmt::format("\r{}\x1b[K", progress_bar(state(), terminal_width(out_) - 1)));
+  else
+    say(out_, fmt::format("{}\n", progress_text(state())));
+}
+
+void Progress::erase() {
+  if (!terminal_) return;
+  say(out_, "\r\x1b[K");
+}
+
+void Progress::refresh() {
+  std::unique_lock lock(mutex_);
+  while (!ended_) {
+    if (stop_ && !stop_told_) {
+      stop_told_ = true;
+      erase();
+      say(out_, "stopping: the cases in flight are given up, the others kept (once more ends at once)\n");
+    }
+    if (terminal_ || seconds_since(last_line_) >= 5 * kLineEverySeconds) draw();
+    wake_.wait_for(lock, kRedrawEvery);
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,32 @@
+#pragma once
+#include <filesystem>
+#include <iosfwd>
+#include <ricochet/loader/catalogue.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+struct RunOptions {
+  std::filesystem::path out;  ///< results folder; empty: results/NAME
+  int jobs = 0;               ///< 0: all processors
+  bool fresh = false;         ///< forget what the folder holds
+};
+
+/// What would run for a case of a study of this kind, decided without running it.
+CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry);
+
+/// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/,
+/// study.json and report.html, and prints one line per case. Returns the exit code of design §5 (0, 3, 5, 130).
+int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
+
+/// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.
+int rebuild_report(const std::filesystem::path& folder);
+
+/// Writes the tables of the store as CSV into `to`. Returns the exit code.
+int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to);
+
+}  // namespace ricochet

@@ -1,0 +1,44 @@
+#include "runners/run/stop_signal.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+
+namespace ricochet {
+namespace {
+
+constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGXFSZ};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+std::atomic<int> signals_seen{0};
+std::array<struct sigaction, kSignals.size()> former;
+
+extern "C" void on_stop(int) {
+  stop_requested = true;
+  if (++signals_seen > 1) ::_exit(kInterrupted);
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  stop_requested = false;
+  signals_seen = 0;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    struct sigaction action {};
+    action.sa_handler = kSignals[i] == SIGXFSZ ? SIG_IGN : on_stop;
+    action.sa_flags = SA_RESTART;  // a write to the store goes on
+    ::sigaction(kSignals[i], &action, &former[i]);
+  }
+}
+
+StopSignal::~StopSignal() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &former[i], nullptr);
+}
+
+std::atomic<bool>& StopSignal::requested() const {
+  return stop_requested;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,413 @@
+#include "runners/run/study_runner.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "runners/march/crash_record.hpp"
+#include "runners/march/prepare_case.hpp"
+#include "runners/run/derive.hpp"
+#include "runners/run/environment.hpp"
+#include "runners/run/minimal_study.hpp"
+#include "runners/run/progress.hpp"
+#include "runners/run/say.hpp"
+#include "runners/run/stop_signal.hpp"
+#include "runners/run/summary.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/store/store.hpp"
+#include "runners/store/store_error.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr int kStoreUnusable = 5;
+
+StudyResults header(const Study& study) {
+  StudyResults results;
+  results.study = study.resolved;
+  results.name = study.name;
+  results.question = study.question;
+  results.kind = study.kind;
+  results.columns = study.columns;
+  results.expected_cases = static_cast<int>(study.cases.size());
+  return results;
+}
+
+CaseRecord excluded_record(const StudyCase& study_case) {
+  CaseRecord record;
+  record.id = study_case.id;
+  record.axes = study_case.axes;
+  record.status = "refused";
+  record.reason = "excluded: " + *study_case.excluded;
+  return record;
+}
+
+std::vector<ExpectedCase> expected_cases(const StudyRunner& runner, const Study& study) {
+  Fingerprints fingerprints(study.kind, program_hash());
+  std::vector<ExpectedCase> expected;
+  for (const StudyCase& study_case : study.cases)
+    expected.push_back({study_case.id, fingerprints.of(study_case, runner.libraries(study_case))});
+  return expected;
+}
+
+/// Splits what is missing: excluded cases get their record, the others wait. Returns the ids that are new.
+std::set<std::string> find_missing(const Study& study, const std::map<std::string, std::string>& fingerprints,
+                                   const std::set<std::string>& settled, std::vector<CaseRecord>& excluded,
+                                   std::vector<PendingCase>& pending) {
+  std::set<std::string> missing;
+  for (const StudyCase& study_case : study.cases) {
+    if (settled.count(study_case.id) != 0 || !missing.insert(study_case.id).second) continue;
+    if (study_case.excluded)
+      excluded.push_back(excluded_record(study_case));
+    else
+      pending.push_back({&study_case, 0, fingerprints.at(study_case.id)});
+  }
+  return missing;
+}
+
+const StudyCase* find_case(const Study& study, const std::string& id) {
+  const auto found =
+      std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
+  return found == study.cases.end() ? nullptr : &*found;
+}
+
+/// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
+void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
+                  const CaseRecord& record) {
+  // Cases on several threads share the folder: one page at a time, and none waits for another's.
+  static std::mutex page;
+  store.save_partial(record);
+  const std::unique_lock lock(page, std::try_to_lock);
+  if (lock) write_file(folder / "report.html", runner.render(with_tables(store.load())));
+}
+
+/// One run of a study in its folder, from the store's opening to the report.
+class FolderRun {
+ public:
+  FolderRun(const StudyRunner& runner, const Study& study, const RunOptions& options, std::filesystem::path folder)
+      : runner_(runner),
+        study_(study),
+        folder_(std::move(folder)),
+        stop_(signals_.requested()),
+        store_(folder_, options.fresh),
+        guard_(folder_),
+        jobs_(options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {
+    if (options.fresh) remove_crash_record(folder_);
+  }
+
+  int run() {
+    const std::vector<ExpectedCase> expected = expected_cases(runner_, study_);
+    for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
+    kept_ = settled_ = store_.begin(header(study_), expected);
+    take_over();
+    announce();
+    if (runner_.open) open();
+    if (stop_) return interrupted();
+    if (!run_missing()) return interrupted();
+    if (runner_.time && !time()) return interrupted();
+    store_.nothing_under_way();
+    return finish();
+  }
+
+ private:
+  void tell(const std::string& line) { say(runner_.messages, line + "\n"); }
+
+  /// The row of a case that was not run to its end.
+  void settle(const CaseRecord& record) {
+    store_.save({&record, 1});
+    settled_.insert(record.id);
+    fresh_.insert(record.id);
+    note_failure(record);
+    tell(fmt::format("case {} is kept as failed: {}", record.id, record.reason));
+  }
+  void note_failure(const CaseRecord& record) {
+    const std::lock_guard guard(failed_mutex_);
+    if (record.status == "failed") failed_.insert(record.id);
+  }
+
+  /// What the last run left: a case that ended the program is failed; one that was killed runs again.
+  void take_over() {
+    failed_ = store_.failed();
+    const auto crash = read_crash_record(folder_);
+    const StudyCase* const found = crash ? find_case(study_, crash->case_id) : nullptr;
+    if (found && fingerprints_.at(found->id) == crash->fingerprint) {
+      CaseRecord record;
+      record.id = found->id;
+      record.axes = found->axes;
+      record.status = "failed";
+      record.reason = crash->reason();
+      settle(record);
+    } else if (crash && crash->case_id.empty()) {
+      tell(crash->reason() + ", before any case");
+    }
+    std::vector<std::string> left = store_.left_under_way();
+    std::erase_if(left, [&](const std::string& id) { return settled_.count(id) != 0 || !find_case(study_, id); });
+    if (!left.empty())
+      tell(fmt::format("an earlier run ended while {} {} under way: run again", fmt::join(left, ", "),
+                       left.size() == 1 ? "was" : "were"));
+    store_.nothing_under_way();
+    remove_crash_record(folder_);
+  }
+
+  /// Before any code of a plugin runs: from now on the cost of these cases is predicted, and what they share computed.
+  void announce() {
+    std::vector<std::string> ids;
+    for (const StudyCase& one : study_.cases)
+      if (!one.excluded && settled_.count(one.id) == 0) ids.push_back(one.id);
+    if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
+  }
+
+  TicketPointer ticket(const StudyCase& one) const {
+    return std::make_shared<CaseTicket>(one.id, fingerprints_.at(one.id), budget_of(one));
+  }
+
+  MotionShelf shelf() {
+    MotionShelf shelf;
+    shelf.find = [this](const std::string& key) {
+      const auto turn = store_turn();
+      return store_.motion(key);
+    };
+    shelf.keep = [this](const std::string& key, const std::string& content) {
+      const auto turn = store_turn();
+      store_.save_motion(key, content);
+    };
+    shelf.show = [this](const CaseRecord& record) {
+      const auto turn = store_turn();
+      show_partial(runner_, store_, folder_, record);
+    };
+    shelf.ticket = [this](const StudyCase& one) {
+      const auto turn = store_turn();
+      return ticket(one);
+    };
+    shelf.failed = [this](const std::string& id) {
+      const auto turn = store_turn();
+      const std::lock_guard guard(failed_mutex_);
+      return failed_.count(id) != 0;
+    };
+    return shelf;
+  }
+
+  /// Runs `body` on one watched thread; where a case is given up in it, that case fails and `body` begins anew.
+  void on_one_thread(const std::function<void()>& body) {
+    const auto failure = std::make_shared<std::exception_ptr>();
+    WatchHooks hooks;
+    hooks.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
+    hooks.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
+    hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
+      try {
+        if (const StudyCase* one = find_case(study_, call.ticket->id)) settle(given_up_record(*one, call));
+      } catch (...) {
+        *failure = std::current_exception();
+        stop_ = true;
+      }
+    };
+    run_watched(
+        1,
+        [body, failure] {
+          const auto own =
+              std::make_shared<CaseTicket>(std::string(), std::string(), std::numeric_limits<double>::infinity());
+          const CaseScope scope(own);
+          std::exception_ptr thrown;
+          try {
+            body();
+          } catch (const Interrupted&) {
+          } catch (...) {
+            thrown = std::current_exception();
+          }
+          const auto turn = own->turn();
+          if (thrown && !*failure) *failure = thrown;
+        },
+        stop_, hooks);
+    if (*failure) std::rethrow_exception(*failure);
+  }
+
+  void open() {
+    on_one_thread([this] { runner_.open(shelf(), stop_); });
+  }
+
+  void say_waiting(const std::vector<LongCall>& calls) {
+    constexpr double every = 10;
+    const auto now = std::chrono::steady_clock::now();
+    for (const LongCall& call : calls)
+      if (call.seconds > every / 2 && std::chrono::duration<double>(now - said_waiting_).count() > every) {
+        said_waiting_ = now;
+        tell(fmt::format("waiting{}: {}", call.ticket->id.empty() ? "" : " for case " + call.ticket->id, call.text()));
+      }
+  }
+  void say_left_behind(const std::vector<LongCall>& calls) {
+    for (const LongCall& call : calls)
+      tell(fmt::format("{}left where it is: {}", call.ticket->id.empty() ? "" : "case " + call.ticket->id + " is ",
+                       call.text()));
+  }
+
+  /// False: interrupted.
+  bool run_missing() {
+    std::vector<CaseRecord> excluded;
+    std::vector<PendingCase> pending;
+    fresh_.merge(find_missing(study_, fingerprints_, settled_, excluded, pending));
+    if (!fresh_.empty()) {
+      const Environment now = runner_.environment();
+      store_.save_environment(kept_.empty() ? now : merge_environments(now, store_.load().environment));
+    }
+    if (!excluded.empty()) store_.save(excluded);
+    const std::size_t running = pending.size();
+    tell(fmt::format("{}: {} case{}, {} finished before, {} to run{}", study_.name, study_.cases.size(),
+                     study_.cases.size() == 1 ? "" : "s", settled_.size(), running,
+                     running > 0 ? fmt::format(" on {} thread{}", jobs_, jobs_ == 1 ? "" : "s") : ""));
+    if (running == 0) return true;
+    CaseEvents events;
+    events.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
+    events.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
+    for (const CaseRecord& record : predict_cases(runner_, pending, jobs_, stop_, events)) settle(record);
+    if (stop_) return false;
+    return pending.empty() || run_pending(std::move(pending));
+  }
+
+  bool run_pending(std::vector<PendingCase> pending) {
+    const int running = static_cast<int>(pending.size());
+    double work = 0;
+    for (const PendingCase& one : pending) work += one.predicted_seconds;
+    Progress progress(runner_.messages, ::isatty(::fileno(runner_.messages)) != 0, running, work, stop_);
+    CaseEvents events;
+    events.begins = [&](const PendingCase& one) {
+      store_.begins({one.study_case->id}, Store::Stage::run);
+      progress.started(one.study_case->id, one.predicted_seconds);
+    };
+    events.finished = [&](const CaseRecord& record, const PendingCase* next) {
+      note_failure(record);
+      store_.save({&record, 1}, next ? next->study_case->id : "");
+      progress.finished(record.id);
+      if (next) progress.started(next->study_case->id, next->predicted_seconds);
+    };
+    events.waiting = [&](const std::vector<LongCall>& calls) {
+      std::map<std::string, std::string> texts;
+      for (const LongCall& call : calls) texts[call.ticket->id] = call.text();
+      progress.waiting(std::move(texts));
+    };
+    events.left_behind = [&](const std::vector<LongCall>& calls) {
+      for (const LongCall& call : calls)
+        progress.note(fmt::format("case {} is left where it is: {}", call.ticket->id, call.text()));
+    };
+    return run_cases(runner_, std::move(pending), jobs_, stop_, events) == running;
+  }
+
+  bool time() {
+    const auto timed = std::make_shared<std::vector<CaseRecord>>();
+    on_one_thread([this, timed] {
+      std::vector<CaseRecord> records = time_cases(
+          runner_, study_, store_.load(), study_.resolved.value("repeats", 1),
+          [this](const StudyCase& one) { return ticket(one); }, stop_);
+      const auto turn = store_turn();
+      *timed = std::move(records);
+    });
+    if (stop_) return false;
+    store_.save(*timed);
+    for (const CaseRecord& record : *timed) fresh_.insert(record.id);
+    return true;
+  }
+
+  int interrupted() {
+    store_.nothing_under_way();
+    const StudyResults results = store_.load();
+    const auto under_way =
+        std::count_if(results.cases.begin(), results.cases.end(), [](const CaseRecord& one) { return one.partial; });
+    tell(fmt::format(
+        "interrupted: {} of {} cases are finished{} and kept in {}. Run the same command again to go on; \"ricochet "
+        "report {}\" shows what is there",
+        results.cases.size() - static_cast<std::size_t>(under_way), results.expected_cases,
+        under_way > 0 ? fmt::format(", {} under way,", under_way) : "", folder_.string(), folder_.string()));
+    return kInterrupted;
+  }
+
+  int finish() {
+    const StudyResults results = with_tables(store_.load());
+    write_outputs(folder_, results, runner_.render, &fresh_);
+    const int code = results_exit_code(results);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    say(runner_.out,
+        fmt::format("{}\n{} ({} run now in {}, {} kept)\nreport: {}\n", case_table(results), totals_text(results),
+                    fresh_.size(), duration_text(seconds), kept_.size(), (folder_ / "report.html").string()));
+    if (code != 0)
+      say(runner_.out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
+                           ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
+                                         "a study of each alone\n",
+                                         code, (folder_ / "failures").string())
+                           : fmt::format("exit code {}: the methods of some cases are in error\n", code));
+    return code;
+  }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const StudyRunner& runner_;
+  const Study& study_;
+  const std::filesystem::path folder_;
+  const StopSignal signals_;
+  std::atomic<bool>& stop_;
+  Store store_;
+  const CrashGuard guard_;
+  const int jobs_;
+  std::map<std::string, std::string> fingerprints_;
+  std::set<std::string> kept_, settled_;  // rows that were there; and those that need no run any more
+  std::set<std::string> fresh_;           // rows that this run made
+  std::mutex failed_mutex_;
+  std::set<std::string> failed_;
+  std::chrono::steady_clock::time_point said_waiting_;
+};
+
+/// With threads that sit in a plugin's function for ever, a program has one way to end.
+int ended(int code) {
+  if (threads_left_behind() == 0) return code;
+  std::fflush(stdout);
+  std::fflush(stderr);
+  ::_exit(code);
+}
+
+}  // namespace
+
+int run_study_with(const StudyRunner& runner, const Study& study, const RunOptions& options) {
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path("results") / study.name : options.out;
+  try {
+    const int code = FolderRun(runner, study, options, folder).run();
+    return ended(code);
+  } catch (const Interrupted&) {
+    return ended(kInterrupted);
+  } catch (const StoreError& error) {
+    say(runner.messages, fmt::format("error: {}\n", error.what()));
+    return ended(kStoreUnusable);
+  }
+}
+
+int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
+  try {
+    const StudyResults results = with_tables(read_store(folder));
+    write_outputs(folder, results, render);
+    if (const auto crash = read_crash_record(folder))
+      say(stderr, fmt::format("case {}: {}; run the study again: that case is kept as failed and the others go on\n",
+                              crash->case_id, crash->reason()));
+    say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
+    return 0;
+  } catch (const StoreError& error) {
+    say(stderr, fmt::format("error: {}\n", error.what()));
+    return kStoreUnusable;
+  }
+}
+
+int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to) {
+  try {
+    write_tables(to, with_tables(read_store(folder)));
+    say(stdout, fmt::format("tables: {}\n", to.string()));
+    return 0;
+  } catch (const StoreError& error) {
+    say(stderr, fmt::format("error: {}\n", error.what()));
+    return kStoreUnusable;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,81 @@
+#pragma once
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/watched_threads.hpp"
+#include "runners/run/outputs.hpp"
+#include "runners/run/run_study.hpp"
+
+namespace ricochet {
+
+/// What a run of a study asks of the rest of the program; run_study() gives the real ones.
+struct StudyRunner {
+  std::function<CasePlan(const StudyCase&)> plan;
+  std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
+  std::function<std::vector<std::filesystem::path>(const StudyCase&)>
+      libraries;  ///< of its three methods; "" when in-process
+  std::function<Environment()> environment;
+  RenderReport render;
+  /// Called once, when the store is open and before any case runs; throws InputError for what only shows then.
+  std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
+  /// Processor seconds of one case's marching, alone; none: cases of this kind are not timed apart.
+  std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
+  std::FILE* out = stdout;       ///< the summary
+  std::FILE* messages = stderr;  ///< progress and errors
+};
+
+/// run_study() with its collaborators given.
+int run_study_with(const StudyRunner& runner, const Study& study, const RunOptions& options);
+
+/// rebuild_report() with the report's author given.
+int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder);
+
+/// Runs one case and makes a record of whatever happens: what it throws becomes status `failed`. Only Interrupted goes
+/// through.
+CaseRecord run_guarded(const StudyRunner& runner, const StudyCase& study_case, const std::atomic<bool>& stop);
+
+/// A pending case, its predicted cost, and what tells whether it is still the same in a later run.
+struct PendingCase {
+  const StudyCase* study_case = nullptr;
+  double predicted_seconds = 0;
+  std::string fingerprint;
+};
+
+/// The row of a case that was given up: failed, with the plugin and the function that did not return.
+CaseRecord given_up_record(const StudyCase& study_case, const LongCall& call);
+
+/// What run_cases() reports.
+struct CaseEvents {
+  /// A case begins: before any of its code runs, in the thread that will run it. Not for one that `finished` named.
+  std::function<void(const PendingCase&)> begins;
+  /// A case ended, in the thread that made its record or in the watching one; `next`, where not null, begins now.
+  std::function<void(const CaseRecord&, const PendingCase* next)> finished;
+  /// See WatchHooks.
+  std::function<void(const std::vector<LongCall>&)> waiting, left_behind;
+};
+
+/// Times the finished cases that have no time yet, one at a time on this thread, `repeats` rounds in turn: measures
+/// timed_seconds (median), timed_low and timed_high (smallest and largest), and a note when other programs took the
+/// processor meanwhile. Ends early when `stop` becomes true, then without any time. Returns the records to save.
+/// `ticket`: the case as it is watched.
+std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
+                                   int repeats, const std::function<TicketPointer(const StudyCase&)>& ticket,
+                                   const std::atomic<bool>& stop);
+
+/// Runs the cases on `jobs` threads, longest predicted first so that all threads end together. A case that is given up
+/// (see run_watched) is failed, and the others go on. Ends early when `stop` becomes true. An exception of an event
+/// sets `stop` and is thrown once all threads are back. Returns the number of cases that finished.
+int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int jobs, std::atomic<bool>& stop,
+              const CaseEvents& events);
+
+/// Predicts the cost of the cases, on as many threads, watched in the same way. Returns the records of those whose
+/// prediction had to be given up; they are no longer pending.
+std::vector<CaseRecord> predict_cases(const StudyRunner& runner, std::vector<PendingCase>& pending, int jobs,
+                                      const std::atomic<bool>& stop, const CaseEvents& events);
+
+}  // namespace ricochet

@@ -1,0 +1,163 @@
+#include "runners/run/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "runners/store/csv.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string cell(const CaseRecord& record, const std::string& column) {
+  for (const auto& [name, value] : record.axes)
+    if (name == column) return value.is_string() ? value.get<std::string>() : csv_value(value);
+  return "";
+}
+
+/// Characters shown, for UTF-8 text without combining marks.
+std::size_t shown(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, shown(text)), ' ');
+}
+
+std::string signed_percent(double ratio) {
+  const double percent = 100 * ratio;
+  constexpr double tenth = 0.05, double_noise = 1e-13;  // percent
+  if (std::abs(percent) < double_noise) return "unchanged";
+  const char* sign = percent < 0 ? "−" : "+";
+  const double size = std::abs(percent);
+  return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
+}
+
+// Marched at some steps, and stable at none of them.
+bool never_stable(const CaseRecord& record) {
+  for (const DerivedTable& table : record.tables) {
+    if (table.name != "stability_observed" || table.rows.empty()) continue;
+    const auto column = std::find(table.columns.begin(), table.columns.end(), "behaviour") - table.columns.begin();
+    return std::none_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+      const auto& cell = row.at(static_cast<std::size_t>(column));
+      return cell == "stable" || cell == "marginal";
+    });
+  }
+  return false;
+}
+
+bool contradicts_itself(const CaseRecord& record) {
+  return measure(record, "contradictions").value_or(0) > 0;
+}
+
+// What a comparing or a stability case has to say: its first errors, its step limits.
+std::string kind_text(const CaseRecord& record) {
+  std::vector<std::string> parts;
+  constexpr std::size_t shown_errors = 3;
+  for (const auto& [name, value] : record.measures)
+    if (name.starts_with("error.") && parts.size() < shown_errors)
+      parts.push_back(fmt::format("{} {:.2e}", name.substr(std::string("error.").size()), value));
+  const auto predicted = measure(record, "limit_predicted"), observed = measure(record, "limit_observed");
+  if (predicted) parts.push_back(fmt::format("step limit predicted {:.4g} s", *predicted));
+  if (observed) parts.push_back(fmt::format("observed {:.4g} s", *observed));
+  if (const auto radius = measure(record, "largest_radius"); radius && !predicted)
+    parts.push_back(fmt::format("largest spectral radius {:.6g}", *radius));
+  if (never_stable(record)) parts.emplace_back("unstable at every step marched");
+  if (const auto steps = measure(record, "contradictions"))
+    parts.push_back(fmt::format("spectrum and march disagree without contact at {:.0f} step{}: an error of the method",
+                                *steps, *steps == 1 ? "" : "s"));
+  return parts.empty() ? "" : fmt::format("done: {}", fmt::join(parts, ", "));
+}
+
+std::string done_text(const CaseRecord& record) {
+  if (std::string text = kind_text(record); !text.empty()) return text;
+  std::vector<std::string> parts;
+  auto start = measure(record, "energy_start");
+  auto end = measure(record, "energy_end");
+  if (start && end) {
+    std::string text = fmt::format("energy {:.4g} J → {:.4g} J", *start, *end);
+    if (*start != 0) text += fmt::format(" ({})", signed_percent((*end - *start) / std::abs(*start)));
+    parts.push_back(text);
+  }
+  if (const auto impacts = measure(record, "impacts"))
+    parts.push_back(fmt::format("{:.0f} impact{}", *impacts, *impacts == 1 ? "" : "s"));
+  if (const auto cost = measure(record, "microseconds_per_step")) parts.push_back(fmt::format("{:.3g} µs/step", *cost));
+  return parts.empty() ? "done" : fmt::format("done: {}", fmt::join(parts, ", "));
+}
+
+int count(const StudyResults& results, const char* status) {
+  return static_cast<int>(std::count_if(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
+    return !record.partial && record.status == status;
+  }));
+}
+
+}  // namespace
+
+std::string outcome_text(const CaseRecord& record) {
+  if (record.partial) return record.reason;
+  if (record.status == "done") return done_text(record);
+  return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
+}
+
+std::string case_table(const StudyResults& results) {
+  struct Column {
+    std::string name;
+    std::size_t width;
+    std::vector<std::string> cells;
+  };
+  std::vector<Column> columns;
+  const auto add = [&](const std::string& name, auto value) {
+    Column column{name, shown(name), {}};
+    for (const CaseRecord& record : results.cases) {
+      column.cells.push_back(value(record));
+      column.width = std::max(column.width, shown(column.cells.back()));
+    }
+    columns.push_back(std::move(column));
+  };
+  for (const std::string& name : results.columns) {
+    const auto differs = [&](const CaseRecord& record) {
+      return cell(record, name) != cell(results.cases.front(), name);
+    };
+    if (std::any_of(results.cases.begin(), results.cases.end(), differs))
+      add(name, [&](const CaseRecord& record) { return cell(record, name); });
+  }
+  if (columns.empty()) add("case", [](const CaseRecord& record) { return record.id; });
+
+  std::string table;
+  for (const Column& column : columns) table += padded(column.name, column.width) + "  ";
+  table += "outcome\n";
+  for (std::size_t i = 0; i < results.cases.size(); ++i) {
+    for (const Column& column : columns) table += padded(column.cells[i], column.width) + "  ";
+    table += outcome_text(results.cases[i]) + '\n';
+  }
+  return table;
+}
+
+std::string totals_text(const StudyResults& results) {
+  std::vector<std::string> parts;
+  for (const char* status : {"done", "refused", "diverged", "failed"})
+    if (const int number = count(results, status)) parts.push_back(fmt::format("{} {}", number, status));
+  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(),
+                                        [](const CaseRecord& record) { return record.partial; }))
+    parts.push_back(fmt::format("{} under way", number));
+  const std::size_t cases = results.cases.size();
+  std::string text = fmt::format("{} case{}", cases, cases == 1 ? "" : "s");
+  if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
+  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(), contradicts_itself))
+    text += fmt::format("; in {} spectrum and march disagree without contact", number);
+  if (const int missing = results.expected_cases - static_cast<int>(cases); missing > 0)
+    text += fmt::format("; {} not run yet", missing);
+  return text;
+}
+
+int results_exit_code(const StudyResults& results) {
+  constexpr int some_failed = 3;
+  const bool wrong = std::any_of(results.cases.begin(), results.cases.end(), contradicts_itself);
+  return wrong || count(results, "diverged") + count(results, "failed") > 0 ? some_failed : 0;
+}
+
+}  // namespace ricochet

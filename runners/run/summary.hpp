@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// The outcome of one case in words: "done: energy 12.3 J → 11.9 J (−3.2 %), 14 impacts, 0.42 µs/step", or the status
+/// and its reason.
+std::string outcome_text(const CaseRecord& record);
+
+/// One line per case: the axes that vary in aligned columns under their names, then the outcome.
+std::string case_table(const StudyResults& results);
+
+/// "48 cases: 40 done, 4 refused, 2 diverged, 2 failed".
+std::string totals_text(const StudyResults& results);
+
+/// 0, or 3 when a case diverged or failed, or its march without contact is not what its spectrum says (refused and
+/// excluded cases did what the study asks).
+int results_exit_code(const StudyResults& results);
+
+}  // namespace ricochet

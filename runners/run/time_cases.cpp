@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "runners/march/prepare_case.hpp"
+#include "runners/run/say.hpp"
+#include "runners/run/study_runner.hpp"
+
+namespace ricochet {
+namespace {
+
+bool timed(const CaseRecord& record) {
+  return std::any_of(record.measures.begin(), record.measures.end(),
+                     [](const auto& measure) { return measure.first == "timed_seconds"; });
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+}  // namespace
+
+std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
+                                   int repeats, const std::function<TicketPointer(const StudyCase&)>& ticket,
+                                   const std::atomic<bool>& stop) {
+  std::map<std::string, const StudyCase*> cases;
+  for (const StudyCase& one : study.cases) cases[one.id] = &one;
+  std::vector<CaseRecord> records;
+  for (const CaseRecord& record : results.cases)
+    if (record.status == "done" && !timed(record) && cases.count(record.id)) records.push_back(record);
+  if (records.empty()) return {};
+  double expected = 0;
+  for (const CaseRecord& record : records) expected += record.run_seconds;
+  say(runner.messages, fmt::format("timing {} cases {} times, one at a time: about {:.0f} s\n", records.size(), repeats,
+                                   expected * repeats));
+
+  std::vector<std::vector<double>> seconds(records.size());
+  const double processor = thread_seconds();
+  const auto wall = std::chrono::steady_clock::now();
+  for (int round = 0; round < repeats; ++round)
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (stop) return {};
+      const StudyCase& one = *cases.at(records[i].id);
+      const CaseScope scope(ticket(one));
+      try {
+        if (const auto time = runner.time(one, stop)) seconds[i].push_back(*time);
+      } catch (const Interrupted&) {
+        return {};
+      } catch (...) {
+        // It ran before: what fails now is its time alone.
+      }
+    }
+  // One busy thread of ours: the rest of the wall time went to others.
+  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  const double share = passed > 0 ? 1 - (thread_seconds() - processor) / passed : 0;
+  constexpr double loaded = 0.1;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (seconds[i].empty()) continue;
+    const auto [low, high] = std::minmax_element(seconds[i].begin(), seconds[i].end());
+    records[i].measures.emplace_back("timed_seconds", median(seconds[i]));
+    records[i].measures.emplace_back("timed_low", *low);
+    records[i].measures.emplace_back("timed_high", *high);
+    if (share > loaded)
+      records[i].notes.push_back(fmt::format(
+          "the machine was loaded while cases were timed: {:.0f} % of the time went to other programs", 100 * share));
+  }
+  return records;
+}
+
+}  // namespace ricochet

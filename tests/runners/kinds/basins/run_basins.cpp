@@ -1,0 +1,188 @@
+// Kind `basins`, from the study's text to the cells of its grid.
+#include "runners/kinds/basins/run_basins.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <ricochet/loader/catalogue.hpp>
+
+#include "runners/study/load_study.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// An oscillator driven beside a stop: small motions miss it, others strike it, by their initial state.
+Json grid_study(int columns, int rows, bool refine) {
+  Json study = Json::parse(R"({
+    "name": "grid", "kind": "basins",
+    "scene": {
+      "structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.3,
+                    "force": {"amplitude": 1, "pulsation": 2.6}},
+      "stops": {"upper": 0.2, "at": "tip"},
+      "initial": {"displacement": 0, "velocity": 0}
+    },
+    "methods": {"mass": "consistent", "contact": "signorini",
+                "time": {"name": "newmark-dumont-paoli", "restitution": 0.3}},
+    "steps_per_period": 64,
+    "transient": {"periods": 60, "at_most": 160}, "keep": 32
+  })");
+  study["axes"] =
+      Json::array({{{"pointer", "/scene/initial/displacement"}, {"from", -4}, {"to", 0.16}, {"count", columns}},
+                   {{"pointer", "/scene/initial/velocity"}, {"from", -4}, {"to", 4}, {"count", rows}}});
+  study["refine"] = refine;
+  return study;
+}
+
+struct Opened {
+  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Registry registry;
+  Study study;
+  explicit Opened(const Json& text) : study(parse_study(text.dump(1), catalogue, registry)) {}
+  CaseRecord run(const CaseDesk& desk = {{}, "key", 1}) const {
+    const std::atomic<bool> stop = false;
+    return run_basins(study.cases.front(), registry, desk, stop);
+  }
+};
+
+CaseRecord run(const Json& text) {
+  return Opened(text).run();
+}
+
+/// Column of the table `cells`.
+std::vector<Json> cells(const CaseRecord& record, const std::string& column) {
+  const DerivedTable& table = record.tables.front();
+  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+  REQUIRE(found != table.columns.end());
+  std::vector<Json> out;
+  for (const auto& row : table.rows) out.push_back(row.at(static_cast<std::size_t>(found - table.columns.begin())));
+  return out;
+}
+
+std::string bits(const CaseRecord& record) {
+  std::string text = record.status + std::to_string(record.steps);
+  for (const auto& row : record.tables.front().rows)
+    for (const Json& cell : row) text += cell.dump();
+  for (const auto& column : record.numbers.front().columns)
+    text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("Every cell of a grid has its row and its section") {
+  const CaseRecord record = run(grid_study(5, 4, false));
+  CHECK(record.status == "done");
+  const auto x = cells(record, "x"), y = cells(record, "y"), marched = cells(record, "marched"),
+             source = cells(record, "source"), period = cells(record, "period"), status = cells(record, "status");
+  REQUIRE(x.size() == 20);
+  CHECK(x[0] == -4.0);
+  CHECK(x[4] == 0.16);
+  CHECK(y[0] == -4.0);
+  CHECK(y[19] == 4.0);
+  std::map<double, int> points;
+  for (const double cell : record.numbers.front().columns.front()) ++points[cell];
+  for (std::size_t cell = 0; cell < x.size(); ++cell) {
+    CHECK(status[cell] == "done");
+    CHECK(marched[cell] == true);
+    CHECK(source[cell] == cell);
+    CHECK(points[static_cast<double>(cell)] == (period[cell].is_null() ? 32 : period[cell].get<int>()));
+  }
+  CHECK_FALSE(record.numbers.front().exported);
+}
+
+TEST_CASE("Boundary refinement finds what the whole grid holds, for less") {
+  const CaseRecord whole = run(grid_study(21, 21, false)), refined = run(grid_study(21, 21, true));
+  const auto regime = cells(whole, "class"), found = cells(refined, "class"), marched = cells(refined, "marched"),
+             period = cells(whole, "period"), repeats = cells(refined, "period"), source = cells(refined, "source");
+  const auto marched_count = std::count(marched.begin(), marched.end(), Json(true));
+  CHECK(marched_count < 441 / 2);
+  CHECK(std::count(marched.begin(), marched.end(), Json(false)) == 441 - marched_count);
+  CHECK(std::count(regime.begin(), regime.end(), regime.front()) < 441);  // there is something to find
+  int wrong = 0;
+  for (std::size_t cell = 0; cell < regime.size(); ++cell) {
+    const bool same = regime[cell] == found[cell] && period[cell] == repeats[cell];
+    if (marched[cell] == true) CHECK(same);
+    CHECK(marched[source[cell].get<std::size_t>()] == true);
+    wrong += !same;
+  }
+  // Tongues thinner than the coarse grid, which no coarse cell meets: one cell in a hundred.
+  CHECK(wrong <= 4);
+  CHECK_THAT(refined.notes.back(), Contains(std::to_string(marched_count) + " of 441 cells were marched"));
+}
+
+TEST_CASE("Scenes shared by columns and rows are those of each cell alone") {
+  // The stop as second axis shares nothing: its orbits at the stop of the scene are those of the initial states.
+  Json alone = grid_study(5, 2, false);
+  alone["axes"][1] = {{"pointer", "/scene/stops/upper"}, {"from", 0.2}, {"to", 0.4}, {"count", 2}};
+  Json shared = grid_study(5, 2, false);
+  shared["axes"][1] = {{"pointer", "/scene/initial/velocity"}, {"from", 0}, {"to", 1}, {"count", 2}};
+  Json turned = shared;
+  std::swap(turned["axes"][0], turned["axes"][1]);
+  const auto first = [](const CaseRecord& record, std::size_t stride) {
+    std::vector<double> tips;
+    for (std::size_t i = 0; i < record.numbers.front().rows(); ++i)
+      for (std::size_t cell = 0; cell < 5; ++cell)
+        if (record.numbers.front().columns[0][i] == static_cast<double>(stride * cell))
+          tips.push_back(record.numbers.front().columns[2][i]);
+    return tips;
+  };
+  const auto wanted = first(run(alone), 1);
+  CHECK_FALSE(wanted.empty());
+  CHECK(first(run(shared), 1) == wanted);
+  CHECK(first(run(turned), 2) == wanted);
+}
+
+TEST_CASE("Cells behind a stop are refused one by one") {
+  Json study = grid_study(4, 3, false);
+  study["axes"][0]["to"] = 0.5;
+  const CaseRecord record = run(study);
+  const auto status = cells(record, "status"), reason = cells(record, "reason");
+  CHECK(record.status == "done");
+  for (std::size_t cell = 0; cell < status.size(); ++cell) {
+    CHECK(status[cell] == (cell % 4 == 3 ? "refused" : "done"));
+    if (cell % 4 == 3) CHECK_THAT(reason[cell].get<std::string>(), Contains("stop"));
+  }
+}
+
+TEST_CASE("Threads and interruptions do not change the bits of basins") {
+  const Opened opened(grid_study(13, 13, true));
+  const std::string wanted = bits(opened.run());
+  for (int run = 0; run < 3; ++run) CHECK((bits(opened.run({{}, "key", 2})) == wanted));
+
+  std::map<std::string, std::string> kept;
+  std::atomic<bool> stop = false;
+  int saves = 0;
+  CaseDesk desk;
+  desk.key = "key";
+  desk.shelf.find = [&](const std::string& key) { return kept.contains(key) ? kept.at(key) : std::string(); };
+  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
+    bytes.empty() ? void(kept.erase(key)) : void(kept[key] = bytes);
+    if (++saves % 5 == 0) stop = true;
+  };
+  int interruptions = 0;
+  for (;; ++interruptions) {
+    REQUIRE(interruptions < 100);
+    stop = false;
+    try {
+      const CaseRecord record = run_basins(opened.study.cases.front(), opened.registry, desk, stop);
+      CHECK((bits(record) == wanted));  // not printed when it fails
+      break;
+    } catch (const Interrupted&) {
+    }
+  }
+  CHECK(interruptions > 0);
+  CHECK(kept.empty());
+}
+
+TEST_CASE("A budget that is spent leaves rows that say so") {
+  Json study = grid_study(25, 25, false);
+  study["budget"] = 1e-3;
+  const CaseRecord record = run(study);
+  CHECK(record.status == "failed");
+  const auto status = cells(record, "status");
+  CHECK(status.size() == 625);
+  CHECK(std::count(status.begin(), status.end(), Json("failed")) > 0);
+}

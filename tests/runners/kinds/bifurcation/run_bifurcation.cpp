@@ -1,0 +1,171 @@
+// What a case of kind `bifurcation` leaves: starts, classes, exponents, sections, refinement, and rows for what went
+// wrong.
+#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+
+#include "tests/runners/kinds/sweep/sweep_case.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+std::vector<double> sections(const CaseRecord& record, std::size_t start) {
+  const NumberTable& points = numbers_of(record, "points");
+  std::vector<double> found;
+  for (std::size_t i = 0; i < points.rows(); ++i)
+    if (column_of(points, "start")[i] == static_cast<double>(start))
+      found.push_back(column_of(points, "tip_displacement")[i]);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("bifurcation: neither threads nor the number of exponents asked for change an orbit") {
+  Json text = beam_sweep({0.05, 0.08, 0.086, 0.09});
+  const CaseRecord one = run_sweep(text, 1), three = run_sweep(text, 3);
+  REQUIRE(one.status == "done");
+  CHECK(bits_of(one) == bits_of(three));
+  text["exponents"] = 2;
+  const CaseRecord measured = run_sweep(text, 2);
+  CHECK(column_of(numbers_of(one, "points"), "tip_velocity") ==
+        column_of(numbers_of(measured, "points"), "tip_velocity"));
+}
+
+TEST_CASE("bifurcation: rest is rest whatever the scene says, and the scene's own state is another start") {
+  Json text = beam_sweep({0.07}, Json::array({"rest", "state"}));
+  text["scene"]["initial"] = {{"displacement", "0.02*x^2"}};
+  text["transient"] = {{"periods", 1}, {"at_most", 1}};
+  const CaseRecord with = run_sweep(text);
+  text["start"] = {"rest"};
+  text["scene"].erase("initial");
+  const CaseRecord without = run_sweep(text);
+  CHECK(sections(with, 0) == sections(without, 0));
+  CHECK(sections(with, 1) != sections(without, 0));
+}
+
+TEST_CASE("bifurcation: where there is one attractor, up, down and rest end on it") {
+  // Heavily damped and never in contact: the linear response is the only motion.
+  Json text = beam_sweep({0.01, 0.02, 0.03}, Json::array({"rest", "up", "down"}));
+  text["scene"]["structure"]["damping"]["stiffness"] = 0.02;
+  const CaseRecord record = run_sweep(text);
+  for (const Cell& name : of_values(record, "class")) CHECK(name == "no contact");
+  const auto rest = sections(record, 0), up = sections(record, 1), down = sections(record, 2);
+  REQUIRE(rest.size() == 48);
+  // Free motion falls by e^(−αω₁²T/2) = 0.013 per period.
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    CHECK(up[i] == Approx(rest[i]).margin(1e-12));
+    CHECK(down[i] == Approx(rest[i]).margin(1e-12));
+  }
+}
+
+TEST_CASE("bifurcation: exponents of the motion without contact are those of the structure's damping") {
+  Json text = beam_sweep({0.01});
+  text["scene"]["structure"]["damping"] = {{"stiffness", 1e-3}, {"mass", 0.5}};
+  text["exponents"] = 2;
+  const CaseRecord record = run_sweep(text);
+  // The slowest mode decays with αω₁²/2 + η/2, ω₁ = 26.2445 rad/s; h and four elements move that by less than 1 %.
+  const double decay = -(1e-3 * 26.2445 * 26.2445 / 2 + 0.25);
+  CHECK(of_values(record, "exponent_1")[0].get<double>() == Approx(decay).epsilon(0.01));
+  // A complex pair has one exponent.
+  CHECK(of_values(record, "exponent_1")[0] == of_values(record, "exponent_2")[0]);
+  CHECK(of_values(record, "exponent_method")[0] == "tangent");
+  CHECK(of_values(record, "exponent_twin")[0].get<double>() == Approx(decay).epsilon(0.2));
+}
+
+TEST_CASE("bifurcation: a scheme's own root is named and takes no part in the class") {
+  Json text = beam_sweep({0.08, 0.086, 0.099});
+  text["exponents"] = 1;
+  text["steps_per_period"] = 2000;  // at a tenth of these β = ¼ shows other motions
+  text["transient"] = {{"periods", 60}, {"at_most", 120}};
+  const CaseRecord half = run_sweep(text);
+  text["methods"]["time"]["beta"] = 0.25;
+  const CaseRecord quarter = run_sweep(text);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(of_values(half, "marginal")[i] == "");
+    CHECK(of_values(quarter, "marginal")[i].get<std::string>().find("root −1") != std::string::npos);
+    CHECK(of_values(quarter, "class")[i] == of_values(half, "class")[i]);
+    CHECK(of_values(quarter, "period")[i] == of_values(half, "period")[i]);
+    CHECK(of_values(quarter, "exponent_1")[i].get<double>() < -0.05);
+  }
+}
+
+TEST_CASE("bifurcation: impacts with inertia say that their jump was put on") {
+  Json text = oscillator_sweep({2.2}, 0.8);
+  text["exponents"] = 2;
+  const CaseRecord record = run_sweep(text);
+  CHECK(of_values(record, "exponent_method")[0] == "tangent+jump");
+  // ζ = 0.1: both exponents are −ζ + ln(e)/T, one impact per period.
+  REQUIRE(of_values(record, "impacts_per_period")[0] == 1.0);
+  const double sum =
+      of_values(record, "exponent_1")[0].get<double>() + of_values(record, "exponent_2")[0].get<double>();
+  CHECK(sum / 2 == Approx(-0.1 + std::log(0.8) * 2.2 / (2 * 3.14159265358979)).margin(2e-3));
+}
+
+TEST_CASE("bifurcation: the step follows the forcing period") {
+  Json text = oscillator_sweep({1.7, 2.2, 2.9}, 0.5);
+  const CaseRecord record = run_sweep(text);
+  for (const Cell& status : of_values(record, "status")) CHECK(status == "done");
+  const NumberTable& portraits = numbers_of(record, "portraits");
+  for (const double omega : {1.7, 2.2, 2.9}) {
+    double last = 0;
+    for (std::size_t i = 0; i < portraits.rows(); ++i)
+      if (column_of(portraits, "parameter")[i] == omega) last = column_of(portraits, "time")[i];
+    const double periods = last * omega / (2 * 3.14159265358979);
+    CHECK(std::abs(periods - std::round(periods)) < 0.05);
+  }
+}
+
+TEST_CASE("bifurcation: sections lie where they are said to") {
+  Json text = beam_sweep({0.086});
+  SECTION("at an impact the tip is at a stop") {
+    text["section"] = "impact";
+    const CaseRecord record = run_sweep(text);
+    const auto points = sections(record, 0);
+    REQUIRE_FALSE(points.empty());
+    for (const double x : points) CHECK(std::abs(x) == Approx(0.1).margin(0.01));  // a step before it closes
+  }
+  SECTION("at an extremum the tip stands still") {
+    text["section"] = "extremum";
+    const CaseRecord record = run_sweep(text);
+    const NumberTable& points = numbers_of(record, "points");
+    REQUIRE(points.rows() > 0);
+    // Within a step of the turn, whose velocity a contact may change by its speed.
+    for (const double v : column_of(points, "tip_velocity")) CHECK(std::abs(v) < 2.5);
+  }
+}
+
+TEST_CASE("bifurcation: changes of class are bracketed down to the tolerance") {
+  Json text = beam_sweep({0.03, 0.06, 0.09});
+  text["refine"] = 1e-3;
+  const CaseRecord record = run_sweep(text);
+  const auto values = of_values(record, "parameter");
+  CHECK(values.size() > 3);
+  for (std::size_t i = 1; i < values.size(); ++i) CHECK(values[i - 1].get<double>() < values[i].get<double>());
+  const DerivedTable& changes = table_of(record, "bifurcations");
+  bool grazing = false;
+  for (std::size_t i = 0; i < changes.rows.size(); ++i) {
+    const double low = column_of(changes, "low")[i].get<double>(), high = column_of(changes, "high")[i].get<double>();
+    const bool began = column_of(changes, "from")[i] == "no contact" && column_of(changes, "start")[i] == "rest";
+    if (began) CHECK(high - low <= 1e-3);
+    // α = 1e-3 and four elements move the undamped 0.0791792 by far less.
+    if (column_of(changes, "start")[i] != "open orbit") continue;
+    grazing = true;
+    CHECK(column_of(changes, "value")[i].get<double>() == Approx(0.0791792098).epsilon(2e-3));
+  }
+  CHECK(grazing);
+}
+
+TEST_CASE("bifurcation: what cannot be marched is a row with its reason") {
+  Json text = beam_sweep({0.08, 0.15});
+  text["scene"]["stops"]["at"] = "nodes";
+  const CaseRecord record = run_sweep(text);  // 0.15 pushes the clamp's neighbourhood through the stops
+  CHECK(record.status == "done");
+  CHECK(of_values(record, "status")[0] == "done");
+  CHECK(of_values(record, "status")[1] == "refused");
+  CHECK_FALSE(of_values(record, "reason")[1].get<std::string>().empty());
+  text["methods"]["contact"] = {{"name", "penalty"}, {"stiffness", 1e9}, {"evaluation", "explicit"}};
+  text["parameter"]["values"] = {0.08, 0.09};
+  const CaseRecord wild = run_sweep(text);
+  CHECK(wild.status == "diverged");
+  for (const Cell& status : of_values(wild, "status")) CHECK(status == "diverged");
+}

@@ -1,0 +1,230 @@
+// Kinds convergence and work-precision end to end: references, errors, orders, timing, and what is refused.
+#include <SQLiteCpp/Database.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runners/run/derive.hpp"
+#include "runners/run/minimal_study.hpp"
+#include "runners/run/run_study.hpp"
+#include "runners/store/store.hpp"
+#include "runners/study/load_study.hpp"
+#include "tests/runners/scratch_folder.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+Json oscillator(const std::string& kind) {
+  Json study = Json::parse(R"({
+    "name": "small",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 4},
+              "stops": {"upper": 0.7, "at": "tip"},
+              "initial": {"displacement": 0.5, "velocity": 1}},
+    "methods": {"mass": "consistent", "contact": "signorini",
+                "time": [{"name": "moreau-jean", "theta": 0.5, "restitution": 0.5}]},
+    "step": [0.02, 0.01, 0.005, 0.0025, 0.00125], "duration": 2, "samples": 40,
+    "reference": ["exact"]
+  })");
+  study["kind"] = kind;
+  return study;
+}
+
+struct Run {
+  ScratchFolder folder;
+  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Registry registry;
+  int go(const Json& text) {
+    const Study study = parse_study(text.dump(), catalogue, registry);
+    return run_study(study, catalogue, registry, {folder.path(), 2, false});
+  }
+  StudyResults results() const { return with_tables(read_store(folder.path())); }
+};
+
+const DerivedTable& table(const StudyResults& results, const std::string& name) {
+  for (const DerivedTable& one : results.derived)
+    if (one.name == name) return one;
+  FAIL("no table " << name);
+  return results.derived.front();
+}
+
+Json cell(const DerivedTable& from, const std::vector<Json>& row, const std::string& column) {
+  for (std::size_t i = 0; i < from.columns.size(); ++i)
+    if (from.columns[i] == column) return row[i];
+  FAIL("no column " << column);
+  return {};
+}
+
+std::string problem_of(const Json& study) {
+  Run run;
+  try {
+    run.go(study);
+  } catch (const InputError& error) {
+    return error.pointer() + ": " + error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("convergence: without contact an exact reference confirms the declared order") {
+  Run run;
+  Json study = oscillator("convergence");
+  study["methods"]["contact"] = "none";
+  study["errors"] = {"tip-linf", "energy"};
+  CHECK(run.go(study) == 0);
+  const StudyResults results = run.results();
+  const DerivedTable& orders = table(results, "orders");
+  REQUIRE(orders.rows.size() == 2);
+  for (const auto& row : orders.rows) {
+    CHECK(cell(orders, row, "refined") == "step");
+    CHECK(cell(orders, row, "order").get<double>() == Approx(2).margin(0.05));
+    CHECK(cell(orders, row, "declared") == 2);
+    CHECK(cell(orders, row, "verdict") == "confirmed");
+  }
+  const DerivedTable& errors = table(results, "errors");
+  CHECK(errors.rows.size() == 10);  // five steps, two errors
+  CHECK(errors.columns.back() == "floor");
+  CHECK(std::filesystem::exists(run.folder.path() / "errors.csv"));
+  CHECK(std::filesystem::exists(run.folder.path() / "orders.csv"));
+}
+
+TEST_CASE("convergence: impacts with restitution converge to the exact motion, and both routes agree") {
+  Run run;
+  Json study = oscillator("convergence");
+  study["reference"] = {"exact", "self"};
+  study["errors"] = {"tip-linf", "impact-times"};
+  CHECK(run.go(study) == 0);
+  const StudyResults results = run.results();
+  for (const CaseRecord& record : results.cases) {
+    std::map<std::string, double> measures(record.measures.begin(), record.measures.end());
+    // One impact that is met within a step: errors of the size of h·v, and the gap of the two references below them.
+    const double h = record.axes.back().second.get<double>();
+    CHECK(measures.at("error.tip-linf") <= 3 * h);
+    CHECK(measures.at("floor.tip-linf") > 0);
+    CHECK(measures.at("floor.tip-linf") <= 3 * 0.00125);
+  }
+}
+
+TEST_CASE("a reference is computed once, kept in the store, and found again") {
+  Run run;
+  Json study = oscillator("convergence");
+  CHECK(run.go(study) == 0);
+  {
+    SQLite::Database database((run.folder.path() / "results.sqlite").string());
+    CHECK(database.execAndGet("SELECT count(*) FROM motions").getInt() == 1);
+  }
+  study["step"].push_back(0.000625);
+  CHECK(run.go(study) == 0);
+  SQLite::Database database((run.folder.path() / "results.sqlite").string());
+  CHECK(database.execAndGet("SELECT count(*) FROM motions").getInt() == 1);
+  CHECK(run.results().cases.size() == 6);
+}
+
+TEST_CASE("work-precision: every finished case has a time with its spread, apart from the errors' run") {
+  Run run;
+  Json study = oscillator("work-precision");
+  study["repeats"] = 3;
+  study["errors"] = {"tip-l2"};
+  CHECK(run.go(study) == 0);
+  const StudyResults results = run.results();
+  const DerivedTable& work = table(results, "work_precision");
+  CHECK(work.rows.size() == 5);
+  for (const auto& row : work.rows) {
+    const double low = cell(work, row, "low").get<double>(), high = cell(work, row, "high").get<double>();
+    const double median = cell(work, row, "run_seconds").get<double>();
+    CHECK(low > 0);
+    CHECK(low <= median);
+    CHECK(median <= high);
+    CHECK(cell(work, row, "status") == "done");
+  }
+  // Nothing is timed twice.
+  CHECK(run.go(study) == 0);
+}
+
+TEST_CASE("a reference that does not apply is refused before anything runs, with the reason and what applies") {
+  Json study = oscillator("convergence");
+  study["reference"] = "event-driven";
+  const std::string told = problem_of(study);
+  CHECK(told.starts_with("/reference: no reference applies to this scene: event-driven: "));
+  CHECK(told.find("\"self\" applies") != std::string::npos);
+  study["reference"] = "slef";
+  CHECK(problem_of(study).find("did you mean \"self\"?") != std::string::npos);
+  study["reference"] = "exakt";
+  CHECK(problem_of(study).find("did you mean \"exact\"?") != std::string::npos);
+  study["reference"] = {"exact", "exact"};
+  CHECK(problem_of(study).starts_with("/reference/1: repeats"));
+  study["reference"] = "exact";
+  study["horizon"] = 3;
+  CHECK(problem_of(study).starts_with("/horizon: a horizon of 3 s lies beyond the duration of 2 s"));
+  study.erase("horizon");
+  study["errors"] = {"tip-linf", "tip-linff"};
+  CHECK(problem_of(study).find("did you mean \"tip-linf\"?") != std::string::npos);
+}
+
+TEST_CASE("a budget stops a case, which counts as failed and leaves a study of itself that runs") {
+  Run run;
+  Json study = oscillator("convergence");
+  study["kind"] = "trajectory";
+  study.erase("reference");
+  study["step"] = {1e-7};
+  study["budget"] = 0.01;
+  CHECK(run.go(study) == 3);
+  const StudyResults results = run.results();
+  REQUIRE(results.cases.size() == 1);
+  CHECK(results.cases[0].status == "failed");
+  CHECK(results.cases[0].reason.starts_with("the budget of 0.01 s was spent at step "));
+  const auto file = run.folder.path() / "failures" / (results.cases[0].id + ".json");
+  REQUIRE(std::filesystem::exists(file));
+  Json alone = minimal_study(results, results.cases[0]);
+  CHECK(alone["step"] == 1e-7);
+  CHECK(alone["methods"]["time"]["name"] == "moreau-jean");
+  const Study again = parse_study(alone.dump(), run.catalogue, run.registry);
+  CHECK(again.cases.size() == 1);
+}
+
+TEST_CASE("a measure that some method never has is left out of the effects, neither zero nor filled in") {
+  StudyResults results;
+  results.kind = "trajectory";
+  results.columns = {"mass", "time"};
+  for (const char* mass : {"consistent", "lumped"})
+    for (const char* time : {"newmark", "hht", "moreau-jean"}) {
+      CaseRecord record;
+      record.axes = {{"mass", mass}, {"time", time}};
+      record.status = "done";
+      const double value = static_cast<double>(results.cases.size());
+      record.measures = {{"impulse", 1 + value}};
+      if (std::string(time) != "hht") record.measures.emplace_back("work_of_damping", 2 + value * value);
+      // One that a single case lacks is filled in as before.
+      if (value != 4) record.measures.emplace_back("first_impact", 3 + value);
+      results.cases.push_back(std::move(record));
+    }
+  const auto measures = [&] {
+    derive_tables(results);
+    std::set<std::string> found;
+    for (const auto& row : table(results, "effects").rows) found.insert(row.front().get<std::string>());
+    return found;
+  };
+  CHECK(measures() == std::set<std::string>{"impulse", "first_impact"});
+  // A method of which no case came to its end says nothing of what it declares.
+  for (CaseRecord& record : results.cases)
+    if (record.axes[1].second == "hht") record.status = "failed";
+  CHECK(measures() == std::set<std::string>{"impulse", "first_impact", "work_of_damping"});
+}
+
+TEST_CASE("effects stand beside the cases wherever two choices vary, and sum to the whole") {
+  Run run;
+  Json study = oscillator("trajectory");
+  study.erase("reference");
+  study["methods"]["time"] = {{{"name", "moreau-jean"}, {"theta", {0.5, 1}}, {"restitution", 0.5}}};
+  CHECK(run.go(study) == 0);
+  const StudyResults results = run.results();
+  const DerivedTable& effects = table(results, "effects");
+  std::map<std::string, double> sums;
+  for (const auto& row : effects.rows)
+    sums[cell(effects, row, "measure").get<std::string>()] += cell(effects, row, "share").get<double>();
+  REQUIRE(sums.count("tip_displacement_end") == 1);
+  CHECK(sums["tip_displacement_end"] == Approx(1).epsilon(1e-9));
+}

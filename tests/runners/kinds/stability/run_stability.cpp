@@ -1,0 +1,320 @@
+// Kind `stability`, from the study's text to the rows of its tables.
+#include "runners/kinds/stability/run_stability.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <ricochet/loader/catalogue.hpp>
+#include <set>
+
+#include "runners/study/load_study.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+using Cell = nlohmann::ordered_json;
+
+Json study_text(const Json& mass, const Json& contact, const Json& time, double from, double to, int count) {
+  Json study = Json::parse(R"({
+    "name": "cells", "kind": "stability",
+    "scene": {
+      "structure": {"type": "beam", "length": 1, "section": {"type": "given", "EI": 1, "rhoS": 1}},
+      "stops": {"lower": -0.1, "upper": 0.1, "at": "tip"},
+      "initial": {"displacement": "0.05*x^2", "velocity": "-x"}
+    },
+    "mesh": {"elements": 5},
+    "duration": 1
+  })");
+  study["methods"] = {{"mass", mass}, {"contact", contact}, {"time", time}};
+  study["steps"] = {{"from", from}, {"to", to}, {"count", count}};
+  return study;
+}
+
+struct Result {
+  Study study;
+  CaseRecord record;
+
+  const DerivedTable& table(const std::string& name) const {
+    for (const DerivedTable& one : record.tables)
+      if (one.name == name) return one;
+    FAIL("no table " << name);
+    return record.tables.front();
+  }
+  bool has(const std::string& name) const {
+    return std::any_of(record.tables.begin(), record.tables.end(), [&](const auto& t) { return t.name == name; });
+  }
+  /// A column of the rows of one contact state.
+  std::vector<Cell> column(const std::string& name, const std::string& contact,
+                           const std::string& of = "stability") const {
+    const DerivedTable& from = table(of);
+    const auto index = [&](const std::string& wanted) {
+      return static_cast<std::size_t>(std::find(from.columns.begin(), from.columns.end(), wanted) -
+                                      from.columns.begin());
+    };
+    std::vector<Cell> out;
+    for (const auto& row : from.rows)
+      if (row.at(index("contact")) == contact) out.push_back(row.at(index(name)));
+    return out;
+  }
+  std::optional<double> measure(const std::string& name) const {
+    for (const auto& [key, value] : record.measures)
+      if (key == name) return value;
+    return std::nullopt;
+  }
+  bool noted(const std::string& part) const {
+    return std::any_of(record.notes.begin(), record.notes.end(),
+                       [&](const std::string& note) { return note.find(part) != std::string::npos; });
+  }
+};
+
+Registry& opened(const Json& text, Study& study) {
+  static Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  static Registry registry;
+  study = parse_study(text.dump(1), catalogue, registry);
+  return registry;
+}
+
+Result run(const Json& text) {
+  Result result;
+  const Registry& registry = opened(text, result.study);
+  REQUIRE(result.study.cases.size() == 1);
+  const std::atomic<bool> stop = false;
+  result.record = run_stability(result.study.cases.front(), registry, stop);
+  return result;
+}
+
+Json dumont_paoli(double beta) {
+  return {{"name", "newmark-dumont-paoli"}, {"beta", beta}};
+}
+
+/// The largest step of central differences on the unit beam of 5 consistent elements.
+constexpr double central_limit = 0.0334014193 / 25;
+
+}  // namespace
+
+TEST_CASE("central differences: the predicted limit, the observed one within 2 %, a status per cell") {
+  const Result result = run(study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 9));
+  CHECK(result.record.status == "done");
+  CHECK(result.record.reason.empty());
+  const DerivedTable& table = result.table("stability");
+  CHECK(table.columns == std::vector<std::string>{"step", "contact", "radius", "marginal", "limit_predicted",
+                                                  "limit_observed", "status", "reason"});
+  REQUIRE(table.rows.size() == 18);
+  for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
+  const auto steps = result.column("step", "open");
+  CHECK(steps.front() == 1e-4);
+  CHECK(steps.back() == 1e-2);
+  CHECK(steps[4].get<double>() == Approx(1e-3).epsilon(1e-12));
+
+  // Five elements miss the constant of a long beam by a little.
+  CHECK(result.column("limit_predicted", "open").front().get<double>() == Approx(central_limit).epsilon(2e-3));
+  const double predicted = result.column("limit_predicted", "open").front(),
+               observed = result.column("limit_observed", "open").front();
+  CHECK(observed == Approx(predicted).epsilon(0.02));
+  CHECK(*result.measure("agreement") == Approx(1).epsilon(0.02));
+  CHECK(*result.measure("limit_predicted") <= predicted);
+  CHECK(*result.measure("largest_radius") > 1);
+  const auto radius = result.column("radius", "open"), status = result.column("status", "open"),
+             reason = result.column("reason", "open");
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool beyond = steps[i].get<double>() > predicted;
+    CHECK((radius[i].get<double>() > 1 + 1e-6) == beyond);
+    CHECK(status[i] == (beyond ? "unstable" : "stable"));
+    CHECK(reason[i].get<std::string>().empty() != beyond);
+  }
+  CHECK_THAT(reason.back().get<std::string>(), Contains("mode 10 of 10") && Contains("observed: step"));
+  // Nothing in any row is not a number.
+  for (const DerivedTable& one : result.record.tables)
+    for (const auto& row : one.rows)
+      for (const Cell& cell : row)
+        if (cell.is_number()) CHECK(std::isfinite(cell.get<double>()));
+  CHECK(result.record.steps > 9 * 3000 / 2);
+  CHECK(result.noted("3.5e-4 per step"));
+  CHECK(result.noted("open: stable up to h ="));
+}
+
+TEST_CASE("marginal cells are named, refused ones say why") {
+  const Json singular = {{"name", "singular"}, {"velocity", "P1"}};
+  const Result quarter = run(study_text(singular, "signorini", dumont_paoli(0.25), 1e-4, 1e-2, 3));
+  for (const Cell& status : quarter.column("status", "open")) CHECK(status == "marginal");
+  for (const Cell& marginal : quarter.column("marginal", "open"))
+    CHECK(marginal == "double root −1 on the kernel of the mass (5 times): grows linearly");
+  for (const Cell& seen : quarter.column("behaviour", "open", "stability_observed")) CHECK(seen == "marginal");
+  for (const Cell& limit : quarter.column("limit_predicted", "open")) CHECK(limit.is_null());
+  CHECK_FALSE(quarter.measure("limit_predicted"));
+
+  const Result refused = run(study_text(singular, "signorini", dumont_paoli(0), 1e-4, 1e-2, 3));
+  CHECK(refused.record.status == "refused");
+  CHECK_THAT(refused.record.reason, Contains("beta"));
+  const auto rows = refused.column("status", "open");
+  REQUIRE(rows.size() == 3);
+  for (const Cell& status : rows) CHECK(status == "refused");
+  for (const Cell& reason : refused.column("reason", "open")) CHECK(reason == refused.record.reason);
+}
+
+TEST_CASE("without observation nothing is marched") {
+  Json text = study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 5);
+  text["observe"] = false;
+  const Result result = run(text);
+  CHECK(result.record.steps == 0);
+  CHECK_FALSE(result.has("stability_observed"));
+  for (const Cell& limit : result.column("limit_observed", "open")) CHECK(limit.is_null());
+  CHECK(*result.measure("limit_predicted") == Approx(central_limit).epsilon(2e-3));
+  CHECK_FALSE(result.measure("limit_observed"));
+  CHECK_FALSE(result.measure("agreement"));
+}
+
+TEST_CASE("what cannot touch has open cells only") {
+  const Result none = run(study_text("consistent", "none", dumont_paoli(0.5), 1e-4, 1e-2, 3));
+  CHECK(none.table("stability").rows.size() == 3);
+  CHECK(none.column("status", "closed").empty());
+  Json text = study_text("consistent", "signorini", dumont_paoli(0.5), 1e-4, 1e-2, 3);
+  text["scene"]["stops"] = {{"lower", nullptr}, {"upper", nullptr}, {"at", "tip"}};
+  CHECK(run(text).column("status", "closed").empty());
+}
+
+TEST_CASE("an explicit spring limits the step of the closed cells, and the scene blows up beyond") {
+  const double stiffness = 1e4;
+  const Json spring = {{"name", "penalty"}, {"stiffness", stiffness}, {"evaluation", "explicit"}};
+  const Result result = run(study_text("consistent", spring, dumont_paoli(0.25), 1e-4, 1e-1, 13));
+  const Cell predicted = result.column("limit_predicted", "closed").front(),
+             observed = result.column("limit_observed", "closed").front();
+  REQUIRE(predicted.is_number());
+  REQUIRE(observed.is_number());
+  CHECK(result.column("limit_predicted", "open").front().is_null());
+  // A contact of a few steps is no lasting one: impacts make energy somewhat below the limit, and growth needs a
+  // little more than the limit to show before the contact opens.
+  CHECK(observed.get<double>() > predicted.get<double>() / 2);
+  CHECK(observed.get<double>() < predicted.get<double>() * 2);
+  CHECK(result.column("status", "closed").back() == "unstable");
+  CHECK_THAT(result.column("reason", "closed").back().get<std::string>(), Contains("observed:"));
+  for (const Cell& impacts : result.column("impacts", "closed", "stability_observed")) CHECK(impacts.is_number());
+}
+
+TEST_CASE("where marches and spectrum disagree the row says so") {
+  // Newmark's rigid impacts make energy that no spectrum of a fixed contact set shows.
+  Json text = study_text("consistent", "signorini", {{"name", "newmark"}}, 1e-4, 1e-3, 3);
+  text["scene"]["stops"]["at"] = "nodes";
+  text["mesh"]["elements"] = 10;
+  text["duration"] = 10;
+  const Result result = run(text);
+  const auto status = result.column("status", "closed"), reason = result.column("reason", "closed");
+  const auto radius = result.column("radius", "closed");
+  bool seen = false;
+  for (std::size_t i = 0; i < status.size(); ++i) {
+    CHECK(radius[i].get<double>() <= 1 + 1e-6);
+    if (status[i] != "unstable") continue;
+    seen = true;
+    CHECK_THAT(reason[i].get<std::string>(), Contains("energy that nothing gave") && Contains("spectrum does not see"));
+  }
+  CHECK(seen);
+}
+
+namespace {
+
+/// Newmark's scheme, which after `honest` questions pushes away from where its elastic forces pull to: a free mass
+/// tells nothing of it.
+class Moody final : public TimeScheme {
+ public:
+  explicit Moody(const Registry& registry) : newmark_(registry.time("newmark")->make(newmark_parameters(registry))) {}
+  static inline long long questions = 0, honest = 0;
+
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    PlanOrRefusal made = newmark_->plan(h, facts);
+    if (++questions <= honest) return made;
+    for (Stage& stage : std::get<StepPlan>(made).stages) stage.history.at(0).K *= -1;
+    return made;
+  }
+
+ private:
+  static Parameters newmark_parameters(const Registry& registry) {
+    Parameters defaults;
+    for (const ParameterSpec& spec : registry.manual(Role::time, "newmark")->parameters)
+      if (spec.fallback) defaults.set(spec.key, *spec.fallback);
+    return defaults;
+  }
+  std::unique_ptr<TimeScheme> newmark_;
+};
+
+}  // namespace
+
+TEST_CASE("a march that is not what its spectrum says, without contact, is an error of the method") {
+  Json text = study_text("consistent", "none", {{"name", "newmark"}}, 1e-4, 1e-3, 3);
+  Study study;
+  Registry& registry = opened(text, study);
+  if (!registry.time("moody"))
+    registry.add_time({"moody", "A scheme.", "It changes its mind.", "none", {}},
+                      [&](const Parameters&) { return std::make_unique<Moody>(registry); });
+  text["methods"]["time"] = "moody";
+  Moody::honest = 1000000;
+  Moody::questions = 0;
+  text["observe"] = false;
+  CHECK_FALSE(run(text).measure("contradictions"));
+  // The same questions first, then those of the marches.
+  Moody::honest = Moody::questions;
+  Moody::questions = 0;
+  text["observe"] = true;
+  const Result result = run(text);
+  CHECK(result.record.status == "done");
+  CHECK(*result.measure("largest_radius") == Approx(1).epsilon(1e-6));
+  REQUIRE(result.measure("contradictions"));
+  CHECK(*result.measure("contradictions") == 3);
+  CHECK(result.noted("spectrum and march disagree without contact at 3 of 3 steps, first at h = 0.0001 s"));
+  // A plan that carries a free mass grows ever less per step as h → 0: somewhere below it is not seen any more.
+  CHECK((result.noted("open: unstable") || result.noted("open: observed up to h")));
+
+  Moody::honest = 1000000;
+  const Result sound = run(text);
+  CHECK_FALSE(sound.measure("contradictions"));
+  CHECK_FALSE(sound.noted("unstable at every step"));
+}
+
+TEST_CASE("oscillators and free masses have their cells") {
+  for (const double stiffness : {0.0, 100.0}) {
+    Json text = Json::parse(R"({
+      "name": "ball", "kind": "stability",
+      "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 0},
+                "stops": {"lower": 0, "at": "tip"}, "load": -9.81,
+                "initial": {"displacement": 1, "velocity": 0}},
+      "methods": {"mass": "consistent", "contact": "signorini", "time": "moreau-jean"},
+      "steps": {"from": 1e-3, "to": 1e-1, "count": 3}
+    })");
+    text["scene"]["structure"]["stiffness"] = stiffness;
+    const Result result = run(text);
+    CHECK(result.record.status == "done");
+    for (const std::string contact : {"open", "closed"})
+      for (const Cell& status : result.column("status", contact)) {
+        INFO(stiffness << " " << contact);
+        CHECK((status == "stable" || status == "marginal"));
+      }
+  }
+}
+
+TEST_CASE("a case stops when asked to, and at its budget") {
+  const Json text = study_text("consistent", "signorini", dumont_paoli(0.5), 1e-7, 1e-2, 30);
+  Study study;
+  const Registry& registry = opened(text, study);
+  const std::atomic<bool> stop = true;
+  CHECK_THROWS_AS(run_stability(study.cases.front(), registry, stop), Interrupted);
+
+  Json short_of_time = text;
+  short_of_time["budget"] = 0.05;
+  const Result result = run(short_of_time);
+  CHECK(result.record.status == "done");
+  CHECK(result.noted("budget of 0.05 s"));
+  CHECK(result.table("stability").rows.size() == 60);
+  CHECK_THAT(result.column("reason", "closed").back().get<std::string>(), Contains("budget"));
+  for (const Cell& status : result.column("status", "closed")) CHECK_FALSE(status.get<std::string>().empty());
+}
+
+TEST_CASE("a plan of a stability case counts its marches") {
+  Study study;
+  const Registry& registry = opened(study_text("consistent", "signorini", dumont_paoli(0.5), 1e-4, 1e-2, 3), study);
+  const CasePlan plan = plan_stability(study.cases.front(), registry);
+  CHECK(plan.refusal.empty());
+  // Three free marches of 3000 steps, and 1 s at 1e-4, 1e-3 and 1e-2 (200 at least).
+  CHECK(plan.steps == 9000 + 10000 + 1000 + 200);
+  CHECK(plan.predicted_seconds > 0);
+}
