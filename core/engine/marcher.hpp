@@ -4,7 +4,7 @@
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/step_observer.hpp>
-#include <ricochet/engine/support_motion.hpp>
+#include <ricochet/engine/clamp_motion.hpp>
 #include <string>
 #include <vector>
 
@@ -135,7 +135,7 @@ class Marcher {
   Block combination_;  // Σ β^K_j x_j of the stage to come
   const StageProgram* combined_for_ = nullptr;
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
-  SupportMotion clamp_;
+  ClampMotion clamp_;
   Block scale_, offset_, lower_, upper_;
   Block memory_;  // of the law, points × T for each number that it keeps
   std::vector<int> touched_;

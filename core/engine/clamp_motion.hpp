@@ -6,9 +6,9 @@ namespace ricochet {
 
 /// The clamp's motion φ = A sin(ωt + ψ) for all lanes of a block, each with its own A and ψ. Sine and cosine are asked
 /// for once per step, whatever the number of lanes and of time levels.
-class SupportMotion {
+class ClampMotion {
  public:
-  SupportMotion(double pulsation, int width);
+  ClampMotion(double pulsation, int width);
 
   /// A (m) and ψ (rad) of a lane; those of a lane that was never placed are zero.
   void place(int lane, double amplitude, double phase);
