@@ -4,12 +4,6 @@
 namespace ricochet {
 namespace {
 
-Eigen::MatrixXd dense_mass(const Inertia& inertia) {
-  if (!inertia.factored()) return Eigen::MatrixXd(inertia.mass);
-  const Eigen::MatrixXd B(inertia.coupling), Cv(inertia.velocity_mass);
-  return B.transpose() * Cv.ldlt().solve(B);
-}
-
 SparseMatrix diagonal(const Eigen::VectorXd& entries) {
   SparseMatrix matrix(entries.size(), entries.size());
   for (int i = 0; i < entries.size(); ++i) matrix.insert(i, i) = entries[i];

@@ -112,6 +112,11 @@ std::set<std::string> method_names() {
   return names;
 }
 
+// "reference" of "plugins/reference/exact/exact.cpp".
+std::string role_of(const std::string& plugin) {
+  return (++fs::path(plugin).begin())->string();
+}
+
 // Folder "core/contract" or "runners/study" of an include, "" for libraries.
 std::string layer_of(const std::string& include) {
   for (const auto& [prefix, layer] :
@@ -145,12 +150,14 @@ TEST_CASE("plugins include the contract, algebra helpers, their own headers, the
   for (const Source& source : sources("plugins"))
     for (const std::string& include : includes(source)) {
       INFO(source.name << " includes " << include);
-      // A header of the same folder, spelled without one.
-      const bool own = include[0] == '"' && include.find('/') == std::string::npos;
-      const fs::path beside = own ? (root / source.name).parent_path() / include.substr(1, include.size() - 2) : "";
+      // A header of the method's own folder, or one that methods of its role share (plugins/ROLE).
+      const bool bare = include[0] == '"' && include.find('/') == std::string::npos;
+      const std::string header = include.substr(1, include.size() - 2);
+      const fs::path folder = (root / source.name).parent_path(), role = root / "plugins" / role_of(source.name);
+      const bool own = bare && (fs::exists(folder / header) || fs::exists(role / header));
       const bool standard = include[0] == '<' && include.find_first_of("/.") == std::string::npos;
       CHECK((standard || include.starts_with("<ricochet/contract/") || include.starts_with("<ricochet/algebra/") ||
-             include.starts_with("<Eigen/") || include.starts_with("<fmt/") || fs::exists(beside)));
+             include.starts_with("<Eigen/") || include.starts_with("<fmt/") || own));
     }
 }
 

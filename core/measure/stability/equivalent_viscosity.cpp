@@ -6,7 +6,7 @@
 #include <complex>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
-#include <ricochet/measure/stability/dense_modes.hpp>
+#include <ricochet/measure/stability/structure_modes.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 #include <vector>

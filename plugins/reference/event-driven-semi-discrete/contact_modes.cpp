@@ -1,153 +1,18 @@
-#pragma once
+#include "contact_modes.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <vector>
+#include <algorithm>
+#include <cmath>
 
-#include "linear_mode.hpp"
+#include "pencil.hpp"
 
-/// \file
-/// The semi-discrete problem while its contact set stays as it is: linear, with constant coefficients, hence a sum of
-/// modes. One ContactModes per set; nothing in it depends on when or how the set is entered.
 namespace ricochet::reference {
+namespace {
 
-/// Rows of signals: column k multiplies e^{σ_k t}, and the real part is meant.
-using Signals = Eigen::MatrixXcd;
-
-/// Per contact point the sign of its force: +1 on its lower stop, −1 on its upper stop, 0 open.
-using ContactSet = std::vector<signed char>;
-
-/// M w'' + C w' + K w = F + Hᵀp, lower ≤ H w ≤ upper, C = αK + ηM; everything that moves is a signal.
-struct LinearStructure {
-  Eigen::MatrixXd mass, stiffness;  ///< n × n, M may be singular
-  Eigen::MatrixXd contact;          ///< H, m × n
-  double alpha = 0, eta = 0;        ///< s, 1/s
-  double spring = 0;                ///< κ of a compliant stop, N/m; 0: rigid
-  std::vector<Complex> exponents;   ///< σ, the first is 0
-  Signals force;                    ///< F, n rows
-  Signals lower, upper;             ///< m rows; ±∞ in the first column where absent
-  Eigen::VectorXd scale;            ///< of the dofs, so that K has a unit diagonal
-  double shift = 0;                 ///< s of K + sM, positive definite; 0 where K is
-
-  Eigen::Index dofs() const { return mass.rows(); }
-  Eigen::Index points() const { return contact.rows(); }
-  Eigen::VectorXcd sigma() const {
-    return Eigen::Map<const Eigen::VectorXcd>(exponents.data(), static_cast<Eigen::Index>(exponents.size()));
-  }
-  Signals rate(const Signals& of) const { return of * sigma().asDiagonal(); }
-  Eigen::MatrixXd damping() const { return alpha * stiffness + eta * mass; }
-  const Signals& bound(int sign) const { return sign > 0 ? lower : upper; }
-
-  /// Chooses scale and shift.
-  void prepare();
-};
-
-/// The modes of (M, K) that keep E w = 0: M-normalised shapes with their λ, and the massless ones, K-normalised. All
-/// are K- and M-orthogonal. Found as M x = μ K x, which keeps the digits of the slow ones.
-struct Pencil {
-  Eigen::MatrixXd shapes;    ///< n × r
-  Eigen::VectorXd squares;   ///< λ, r
-  Eigen::MatrixXd massless;  ///< n × k
-};
-
-inline Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness,
-                     const Eigen::MatrixXd& closed) {
-  const Eigen::Index n = structure.dofs(), a = closed.rows();
-  const Eigen::MatrixXd whole = stiffness + structure.shift * structure.mass;
-  // Springs may be far stiffer than the structure: the dof they act on is scaled by them.
-  const Eigen::VectorXd scale = whole.diagonal().cwiseSqrt().cwiseInverse();
-  const auto S = scale.asDiagonal();
-  const Eigen::MatrixXd M = S * structure.mass * S, K = S * whole * S;
-  Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(n, n);
-  if (a > 0) {
-    const Eigen::MatrixXd across = (closed * S).transpose();
-    kept = Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(across).householderQ()).rightCols(n - a);
-  }
-  Pencil result;
-  result.shapes.resize(n, 0);
-  result.massless.resize(n, 0);
-  if (kept.cols() == 0) return result;
-  // The kernel is judged where springs have no part in it.
-  const Eigen::VectorXd ratio = scale.cwiseQuotient(structure.scale);
-  const Eigen::MatrixXd plain = Eigen::HouseholderQR<Eigen::MatrixXd>(ratio.asDiagonal() * kept).householderQ() *
-                                Eigen::MatrixXd::Identity(n, kept.cols());
-  const auto P = structure.scale.asDiagonal();
-  const Eigen::MatrixXd light = P * structure.mass * P;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> inertia(plain.transpose() * light * plain);
-  const Eigen::Index k = (inertia.eigenvalues().array() <= 1e-11 * light.diagonal().maxCoeff()).count();
-  if (k > 0) {
-    const Eigen::MatrixXd Z = ratio.cwiseInverse().asDiagonal() * (plain * inertia.eigenvectors().leftCols(k));
-    const Eigen::LLT<Eigen::MatrixXd> normal(Z.transpose() * K * Z);
-    const Eigen::MatrixXd massless = normal.matrixL().solve(Z.transpose()).transpose();
-    result.massless = S * massless;
-    const Eigen::MatrixXd pulled = kept.transpose() * (K * massless);
-    const Eigen::MatrixXd turned = Eigen::HouseholderQR<Eigen::MatrixXd>(pulled).householderQ();
-    kept = (kept * turned.rightCols(kept.cols() - k)).eval();
-  }
-  if (kept.cols() == 0) return result;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> moving(kept.transpose() * M * kept,
-                                                                         kept.transpose() * K * kept);
-  const Eigen::VectorXd mu = moving.eigenvalues();
-  result.shapes = S * (kept * (moving.eigenvectors() * mu.cwiseSqrt().cwiseInverse().asDiagonal()));
-  result.squares = mu.cwiseInverse().array() - structure.shift;
-  for (double& square : result.squares)
-    if (square < 1e-9 * structure.shift) square = 0;
-  return result;
-}
-
-inline void LinearStructure::prepare() {
-  const auto rescale = [&](double by) {
-    shift = by;
-    scale = (stiffness + by * mass).diagonal().cwiseSqrt().cwiseInverse();
-  };
-  const double total = std::max(stiffness.trace(), 0.0);
-  if (stiffness.diagonal().minCoeff() > 0) {
-    rescale(0);
-    const Eigen::MatrixXd unit = scale.asDiagonal() * stiffness * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread(unit, Eigen::EigenvaluesOnly);
-    if (spread.eigenvalues()[0] > 1e-12) return;
-  }
-  rescale(total > 0 ? total / mass.trace() : 1);
-  // Rigid motions are known now; the slowest other mode is a better shift than the average.
-  double slowest = shift;
-  for (const double square : pencil(*this, stiffness, Eigen::MatrixXd(0, dofs())).squares)
-    if (square > 1e-8 * shift) slowest = std::min(slowest, square);
-  rescale(slowest);
-}
-
-/// What ends a phase when it falls below zero: a gap of an open point, the force or the depth of a closed one.
-struct Watch {
-  int point = 0;
-  int sign = 0;         ///< of the force that acts there, or would
-  bool closed = false;  ///< false: the gap
-};
-
-/// w = X q + Re(D e),  q in three kinds: oscillators q'' + 2δq' + λq = Re(f e), first-order modes z' = s z + g e (real
-/// ones, or complex ones of which real and imaginary part take a column each), and what follows at once, in D.
-struct ContactModes {
-  Eigen::MatrixXd shapes;                      ///< X, n × columns
-  Signals offset;                              ///< D, n rows
-  Eigen::VectorXd rates;                       ///< the fastest rate of each column, 1/s
-  std::vector<LinearMode> oscillators;         ///< the first columns
-  Signals oscillator_force;                    ///< f
-  Eigen::MatrixXd oscillator_reader;           ///< XᵀM: q = XᵀM(w − D)
-  std::vector<Complex> relaxations;            ///< s
-  std::vector<bool> single;                    ///< of each s: real, one column
-  Eigen::MatrixXcd relaxation_force;           ///< g; columns: 0, σ₁, −σ₁, σ₂, −σ₂, …
-  Eigen::MatrixXcd place_reader, rate_reader;  ///< z = P(w − D) + R(w' − D')
-  std::vector<Watch> watches;
-  Eigen::MatrixXd watch_place, watch_rate;  ///< value = A q + B q' + Re(c e)
-  Signals watch_signal;                     ///< c
-  Eigen::VectorXd watch_steady;             ///< bound of the second derivative of what harmonic forces impose
-
-  Eigen::Index columns() const { return shapes.cols(); }
-};
-
-namespace detail {
-
-inline Eigen::MatrixXd closed_rows(const LinearStructure& structure, const ContactSet& set, Signals& bounds,
-                                   std::vector<Watch>& closed) {
+Eigen::MatrixXd closed_rows(const LinearStructure& structure, const ContactSet& set, Signals& bounds,
+                            std::vector<Watch>& closed) {
   for (std::size_t i = 0; i < set.size(); ++i)
     if (set[i] != 0) closed.push_back({static_cast<int>(i), set[i], true});
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(closed.size()), structure.dofs());
@@ -161,7 +26,7 @@ inline Eigen::MatrixXd closed_rows(const LinearStructure& structure, const Conta
 }
 
 /// Re(g e^{σt}) = ½ g e^{σt} + ½ ḡ e^{σ̄t}
-inline Eigen::MatrixXcd two_sided(const Eigen::MatrixXcd& reader, const Signals& force) {
+Eigen::MatrixXcd two_sided(const Eigen::MatrixXcd& reader, const Signals& force) {
   Eigen::MatrixXcd result(reader.rows(), 2 * force.cols() - 1);
   result.col(0) = reader * force.col(0);
   for (Eigen::Index k = 1; k < force.cols(); ++k) {
@@ -172,7 +37,7 @@ inline Eigen::MatrixXcd two_sided(const Eigen::MatrixXcd& reader, const Signals&
 }
 
 /// Σ|σ|²·(size of the steady response of each watched function), resonant modes left out.
-inline void finish_watches(const LinearStructure& structure, ContactModes& modes) {
+void finish_watches(const LinearStructure& structure, ContactModes& modes) {
   const Eigen::VectorXcd sigma = structure.sigma();
   const auto r = static_cast<Eigen::Index>(modes.oscillators.size());
   modes.watch_steady.setZero(modes.watch_place.rows());
@@ -405,15 +270,15 @@ class Builder {
   ContactModes modes_;
 };
 
-}  // namespace detail
+}  // namespace
 
-inline ContactModes contact_modes(const LinearStructure& structure, const ContactSet& set) {
+ContactModes contact_modes(const LinearStructure& structure, const ContactSet& set) {
   const bool touched = std::any_of(set.begin(), set.end(), [](signed char sign) { return sign != 0; });
-  detail::Builder builder(structure, set);
+  Builder builder(structure, set);
   ContactModes modes = structure.spring == 0            ? builder.rigid()
                        : touched && structure.alpha > 0 ? builder.damped_springs()
                                                         : builder.springs();
-  detail::finish_watches(structure, modes);
+  finish_watches(structure, modes);
   return modes;
 }
 
