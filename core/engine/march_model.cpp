@@ -1,4 +1,4 @@
-#include <Eigen/Eigenvalues>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/engine/march_model.hpp>
 
 namespace ricochet {
@@ -48,9 +48,9 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
     return;
   }
   const Eigen::MatrixXd K(p.stiffness), M = dense_mass(p.inertia);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M, K);
-  modes_ = eigen.eigenvectors();
-  Eigen::VectorXd mu = eigen.eigenvalues();
+  const SymmetricModes modes = symmetric_modes(M, K);
+  modes_ = modes.vectors;
+  Eigen::VectorXd mu = modes.values;
   for (int i = 0; i < p.inertia.kernel_dimension; ++i) mu[i] = 0;
   stiffness_ = diagonal(Eigen::VectorXd::Ones(rows_));
   inertia_.mass = diagonal(mu);

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/structure_modes.hpp>
 
@@ -24,9 +24,9 @@ StructureModes::StructureModes(const MatrixXd& M, const MatrixXd& K, int kernel,
   const Eigen::LLT<MatrixXd> regular_mass(M);
   if (kernel == 0 && regular_mass.info() == Eigen::Success) {
     // The fast modes, which limit steps, are the accurate ones here.
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K, M);
-    shapes = eigen.eigenvectors();
-    stiffness = eigen.eigenvalues().cwiseMax(0.0);
+    const SymmetricModes eigen = symmetric_modes(K, M);
+    shapes = eigen.vectors;
+    stiffness = eigen.values.cwiseMax(0.0);
     if (free)
       for (double& k : stiffness)
         if (k < 1e-11 * stiffness.maxCoeff()) k = 0;
@@ -36,9 +36,9 @@ StructureModes::StructureModes(const MatrixXd& M, const MatrixXd& K, int kernel,
   }
   // (K + σM) is definite whenever M and K share no kernel.
   const double shift = free ? std::max(K.trace(), 1e-300) / M.trace() / static_cast<double>(n * n) : 0.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(M, K + shift * M);
-  shapes = eigen.eigenvectors().rowwise().reverse();
-  mass = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  const SymmetricModes eigen = symmetric_modes(M, K + shift * M);
+  shapes = eigen.vectors.rowwise().reverse();
+  mass = eigen.values.reverse().cwiseMax(0.0);
   regular = static_cast<int>(n) - kernel;
   mass.tail(kernel).setZero();
   stiffness = VectorXd::Ones(n) - shift * mass;

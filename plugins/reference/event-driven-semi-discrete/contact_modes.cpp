@@ -1,10 +1,10 @@
 #include "contact_modes.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 #include "pencil.hpp"
 
@@ -104,8 +104,8 @@ class Builder {
     B.topRightCorner(r, r).diagonal() = -unit.cwiseInverse();
     B.bottomLeftCorner(r, r).diagonal() = unit.cwiseInverse();
 
-    const Eigen::EigenSolver<Eigen::MatrixXd> eigen(B);
-    const Eigen::MatrixXcd vectors = eigen.eigenvectors();
+    const GeneralModes eigen = general_modes(B);
+    const Eigen::MatrixXcd& vectors = eigen.vectors;
     const Eigen::MatrixXcd back = Eigen::PartialPivLU<Eigen::MatrixXcd>(vectors).inverse();
     const Eigen::MatrixXcd displacement = shapes * vectors.topRows(r + k);
     const Eigen::MatrixXd placed =
@@ -119,9 +119,9 @@ class Builder {
     std::vector<Eigen::VectorXd> columns;
     std::vector<Eigen::Index> kept;
     for (Eigen::Index j = 0; j < size; ++j) {
-      if (eigen.eigenvalues()[j].imag() > 0) continue;
+      if (eigen.values[j].imag() > 0) continue;
       kept.push_back(j);
-      Complex s = 1.0 / eigen.eigenvalues()[j];
+      Complex s = 1.0 / eigen.values[j];
       // Nothing here grows; the fastest rates are round-off.
       if (s.real() > 0) s = {-s.real(), s.imag()};
       modes_.relaxations.push_back(s);

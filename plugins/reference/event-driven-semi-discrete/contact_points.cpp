@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 #include "pencil.hpp"
 #include "stopped.hpp"
@@ -26,9 +26,7 @@ ContactPoints::ContactPoints(const LinearStructure& structure, const ContactMode
   const Eigen::MatrixXd soft = across.transpose() * K.llt().solve(across);
   const Eigen::VectorXd unit = soft.diagonal().cwiseSqrt().cwiseInverse();
   const auto smallest = [&](const Eigen::MatrixXd& W) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(unit.asDiagonal() * W * unit.asDiagonal(),
-                                                          Eigen::EigenvaluesOnly)
-        .eigenvalues()[0];
+    return symmetric_modes(unit.asDiagonal() * W * unit.asDiagonal(), EigenVectors::none).values[0];
   };
   if (rigid && smallest(soft) < 1e-12)
     throw Stopped{"two contact points coincide, and rigid stops share their force in no unique way: keep one"};

@@ -1,7 +1,7 @@
 #include "linear_structure.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 #include "pencil.hpp"
 
@@ -16,8 +16,7 @@ void LinearStructure::prepare() {
   if (stiffness.diagonal().minCoeff() > 0) {
     rescale(0);
     const Eigen::MatrixXd unit = scale.asDiagonal() * stiffness * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread(unit, Eigen::EigenvaluesOnly);
-    if (spread.eigenvalues()[0] > 1e-12) return;
+    if (symmetric_modes(unit, EigenVectors::none).values[0] > 1e-12) return;
   }
   rescale(total > 0 ? total / mass.trace() : 1);
   // Rigid motions are known now; the slowest other mode is a better shift than the average.

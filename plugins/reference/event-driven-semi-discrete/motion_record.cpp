@@ -1,18 +1,18 @@
 #include "motion_record.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 namespace ricochet::reference {
 namespace {
 
 // R with xᵀA x = |R x|², A positive semidefinite: a small energy is not the difference of large ones.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& A, const Eigen::VectorXd& scale) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * A * scale.asDiagonal());
-  const double largest = eigen.eigenvalues().size() ? eigen.eigenvalues().tail(1)[0] : 0;
+  const SymmetricModes eigen = symmetric_modes(scale.asDiagonal() * A * scale.asDiagonal());
+  const double largest = eigen.values.size() ? eigen.values.tail(1)[0] : 0;
   const Eigen::VectorXd roots =
-      (eigen.eigenvalues().array() < 1e-14 * largest).select(0, eigen.eigenvalues().cwiseMax(0).cwiseSqrt());
-  return roots.asDiagonal() * eigen.eigenvectors().transpose() * scale.cwiseInverse().asDiagonal();
+      (eigen.values.array() < 1e-14 * largest).select(0, eigen.values.cwiseMax(0).cwiseSqrt());
+  return roots.asDiagonal() * eigen.vectors.transpose() * scale.cwiseInverse().asDiagonal();
 }
 
 }  // namespace

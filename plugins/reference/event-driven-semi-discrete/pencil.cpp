@@ -1,8 +1,8 @@
 #include "pencil.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 namespace ricochet::reference {
 
@@ -28,10 +28,10 @@ Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness
                                 Eigen::MatrixXd::Identity(n, kept.cols());
   const auto P = structure.scale.asDiagonal();
   const Eigen::MatrixXd light = P * structure.mass * P;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> inertia(plain.transpose() * light * plain);
-  const Eigen::Index k = (inertia.eigenvalues().array() <= 1e-11 * light.diagonal().maxCoeff()).count();
+  const SymmetricModes inertia = symmetric_modes(plain.transpose() * light * plain);
+  const Eigen::Index k = (inertia.values.array() <= 1e-11 * light.diagonal().maxCoeff()).count();
   if (k > 0) {
-    const Eigen::MatrixXd Z = ratio.cwiseInverse().asDiagonal() * (plain * inertia.eigenvectors().leftCols(k));
+    const Eigen::MatrixXd Z = ratio.cwiseInverse().asDiagonal() * (plain * inertia.vectors.leftCols(k));
     const Eigen::LLT<Eigen::MatrixXd> normal(Z.transpose() * K * Z);
     const Eigen::MatrixXd massless = normal.matrixL().solve(Z.transpose()).transpose();
     result.massless = S * massless;
@@ -40,10 +40,9 @@ Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness
     kept = (kept * turned.rightCols(kept.cols() - k)).eval();
   }
   if (kept.cols() == 0) return result;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> moving(kept.transpose() * M * kept,
-                                                                         kept.transpose() * K * kept);
-  const Eigen::VectorXd mu = moving.eigenvalues();
-  result.shapes = S * (kept * (moving.eigenvectors() * mu.cwiseSqrt().cwiseInverse().asDiagonal()));
+  const SymmetricModes moving = symmetric_modes(kept.transpose() * M * kept, kept.transpose() * K * kept);
+  const Eigen::VectorXd mu = moving.values;
+  result.shapes = S * (kept * (moving.vectors * mu.cwiseSqrt().cwiseInverse().asDiagonal()));
   result.squares = mu.cwiseInverse().array() - structure.shift;
   for (double& square : result.squares)
     if (square < 1e-9 * structure.shift) square = 0;
