@@ -1,8 +1,8 @@
 // What every plugin must satisfy, ours and those of RICOCHET_PLUGIN_PATH: it is enough to be registered. Each plugin
 // runs with its defaults, and with the value of this table where a parameter has none.
-#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/scene/assembly.hpp>
 
+#include "tests/amplification_roots.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;

@@ -1,6 +1,7 @@
 // What a plan does to one mode, against the closed forms of its scheme.
 #include <ricochet/measure/stability/amplification.hpp>
 
+#include "tests/amplification_roots.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
