@@ -15,13 +15,10 @@ std::string cell_text(const Json& value) {
   return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-// Measures whose spread says nothing of the motion.
+// A measure that no kind declares is taken for one of the motion.
 bool of_the_motion(const std::string& measure) {
-  static const std::set<std::string> others = {
-      "microseconds_per_step", "timed_seconds", "timed_low",         "timed_high",
-      "declared_order",        "horizon",       "reference_of_mesh", "exponent_seconds",
-      "lane_steps_per_second", "orbits",        "contradictions"};
-  return others.count(measure) == 0 && !measure.starts_with("floor.");
+  const MeasureInfo* info = measure_info(measure);
+  return !info || info->of == MeasureInfo::Of::motion;
 }
 
 // Whether the cases of some level that were run to their end never have this measure while those of another do: then

@@ -9,10 +9,7 @@ namespace ricochet {
 namespace {
 
 std::vector<std::string> measure_columns(const StudyResults& results) {
-  std::vector<std::string> columns;
-  // The measures of a trajectory stand in every trajectory's table; other kinds show what they have.
-  if (results.kind == "trajectory")
-    for (const MeasureInfo& measure : trajectory_measures()) columns.emplace_back(measure.name);
+  std::vector<std::string> columns = standing_measures(results.kind);
   for (const CaseRecord& record : results.cases)
     for (const auto& measure : record.measures)
       if (std::find(columns.begin(), columns.end(), measure.first) == columns.end()) columns.push_back(measure.first);
@@ -202,9 +199,8 @@ void write_numbers_csv(const StudyResults& results, const std::string& name,
 
 std::string measures_csv() {
   std::string table = csv_line({"measure", "unit", "text"});
-  for (const auto* list : {&trajectory_measures(), &further_measures()})
-    for (const MeasureInfo& measure : *list)
-      table += csv_line({measure.name, csv_field(measure.unit), csv_field(measure.text)});
+  for (const MeasureInfo& measure : all_measures())
+    table += csv_line({measure.name, csv_field(measure.unit), csv_field(measure.text)});
   return table;
 }
 

@@ -10,8 +10,8 @@
 #include <ricochet/measure/orbits/zero_one_test.hpp>
 #include <span>
 
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "runners/command/stored_case.hpp"
+#include "runners/kinds/sweep/stored_case.hpp"
 
 #include <fmt/format.h>
 
@@ -31,18 +31,18 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
   if (found.size() == 1) return *found.front();
   std::vector<std::string> named;
   for (const CaseRecord* record : found) named.push_back(record->id);
-  if (!found.empty()) throw UsageError(fmt::format("the case \"{}\" is one of {}", id, fmt::join(named, ", ")));
+  if (!found.empty()) throw PointRefused(fmt::format("the case \"{}\" is one of {}", id, fmt::join(named, ", ")));
   const std::string nearest = nearest_name(id, ids);
-  throw UsageError(fmt::format("there is no case \"{}\"{}; its cases are {}", id,
-                               nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(ids, ", ")));
+  throw PointRefused(fmt::format("there is no case \"{}\"{}; its cases are {}", id,
+                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(ids, ", ")));
 }
 
 StoredRows::StoredRows(const CaseRecord& record, const std::string& name) {
   for (const DerivedTable& table : record.tables)
     if (table.name == name) table_ = &table;
   if (!table_)
-    throw UsageError(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
-                                 record.reason.empty() ? "" : ", " + record.reason));
+    throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
+                                   record.reason.empty() ? "" : ", " + record.reason));
 }
 
 nlohmann::ordered_json StoredRows::cell(std::size_t row, const std::string& column) const {
@@ -60,15 +60,14 @@ std::string StoredRows::regime(std::size_t row) const {
   return name == "periodic" && !period.empty() ? name + " " + period : name;
 }
 
-StoredStudy::StoredStudy(const StudyResults& results, const Arguments& arguments)
-    : catalogue(standard_catalogue(arguments.plugins)),
-      study(parse_study(results.study.dump(), catalogue, registry)) {}
+StoredStudy::StoredStudy(const StudyResults& results, const PointRequest& asked)
+    : catalogue(standard_catalogue(asked.plugins)), study(parse_study(results.study.dump(), catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {
   const auto found =
       std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
   if (found == study.cases.end())
-    throw UsageError(fmt::format("the stored study has no case {} any more: run it again", id));
+    throw PointRefused(fmt::format("the stored study has no case {} any more: run it again", id));
   return *found;
 }
 
@@ -81,9 +80,8 @@ void SamplePrinter::operator()(const PointSample& sample) {
        << '\n';
 }
 
-SampleCount wanted_count(const Arguments& arguments) {
-  return {arguments.periods > 0 ? arguments.periods : default_periods,
-          arguments.samples > 0 ? arguments.samples : default_samples};
+SampleCount wanted_count(const PointRequest& asked) {
+  return {asked.periods > 0 ? asked.periods : default_periods, asked.samples > 0 ? asked.samples : default_samples};
 }
 
 std::string comparison_text(std::size_t equal, std::size_t compared) {

@@ -7,9 +7,6 @@
 /// What the kinds that go through a parameter add to a study: settings, and what they refuse before anything runs.
 namespace ricochet {
 
-/// Whether a (checked) study goes through a parameter in steps per forcing period.
-bool is_sweep(const Json& resolved);
-
 /// The settings of every case, complete and in a fixed order:
 ///     bifurcation: parameter {pointer, values}, start, transient, keep, section, phase, exponents, refine, budget
 ///     basins:      axes [{pointer, values}, {pointer, values}], transient, keep, section, phase, exponents (0),

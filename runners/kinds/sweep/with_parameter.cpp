@@ -1,4 +1,4 @@
-#include "runners/study/with_parameter.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 
 #include <fmt/format.h>
 

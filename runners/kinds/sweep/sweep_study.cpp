@@ -1,4 +1,4 @@
-#include "runners/study/sweep.hpp"
+#include "runners/kinds/sweep/sweep_study.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <functional>
 #include <set>
 
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/json_text.hpp"
-#include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
 namespace {
@@ -162,10 +162,6 @@ void check_memory(const Json& settings, double cases) {
 }
 
 }  // namespace
-
-bool is_sweep(const Json& resolved) {
-  return resolved.contains("steps_per_period");
-}
 
 Json sweep_settings(const Json& resolved) {
   Json settings = Json::object();

@@ -1,4 +1,4 @@
-#include "runners/run/minimal_study.hpp"
+#include "runners/kinds/trajectory/minimal_study.hpp"
 
 #include <fmt/format.h>
 

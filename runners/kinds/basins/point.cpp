@@ -1,3 +1,5 @@
+#include "runners/kinds/basins/point.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,10 +7,9 @@
 #include <functional>
 #include <iostream>
 
-#include "runners/command/command.hpp"
-#include "runners/command/stored_case.hpp"
 #include "runners/kinds/basins/cell_ends.hpp"
-#include "runners/study/with_parameter.hpp"
+#include "runners/kinds/sweep/stored_case.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
 namespace {
@@ -22,14 +23,14 @@ std::pair<double, double> two_numbers(const std::string& text) {
     if (const auto second = std::from_chars(first.ptr + 1, end, out.second);
         second.ec == std::errc() && second.ptr == end)
       return out;
-  throw UsageError(fmt::format("--cell \"{}\": expected two numbers X,Y, the values of the study's axes", text));
+  throw PointRefused(fmt::format("--cell \"{}\": expected two numbers X,Y, the values of the study's axes", text));
 }
 
 std::size_t find_place(const GridAxis& axis, double wanted) {
   for (std::size_t k = 0; k < axis.values.size(); ++k)
     if (is_value(axis.values[k], wanted)) return k;
-  throw UsageError(fmt::format("no cell was marched at {} {}; the nearest values are {}", axis.pointer, wanted,
-                               nearest_values(axis.values, wanted)));
+  throw PointRefused(fmt::format("no cell was marched at {} {}; the nearest values are {}", axis.pointer, wanted,
+                                 nearest_values(axis.values, wanted)));
 }
 
 // The strobed points that the run stored for a row of cells.csv.
@@ -49,12 +50,12 @@ std::string regime_text(const CellEnd& end) {
 
 }  // namespace
 
-int print_cell(const StudyResults& results, const Arguments& arguments, std::ostream& out) {
-  if (arguments.cell.empty() || arguments.parameter || !arguments.start.empty())
-    throw UsageError("ricochet point: this is a study of kind basins; expected --cell X,Y, as in cells.csv");
-  const auto [x, y] = two_numbers(arguments.cell);
-  const CaseRecord& record = find_case(results, arguments.operands[1]);
-  const StoredStudy stored(results, arguments);
+int march_cell_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
+  if (asked.cell.empty() || asked.parameter || !asked.start.empty())
+    throw PointRefused("ricochet point: this is a study of kind basins; expected --cell X,Y, as in cells.csv");
+  const auto [x, y] = two_numbers(asked.cell);
+  const CaseRecord& record = find_case(results, asked.case_id);
+  const StoredStudy stored(results, asked);
   const StudyCase& study_case = stored.find(record.id);
   const std::vector<GridAxis> axes = grid_axes(study_case.settings);
   const std::size_t column = find_place(axes[0], x), line = find_place(axes[1], y);
@@ -65,7 +66,7 @@ int print_cell(const StudyResults& results, const Arguments& arguments, std::ost
     ++row;
 
   SamplePrinter print(out);
-  const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(arguments), std::ref(print));
+  const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(asked), std::ref(print));
   std::cerr << regime_text(end);
   if (row == cells.count()) {
     std::cerr << "; the run has not come to this cell";
@@ -79,7 +80,8 @@ int print_cell(const StudyResults& results, const Arguments& arguments, std::ost
     std::cerr << comparison_text(equal, std::max(section.size(), end.section.size()));
   }
   std::cerr << "\n";
-  return end.status == "done" ? exit_done : exit_some_failed;
+  constexpr int some_failed = 3;
+  return end.status == "done" ? 0 : some_failed;
 }
 
 }  // namespace ricochet

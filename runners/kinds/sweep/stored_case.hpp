@@ -1,21 +1,22 @@
 #pragma once
 #include <nlohmann/json.hpp>
 #include <ricochet/contract/registry.hpp>
+#include <ricochet/loader/catalogue.hpp>
 #include <string>
 
-#include "runners/command/subcommand.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/store/record.hpp"
 
 namespace ricochet {
 
-/// The one case whose id begins so. Throws UsageError with the nearest id or all of them.
+/// The one case whose id begins so. Throws PointRefused with the nearest id or all of them.
 const CaseRecord& find_case(const StudyResults& results, const std::string& id);
 
 /// The rows of one table of a case, read by column; cells of absent columns are null.
 class StoredRows {
  public:
-  /// Throws UsageError where the case has no such table, with what became of it.
+  /// Throws PointRefused where the case has no such table, with what became of it.
   StoredRows(const CaseRecord& record, const std::string& table);
   std::size_t count() const { return table_->rows.size(); }
   nlohmann::ordered_json cell(std::size_t row, const std::string& column) const;
@@ -28,9 +29,10 @@ class StoredRows {
   const DerivedTable* table_ = nullptr;
 };
 
-/// The study of stored results, parsed again, and the case of this id. Throws UsageError where there is none any more.
+/// The study of stored results, parsed again, and the case of this id. Throws PointRefused where there is none any
+/// more.
 struct StoredStudy {
-  StoredStudy(const StudyResults& results, const Arguments& arguments);
+  StoredStudy(const StudyResults& results, const PointRequest& asked);
   const StudyCase& find(const std::string& id) const;
   Catalogue catalogue;
   Registry registry;
@@ -48,7 +50,7 @@ class SamplePrinter {
 };
 
 /// --periods and --samples, or what stands for them.
-SampleCount wanted_count(const Arguments& arguments);
+SampleCount wanted_count(const PointRequest& asked);
 
 /// "; 3 of 4 strobes as stored: the results are of another build of the program".
 std::string comparison_text(std::size_t equal, std::size_t compared);
@@ -57,9 +59,5 @@ std::string comparison_text(std::size_t equal, std::size_t compared);
 std::string nearest_values(const std::vector<double>& values, double wanted);
 /// Whether a stored value is the one that was written in digits.
 bool is_value(double stored, double wanted);
-
-/// `ricochet point` for a study of kind bifurcation, and of kind basins.
-int print_orbit(const StudyResults& results, const Arguments& arguments, std::ostream& out);
-int print_cell(const StudyResults& results, const Arguments& arguments, std::ostream& out);
 
 }  // namespace ricochet

@@ -1,10 +1,10 @@
-#include "runners/study/sweep.hpp"
+#include "runners/kinds/sweep/sweep_study.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/study/with_parameter.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;
