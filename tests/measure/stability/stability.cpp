@@ -119,6 +119,12 @@ VectorXd state(const Marcher& marcher, int lane, Eigen::Index size) {
   return x;
 }
 
+// Dumont–Paoli with β < ¼ has no step on the kernel of a singular mass; all others run.
+bool refused(const Choice& mass, const Choice& time) {
+  return mass.name == "singular" && time.name == "newmark-dumont-paoli" &&
+         std::get<double>(time.values.at("beta")) < 0.25;
+}
+
 const std::vector<Choice>& schemes() {
   static const std::vector<Choice> all = {dumont_paoli(0),
                                           dumont_paoli(0.25),
@@ -141,7 +147,9 @@ TEST_CASE("the step matrix is the step that is marched, contact open") {
         CompileOptions nodal_band;
         nodal_band.kind = OperatorKind::band;
         auto program = compiled(problem, {mass, {"none"}, time}, h, nodal_band);
-        if (std::holds_alternative<Refusal>(program)) continue;
+        INFO(mass.name << " " << time.name << " " << alpha);
+        REQUIRE(std::holds_alternative<Refusal>(program) == refused(mass, time));
+        if (refused(mass, time)) continue;
         Marcher made(std::move(std::get<Program>(program)));
         made.start();
         const auto map = step_map(nodal(*problem, {}), made.program().plan, {});
@@ -150,7 +158,6 @@ TEST_CASE("the step matrix is the step that is marched, contact open") {
         VectorXd x = state(made, 0, A.rows());
         made.march(3);
         for (int k = 0; k < 3; ++k) x = A * x;
-        INFO(mass.name << " " << time.name << " " << alpha);
         const VectorXd marched = state(made, 0, A.rows());
         // Accelerations lose 1/h² of round-off against positions: each slot is compared in its own size.
         const auto n = A.rows() / made.slot_count();
@@ -163,6 +170,7 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
   // A stop pressed far into the structure holds it; two motions that never leave it differ by a solution of the linear
   // problem, past efforts of the first step included, which are zero for both.
   const double push = 0.5, h = 2e-5;
+  int compared = 0;
   for (const Choice& contact :
        {Choice{"signorini"}, penalty(1e5, "implicit"), penalty(1e5, "averaged"), penalty(1e3, "explicit")})
     for (const Choice& time : schemes())
@@ -200,6 +208,7 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         const MatrixXd& A = std::get<MatrixXd>(map);
         const bool starts_in_contact = !made.program().plan.start.empty() && made.program().start[0].reads_contact;
         if (starts_in_contact) continue;  // its efforts would be the past of the first step
+        ++compared;
         VectorXd x = state(made, 1, A.rows()) - state(made, 0, A.rows());
         made.march(4);
         for (int k = 0; k < 4; ++k) x = A * x;
@@ -210,9 +219,11 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         for (int j = 0; j < made.slot_count(); ++j)
           CHECK((marched - x).segment(j * n, n).norm() <= 1e-5 * x.segment(j * n, n).norm());
       }
+  CHECK(compared == 99);
 }
 
 TEST_CASE("mode by mode and all at once give the same radius") {
+  int closed_sets = 0;
   for (const Choice& mass : {Choice{"consistent"}, Choice{"singular", {{"velocity", std::string("P0")}}}})
     for (const double alpha : {0.0, 1e-4})
       for (const Choice& time : schemes())
@@ -220,7 +231,8 @@ TEST_CASE("mode by mode and all at once give the same radius") {
           const auto problem = problem_of(damped_scene(alpha, StopsSpec::Place::nodes), 4, mass);
           const auto facts = problem_facts(*problem, *make(registry().contact("signorini"), {"signorini"}));
           const auto made = plan_of(time, h, facts);
-          if (std::holds_alternative<Refusal>(made)) continue;
+          REQUIRE(std::holds_alternative<Refusal>(made) == refused(mass, time));
+          if (refused(mass, time)) continue;
           const StepPlan& step = std::get<StepPlan>(made);
           const auto predicted = predictor(problem, {"signorini"});
           const auto dense = [&](const std::vector<int>& closed) {
@@ -236,9 +248,12 @@ TEST_CASE("mode by mode and all at once give the same radius") {
           const double near = 2e-4;
           CHECK(known(predicted.open(step, h)).radius == Approx(dense({})).epsilon(near));
           if (step.stages[0].impact->value.z == 0) continue;
-          for (const ClosedSet& set : predicted.sets())
+          for (const ClosedSet& set : predicted.sets()) {
             CHECK(known(predicted.closed(step, h, set)).radius == Approx(dense(set.points)).epsilon(near));
+            ++closed_sets;
+          }
         }
+  CHECK(closed_sets == 99);
 }
 
 TEST_CASE("central differences need h below 0.0334014 ℓ² √(ρS/EI)") {
