@@ -4,6 +4,7 @@
 #include <random>
 #include <ricochet/measure/orbits/zero_one_test.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
@@ -61,7 +62,7 @@ std::optional<double> zero_one_test(std::span<const double> series, std::uint64_
     }
     k = correlation(D);
   }
-  return median({K.begin(), K.end()});
+  return median(std::move(K));
 }
 
 }  // namespace ricochet
