@@ -59,7 +59,7 @@ DerivedTable effects_table(const StudyResults& results) {
     for (const CaseRecord& record : results.cases)
       values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
     if (absent_by_level(results, factors, values)) continue;
-    const Effects effects = effects_of(name, factors, values);
+    const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)
       table.rows.push_back(
           {name, share.factor, number(share.share), number(share.low), number(share.high), effects.log});
