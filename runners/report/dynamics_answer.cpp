@@ -112,9 +112,9 @@ std::string grazing_sentence(const Cases& cases, const Quantity& parameter) {
   std::map<std::string, std::vector<double>> found;
   std::map<std::string, double> widest;
   for (const CaseRecord* record : cases) {
-    const DerivedTable* table = case_table(*record, "bifurcations");
+    const Table* table = find_table(record->tables, "bifurcations");
     if (!table) continue;
-    const TableRows rows(*table);
+    const TableReader rows(*table);
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto value = rows.number(row, "value");
       if (!value || rows.text(row, "kind") != "grazing") continue;

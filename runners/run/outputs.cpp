@@ -5,7 +5,8 @@
 
 #include "runners/run/minimal_study.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/csv.hpp"
+#include "runners/store/record_tables.hpp"
+#include "runners/table/csv_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -42,14 +43,18 @@ void remove_stale_curves(const std::filesystem::path& folder, const StudyResults
   for (const auto& file : stale) std::filesystem::remove(file, ignored);
 }
 
+void write_table(const std::filesystem::path& folder, const Table& table) {
+  write_file(folder / (table.name + ".csv"), table_csv(table));
+}
+
 void write_derived(const std::filesystem::path& folder, const StudyResults& results) {
-  for (const DerivedTable& table : results.derived) write_file(folder / (table.name + ".csv"), derived_csv(table));
+  for (const Table& table : results.derived) write_table(folder, table);
 }
 
 void write_numbers(const std::filesystem::path& folder, const StudyResults& results) {
-  for (const std::string& name : exported_tables(results)) {
-    FileWriter file(folder / (name + ".csv"));
-    write_numbers_csv(results, name, [&](std::string_view piece) { file.write(piece); });
+  for (const Table& head : number_heads(results)) {
+    FileWriter file(folder / (head.name + ".csv"));
+    write_numbers_csv(results, head, [&](std::string_view piece) { file.write(piece); });
     file.commit();
   }
 }
@@ -118,7 +123,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   write_file(folder / "study.json", results.study.dump(indent, ' ', false, replace) + '\n');
   write_curves(folder / "curves", results, changed);
   remove_stale_curves(folder / "curves", results);
-  write_file(folder / "cases.csv", cases_csv(results));
+  write_table(folder, cases_table(results));
   write_derived(folder, results);
   write_numbers(folder, results);
   write_failures(folder / "failures", results);
@@ -128,13 +133,13 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
 void write_tables(const std::filesystem::path& folder, const StudyResults& results) {
   make_folder(folder);
   write_curves(folder / "curves", results, nullptr);
-  write_file(folder / "cases.csv", cases_csv(results));
+  write_table(folder, cases_table(results));
   write_derived(folder, results);
   write_numbers(folder, results);
-  write_file(folder / "measures.csv", measures_csv());
-  write_file(folder / "left_out.csv", left_out_csv(results));
-  write_file(folder / "notes.csv", notes_csv(results));
-  write_file(folder / "environment.csv", environment_csv(results.environment));
+  write_table(folder, measures_table());
+  write_table(folder, left_out_table(results));
+  write_table(folder, notes_table(results));
+  write_table(folder, environment_table(results.environment));
 }
 
 }  // namespace ricochet

@@ -6,16 +6,14 @@
 #include <cmath>
 #include <optional>
 
-#include "runners/store/csv.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
 
 std::string cell(const CaseRecord& record, const std::string& column) {
-  for (const auto& [name, value] : record.axes)
-    if (name == column) return value.is_string() ? value.get<std::string>() : csv_value(value);
-  return "";
+  return axis(record, column).text();
 }
 
 /// Characters shown, for UTF-8 text without combining marks.
@@ -39,15 +37,11 @@ std::string signed_percent(double ratio) {
 
 // Marched at some steps, and stable at none of them.
 bool never_stable(const CaseRecord& record) {
-  for (const DerivedTable& table : record.tables) {
-    if (table.name != "stability_observed" || table.rows.empty()) continue;
-    const auto column = std::find(table.columns.begin(), table.columns.end(), "behaviour") - table.columns.begin();
-    return std::none_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
-      const auto& cell = row.at(static_cast<std::size_t>(column));
-      return cell == "stable" || cell == "marginal";
-    });
-  }
-  return false;
+  const Table* table = find_table(record.tables, "stability_observed");
+  if (!table || table->rows.empty()) return false;
+  const std::size_t behaviour = TableReader(*table).column("behaviour");
+  return std::none_of(table->rows.begin(), table->rows.end(),
+                      [&](const Row& row) { return row.at(behaviour) == "stable" || row.at(behaviour) == "marginal"; });
 }
 
 bool contradicts_itself(const CaseRecord& record) {

@@ -79,8 +79,8 @@ class Verdicts {
  public:
   explicit Verdicts(const Diagram& diagram) : diagram_(diagram), names_(names_of(diagram)) {}
 
-  DerivedTable table() const {
-    DerivedTable out{"verdicts", {"from", "to", "verdict", "choice", "sentence"}, {}};
+  Table table() const {
+    Table out = verdicts_head(diagram_.swept);
     const std::vector<Stretch> stretches = merged();
     for (std::size_t k = 0; k < stretches.size(); ++k) {
       const double first = value(stretches[k].opinions.front()), last = value(stretches[k].opinions.back());
@@ -312,7 +312,7 @@ class Verdicts {
 
 }  // namespace
 
-DerivedTable verdicts_table(const Diagram& diagram) {
+Table verdicts_table(const Diagram& diagram) {
   return Verdicts(diagram).table();
 }
 
