@@ -4,8 +4,10 @@
 
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/kinds/stability/step_limits.hpp"
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/run/effects_table.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -50,6 +52,14 @@ void derive_tables(StudyResults& results) {
   }
   if (results.kind == "work-precision") results.derived.push_back(work_precision_table(results));
   collect(results);
+  if (results.kind == "stability") {
+    results.derived.push_back(step_limits_table(results));
+    results.derived.push_back(step_limit_agreement_table(results.derived.back()));
+  }
+  if (results.kind == "trajectory")
+    for (Table table : {energy_ends_table(results), energy_by_mass_table(results), energy_trends_table(results),
+                        choice_worth_table(results)})
+      if (!table.rows.empty()) results.derived.push_back(std::move(table));
   if (has_dynamics(results)) derive_dynamics(results);
   if (Table effects = effects_table(results); !effects.rows.empty()) results.derived.push_back(std::move(effects));
 }

@@ -9,8 +9,11 @@ namespace ricochet {
 namespace {
 
 Column measure_column(const std::string& name) {
-  const MeasureInfo* info = measure_info(name);
-  return info ? Column{name, info->unit, info->text} : Column{name, "", ""};
+  if (const MeasureInfo* info = measure_info(name)) return {name, info->unit, info->text};
+  const std::string floor = "floor.";
+  if (const MeasureInfo* info = name.starts_with(floor) ? measure_info("error." + name.substr(floor.size())) : nullptr)
+    return {name, info->unit, std::string("What the reference of ") + info->name + " may itself be wrong by."};
+  return {name, "", "A measure of the case that the program does not describe."};
 }
 
 std::vector<Column> measure_columns(const StudyResults& results) {

@@ -91,13 +91,16 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
 
 }  // namespace
 
+std::string axis_role(const std::string& column) {
+  const std::string first = split(column).front();
+  return std::find(method_roles.begin(), method_roles.end(), first) == method_roles.end() ? column : first;
+}
+
 Column axis_meaning(const std::string& column, const Json& resolved) {
   const std::vector<std::string> path = split(column);
   if (const auto spec = spec_of(path, resolved))
     return {column, spec->type == ParameterSpec::Type::real ? spec->unit : unit_of(*spec), spec->text};
-  const bool method =
-      path.size() > 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end();
-  if (method)
+  if (axis_role(column) != column)
     return {column, "",
             "Parameter " + column.substr(path.front().size() + 1) + " of the method in the column " + path.front() +
                 "; \"ricochet describe\" says what it is."};

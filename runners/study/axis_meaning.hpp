@@ -14,6 +14,9 @@ struct Study;
 /// whose it is; its unit is then "".
 Column axis_meaning(const std::string& column, const nlohmann::ordered_json& resolved);
 
+/// The role of a method's axis, "mass" of "mass.velocity" and of "mass"; the column itself where it is no method's.
+std::string axis_role(const std::string& column);
+
 /// Every axis of a study that is about to run; parameters of methods as their plugins declare them.
 std::vector<Column> axis_meanings(const Study& study, const Registry& registry);
 

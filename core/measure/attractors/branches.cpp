@@ -2,17 +2,12 @@
 #include <map>
 #include <numeric>
 #include <ricochet/measure/attractors/branches.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 
 namespace ricochet {
 namespace {
 
 constexpr int kLongestAbsence = 4;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -65,7 +60,7 @@ std::vector<int> match_branches(const std::vector<CaseBranch>& branches, const s
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if (!pairs[k].distances.empty())
-      if (const double distance = median(pairs[k].distances); distance <= 1) order.emplace_back(distance, k);
+      if (const double distance = lower_median(pairs[k].distances); distance <= 1) order.emplace_back(distance, k);
   std::sort(order.begin(), order.end());
   for (const auto& [distance, k] : order) {
     const std::size_t a = root(static_cast<std::size_t>(pairs[k].a)), b = root(static_cast<std::size_t>(pairs[k].b));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -18,14 +19,6 @@ double mean_of(std::span<const double> series) {
 
 double flat_top(double t) {
   return t <= 0.5 ? 1 : std::max(0.0, 2 * (1 - t));
-}
-
-// The quantile of sorted numbers, linear between them.
-double quantile(const std::vector<double>& sorted, double at) {
-  const double place = at * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const auto above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 /// What the correlogram says of a series.
@@ -114,8 +107,8 @@ Interval block_bootstrap_mean(std::span<const double> series, double confidence,
   double open = boost::math::quantile(boost::math::students_t(std::max(1.0, n / block - 1)), 1 - tail) /
                 boost::math::quantile(boost::math::normal(), 1 - tail);
   if (resampled > 0 && variance > n * resampled) open *= std::sqrt(variance / (n * resampled));
-  return {mean, mean + open * std::min(0.0, quantile(means, tail)),
-          mean + open * std::max(0.0, quantile(means, 1 - tail))};
+  return {mean, mean + open * std::min(0.0, sorted_quantile(means, tail)),
+          mean + open * std::max(0.0, sorted_quantile(means, 1 - tail))};
 }
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -49,6 +50,10 @@ void derive_dynamics(StudyResults& results) {
   std::vector<Table> tables = {values_table(diagram), bifurcations_table(diagram), attractors_table(diagram),
                                std::move(distances),  verdicts_table(diagram),     agreement_table(diagram),
                                shifts_table(diagram)};
+  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), diagram.swept));
+  for (Table table :
+       {class_counts_table(results), grazing_ranges_table(results, diagram.swept), numerical_viscosity_table(results)})
+    tables.push_back(std::move(table));
   for (Table& table : tables) results.derived.push_back(std::move(table));
 }
 

@@ -7,6 +7,7 @@
 
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/stability_rows.hpp"
+#include "runners/run/derive.hpp"
 
 using namespace ricochet;
 using namespace ricochet::report;
@@ -172,7 +173,7 @@ TEST_CASE("the map has a cell per step and value, and both boundaries", "[report
 }
 
 TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
-  const StudyResults all = results();
+  const StudyResults all = with_tables(results());
   const std::string html = stability_html(CaseView(all));
   CHECK_THAT(html, Contains("root −1 on &lt;the kernel&gt;") && Contains("nothing to march") && Contains("none"));
   CHECK_THAT(html, Contains("agree to 2 %"));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/store/record_values.hpp"
 
 /// \file
@@ -178,6 +178,10 @@ inline void derive_synthetic(StudyResults& out) {
       {0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
       {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
       {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}};
+  Table shares_of_range = verdict_shares_table(out.derived.back(), {});
+  out.derived.push_back(std::move(shares_of_range));
+  for (Table made : {class_counts_table(out), grazing_ranges_table(out, {}), numerical_viscosity_table(out)})
+    out.derived.push_back(std::move(made));
 }
 
 /// The study with the tables that are derived of all cases.
