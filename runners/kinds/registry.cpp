@@ -25,8 +25,8 @@ Registered& registered() {
   static Registered all = [] {
     Registered built_in;
     // A new kind is one more line here.
-    for (Kind (*make)() : {trajectory_kind, convergence_kind, work_precision_kind, stability_kind, bifurcation_kind,
-                           basins_kind})
+    for (Kind (*make)() :
+         {trajectory_kind, convergence_kind, work_precision_kind, stability_kind, bifurcation_kind, basins_kind})
       built_in.add(make());
     return built_in;
   }();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <map>
 
 #include "runners/report/dynamics_report.hpp"
 #include "runners/report/evidence.hpp"
@@ -14,28 +14,10 @@
 namespace ricochet::report {
 namespace {
 
-using Getter = std::function<std::optional<double>(const CaseRecord&)>;
-
-Getter measured(std::string name) {
-  return [name = std::move(name)](const CaseRecord& record) { return CaseView::measure(record, name); };
-}
-
-struct Extremes {
-  double low = 0, high = 0;
-  const CaseRecord *lowest = nullptr, *highest = nullptr;
-  size_t count = 0;
-};
-
-Extremes extremes(const Cases& cases, const Getter& of) {
-  Extremes out;
-  for (const CaseRecord* record : cases) {
-    const auto value = of(*record);
-    if (!value || !std::isfinite(*value)) continue;
-    if (out.count == 0 || *value < out.low) out.low = *value, out.lowest = record;
-    if (out.count == 0 || *value > out.high) out.high = *value, out.highest = record;
-    ++out.count;
-  }
-  return out;
+/// A table that was derived of the cases; null where it has no rows.
+const Table* derived(const CaseView& view, std::string_view name) {
+  const Table* table = find_table(view.results().derived, name);
+  return table && !table->rows.empty() ? table : nullptr;
 }
 
 std::string swatch(const std::string& colour) {
@@ -46,104 +28,91 @@ std::string item(const std::string& text) {
   return "<li>" + text + "</li>\n";
 }
 
-std::string in_case(const CaseView& view, const CaseRecord& record) {
-  const std::string label = view.label(record);
-  return label.empty() ? "" : " (" + escape(label) + ")";
-}
-
 /// "72.40 %" or "71.20 % to 74.90 %".
-std::string range_text(const Extremes& e) {
-  const std::string low = percent_text(e.low), high = percent_text(e.high);
-  return low == high ? low : low + " to " + high;
+std::string range_text(double low, double high) {
+  const std::string from = percent_text(low), to = percent_text(high);
+  return from == to ? from : from + " to " + to;
 }
 
-double gain_share(const CaseRecord& record) {
-  const auto gain = CaseView::measure(record, "largest_step_gain"), start = CaseView::measure(record, "energy_start");
-  return gain && start && *start > 0 ? *gain / *start : 0;
-}
+/// One finished case with an energy ratio, as `energy_ends` has it.
+struct EnergyEnd {
+  const CaseRecord* record = nullptr;
+  double ratio = 0, change = 0, noise = 0, step = 0;
+  bool kept = false;
+};
 
-/// What steps gained, over some cases.
-std::string gain_sentence(const CaseView& view, const Cases& cases) {
-  Cases with, gaining;
-  for (const CaseRecord* record : cases) {
-    if (!CaseView::measure(*record, "largest_step_gain") || CaseView::measure(*record, "energy_start").value_or(0) <= 0)
-      continue;
-    with.push_back(record);
-    if (gain_share(*record) > step_gain_threshold) gaining.push_back(record);
+std::vector<EnergyEnd> energy_ends(const CaseView& view) {
+  std::vector<EnergyEnd> out;
+  const Table* table = derived(view, "energy_ends");
+  if (!table) return out;
+  const TableReader rows(*table);
+  const size_t id = rows.column("case"), ratio = rows.column("ratio"), change = rows.column("change"),
+               noise = rows.column("noise_floor"), kept = rows.column("kept");
+  std::map<std::string, const CaseRecord*> by_id;
+  for (const CaseRecord& record : view.results().cases) by_id[record.id] = &record;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto found = by_id.find(rows.text(row, id));
+    if (found == by_id.end() || !rows.number(row, ratio)) continue;
+    out.push_back({found->second, *rows.number(row, ratio), rows.number(row, change).value_or(0),
+                   rows.number(row, noise).value_or(0), CaseView::number(*found->second, "step").value_or(INFINITY),
+                   rows.truth(row, kept) == true});
   }
-  if (with.empty()) return "";
-  const Extremes e = extremes(with, gain_share);
-  if (gaining.empty())
-    return fmt::format(" No step gains more than {} of the starting energy (largest: {} of it).",
-                       number_text(step_gain_threshold), number_text(e.high, 2));
-  return fmt::format(" In {} of {} single steps gain energy, at most {} of the starting energy in one step{}.",
-                     gaining.size(), count_text(with.size(), "case", "cases"), share_text(e.high),
-                     in_case(view, *e.highest));
+  return out;
 }
 
-std::string unfinished_sentence(const Cases& cases) {
-  std::string out;
-  for (const char* status : {"refused", "diverged", "failed"}) {
-    const auto count = static_cast<size_t>(
-        std::count_if(cases.begin(), cases.end(), [&](const CaseRecord* r) { return r->status == status; }));
-    if (count) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, status);
-  }
-  return out.empty() ? "" : " Without a result: " + out + ".";
-}
-
-std::string with_ratio(const CaseView& view, const CaseRecord& record) {
-  const std::string label = view.label(record, view.varying_without({"step"}));
+std::string with_ratio(const CaseView& view, const EnergyEnd& end) {
+  const std::string label = view.label(*end.record, view.varying_without({"step"}));
   return fmt::format("<strong>{}</strong>, which ends at {} of its start",
-                     label.empty() ? "the only method" : escape(label),
-                     percent_text(*CaseView::measure(record, "energy_ratio")));
+                     label.empty() ? "the only method" : escape(label), percent_text(end.ratio));
 }
 
 /// "", or how many others end exactly as this one.
-std::string ties(const Cases& cases, const CaseRecord& record) {
-  const auto same = static_cast<size_t>(std::count_if(cases.begin(), cases.end(), [&](const CaseRecord* other) {
-    return CaseView::measure(*other, "energy_ratio") == CaseView::measure(record, "energy_ratio");
-  }));
+std::string ties(const std::vector<EnergyEnd>& ends, const EnergyEnd& end) {
+  const auto same = static_cast<size_t>(
+      std::count_if(ends.begin(), ends.end(), [&](const EnergyEnd& other) { return other.ratio == end.ratio; }));
   return same < 2 ? "" : same == 2 ? " (one other ends the same)" : fmt::format(" ({} others end the same)", same - 1);
 }
 
 /// What the methods end at with the finest step, and who is farthest apart.
 std::string headline(const CaseView& view) {
-  Cases done = view.with_status("done");
-  std::erase_if(done, [](const CaseRecord* r) { return !CaseView::measure(*r, "energy_ratio"); });
-  if (done.empty()) return "";
-  double finest = INFINITY;
-  for (const CaseRecord* record : done) finest = std::min(finest, CaseView::number(*record, "step").value_or(INFINITY));
-  Cases at_finest;
-  for (const CaseRecord* record : done)
-    if (!view.varies("step") || CaseView::number(*record, "step") == finest) at_finest.push_back(record);
+  const std::vector<EnergyEnd> ends = energy_ends(view);
+  if (ends.empty()) return "";
+  double finest = INFINITY, noise = 0;
+  size_t kept = 0;
+  for (const EnergyEnd& end : ends) {
+    finest = std::min(finest, end.step);
+    noise = std::max(noise, end.noise);
+    kept += end.kept;
+  }
+  std::vector<EnergyEnd> at_finest;
+  for (const EnergyEnd& end : ends)
+    if (!view.varies("step") || end.step == finest) at_finest.push_back(end);
   const bool keeps = conservative(view);
-  const Getter change = [](const CaseRecord& r) {
-    return std::optional(std::abs(*CaseView::measure(r, "energy_ratio") - 1));
-  };
-  const Extremes e = extremes(at_finest, keeps ? change : measured("energy_ratio"));
+  const auto [least, most] = std::minmax_element(
+      at_finest.begin(), at_finest.end(),
+      [&](const EnergyEnd& a, const EnergyEnd& b) { return keeps ? a.change < b.change : a.ratio < b.ratio; });
+  // Of several that end the same the first is named.
+  const EnergyEnd& low = *least;
+  const EnergyEnd& high = *std::find_if(at_finest.begin(), at_finest.end(), [&, most = most](const EnergyEnd& end) {
+    return keeps ? end.change == most->change : end.ratio == most->ratio;
+  });
   const std::string step = view.varies("step") ? fmt::format("With the finest step, {} s: ", exact_text(finest)) : "";
   std::string out = "<p class=\"lead\">" + step;
-  if (e.low == e.high)
+  if (keeps ? low.change == high.change : low.ratio == high.ratio)
     out += fmt::format("{} at {} of its starting energy.",
                        at_finest.size() == 1 ? "the one finished case ends" : "every case ends",
-                       percent_text(*CaseView::measure(*at_finest.front(), "energy_ratio")));
+                       percent_text(at_finest.front().ratio));
   else if (keeps)
-    out += fmt::format("closest to its starting energy is {}{}; farthest is {}{}.", with_ratio(view, *e.lowest),
-                       ties(at_finest, *e.lowest), with_ratio(view, *e.highest), ties(at_finest, *e.highest));
+    out += fmt::format("closest to its starting energy is {}{}; farthest is {}{}.", with_ratio(view, low),
+                       ties(at_finest, low), with_ratio(view, high), ties(at_finest, high));
   else
-    out += fmt::format("the most energy is left by {}{}, the least by {}{}: {} of the larger.",
-                       with_ratio(view, *e.highest), ties(at_finest, *e.highest), with_ratio(view, *e.lowest),
-                       ties(at_finest, *e.lowest), percent_text(e.low / e.high));
-  size_t kept = 0;
-  double noise = 0;
-  for (const CaseRecord* record : done) {
-    noise = std::max(noise, noise_of(*record));
-    kept += *change(*record) <= noise_of(*record);
-  }
+    out += fmt::format("the most energy is left by {}{}, the least by {}{}: {} of the larger.", with_ratio(view, high),
+                       ties(at_finest, high), with_ratio(view, low), ties(at_finest, low),
+                       percent_text(low.ratio / high.ratio));
   if (keeps)
     out += fmt::format(" {} of {} over all steps {} where {} began, to within the noise floor.",
                        kept == 0 ? "None" : std::to_string(kept),
-                       count_text(done.size(), "finished case", "finished cases"), kept == 1 ? "ends" : "end",
+                       count_text(ends.size(), "finished case", "finished cases"), kept == 1 ? "ends" : "end",
                        kept == 1 ? "it" : "they");
   out += fmt::format(
       "</p>\n<p class=\"fine\">Noise floor of a case: the larger of 2<sup>−52</sup> × its number of steps and the "
@@ -161,9 +130,13 @@ std::string work_sentence(const CaseView& view) {
   const Cases done = view.with_status("done");
   std::string parts;
   const auto add = [&](const char* what, const char* measure) {
-    const Extremes e = extremes(done, measured(measure));
-    if (e.count == 0 || (e.low == 0 && e.high == 0)) return;
-    parts += fmt::format("{}{} {} to {} J", parts.empty() ? "" : ", ", what, number_text(e.low), number_text(e.high));
+    std::vector<double> works;
+    for (const CaseRecord* record : done)
+      if (const auto work = CaseView::measure(*record, measure)) works.push_back(*work);
+    if (works.empty()) return;
+    const auto [low, high] = std::minmax_element(works.begin(), works.end());
+    if (*low == 0 && *high == 0) return;
+    parts += fmt::format("{}{} {} to {} J", parts.empty() ? "" : ", ", what, number_text(*low), number_text(*high));
   };
   add("damping", "work_of_damping");
   add("loads and support", "work_of_loads");
@@ -172,72 +145,92 @@ std::string work_sentence(const CaseView& view) {
          ". What went at contact is measured apart and said for each mass.</p>\n";
 }
 
-/// What contact took, where the ratio alone does not say it.
-std::string contact_sentence(const Cases& cases) {
-  const Extremes lost = extremes(cases, [](const CaseRecord& record) -> std::optional<double> {
-    const auto dissipated = CaseView::measure(record, "dissipated_at_contact"),
-               start = CaseView::measure(record, "energy_start");
-    return dissipated && start && *start > 0 ? std::optional(*dissipated / *start) : std::nullopt;
-  });
-  if (lost.count == 0) return "";
-  return fmt::format(" Contact took {} to {} of the starting energy.", share_text(lost.low), share_text(lost.high));
-}
+/// One row of `energy_by_mass`, as sentences.
+class MassRow {
+ public:
+  MassRow(const CaseView& view, const TableReader& rows, size_t row) : view_(view), rows_(rows), row_(row) {}
+
+  std::string sentences() const {
+    const CaseRecord* record = view_.find(rows_.text(row_, "case"));
+    if (!record) return "";
+    const std::string mass = view_.mass_label(*record);
+    std::string text =
+        swatch(view_.colour(*record)) + "<strong>" + escape(mass.empty() ? "all cases" : mass) + "</strong>: " + ends();
+    if (!conservative(view_)) text += contact();
+    return text + gains() + unfinished();
+  }
+
+ private:
+  std::optional<double> number(const char* column) const { return rows_.number(row_, column); }
+  size_t count(const char* column) const { return static_cast<size_t>(number(column).value_or(0)); }
+
+  std::string ends() const {
+    if (count("finished") > 0) {
+      std::string text = fmt::format("over {} the energy ends at {} of its start",
+                                     count_text(count("finished"), "finished case", "finished cases"),
+                                     range_text(number("ratio_low").value_or(0), number("ratio_high").value_or(0)));
+      if (const auto finest = number("finest_step"))
+        text += fmt::format("; at its finest step, {} s, at {}", exact_text(*finest),
+                            range_text(number("finest_low").value_or(0), number("finest_high").value_or(0)));
+      return text + ".";
+    }
+    if (count("ended") == 0) return "no finished case.";
+    return fmt::format("over {} the energy ends between {} and {} J (it starts from 0, so there is no ratio).",
+                       count_text(count("ended"), "finished case", "finished cases"),
+                       number_text(number("end_low").value_or(0)), number_text(number("end_high").value_or(0)));
+  }
+
+  /// What contact took, where the ratio alone does not say it.
+  std::string contact() const {
+    const auto low = number("contact_low"), high = number("contact_high");
+    if (!low || !high) return "";
+    return fmt::format(" Contact took {} to {} of the starting energy.", share_text(*low), share_text(*high));
+  }
+
+  std::string gains() const {
+    if (count("audited") == 0) return "";
+    const double largest = number("largest_gain").value_or(0);
+    if (count("gaining") == 0)
+      return fmt::format(" No step gains more than 1e-9 of the starting energy (largest: {} of it).",
+                         number_text(largest, 2));
+    const CaseRecord* record = view_.find(rows_.text(row_, "largest_gain_case"));
+    const std::string label = record ? view_.label(*record) : "";
+    return fmt::format(" In {} of {} single steps gain energy, at most {} of the starting energy in one step{}.",
+                       count("gaining"), count_text(count("audited"), "case", "cases"), share_text(largest),
+                       label.empty() ? "" : " (" + escape(label) + ")");
+  }
+
+  std::string unfinished() const {
+    std::string out;
+    for (const char* status : {"refused", "diverged", "failed"})
+      if (count(status) > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count(status), status);
+    return out.empty() ? "" : " Without a result: " + out + ".";
+  }
+
+  const CaseView& view_;
+  const TableReader& rows_;
+  size_t row_;
+};
 
 /// One sentence per mass matrix.
 std::string mass_sentences(const CaseView& view) {
-  const Getter ratio = measured("energy_ratio");
-  const bool keeps = conservative(view);
+  const Table* table = derived(view, "energy_by_mass");
+  if (!table) return "";
+  const TableReader rows(*table);
   std::string out;
-  for (const std::string& mass : view.masses()) {
-    Cases all, done;
-    for (const CaseRecord* record : view.all()) {
-      if (view.mass_label(*record) != mass) continue;
-      all.push_back(record);
-      if (record->status == "done") done.push_back(record);
-    }
-    std::string text =
-        swatch(view.colour(*all.front())) + "<strong>" + escape(mass.empty() ? "all cases" : mass) + "</strong>: ";
-    const Extremes over_all = extremes(done, ratio);
-    if (over_all.count > 0) {
-      text += fmt::format("over {} the energy ends at {} of its start",
-                          count_text(over_all.count, "finished case", "finished cases"), range_text(over_all));
-      double finest = INFINITY;
-      for (const CaseRecord* record : done)
-        if (ratio(*record)) finest = std::min(finest, CaseView::number(*record, "step").value_or(INFINITY));
-      if (view.varies("step") && std::isfinite(finest)) {
-        Cases at_finest;
-        for (const CaseRecord* record : done)
-          if (CaseView::number(*record, "step") == finest) at_finest.push_back(record);
-        text += fmt::format("; at its finest step, {} s, at {}", exact_text(finest),
-                            range_text(extremes(at_finest, ratio)));
-      }
-      text += ".";
-    } else {
-      const Extremes end = extremes(done, measured("energy_end"));
-      if (end.count > 0)
-        text += fmt::format("over {} the energy ends between {} and {} J (it starts from 0, so there is no ratio).",
-                            count_text(end.count, "finished case", "finished cases"), number_text(end.low),
-                            number_text(end.high));
-      else
-        text += "no finished case.";
-    }
-    if (!keeps) text += contact_sentence(done);
-    text += gain_sentence(view, done) + unfinished_sentence(all);
-    out += item(text);
-  }
+  for (size_t row = 0; row < rows.size(); ++row) out += item(MassRow(view, rows, row).sentences());
   return out;
 }
 
-std::string matrix_cell(const CaseRecord* record, bool conservative_study) {
+std::string matrix_cell(const CaseRecord* record, const EnergyEnd* end, bool conservative_study) {
   if (!record) return "<td class=\"number absent\">not run yet</td>";
-  const auto ratio = CaseView::measure(*record, "energy_ratio");
   if (record->status != "done")
     return fmt::format("<td class=\"number status {0}\" title=\"{1}\">{0}</td>", escape(record->status),
                        escape(record->reason));
-  if (!ratio) return "<td class=\"number absent\">–</td>";
-  const bool kept = conservative_study && std::abs(*ratio - 1) <= noise_of(*record);
-  return fmt::format("<td class=\"number{}\" title=\"{}{}\">{}</td>", kept ? " kept" : "", exact_text(*ratio),
-                     kept ? ": kept within the noise floor" : "", percent_text(*ratio));
+  if (!end) return "<td class=\"number absent\">–</td>";
+  const bool kept = conservative_study && end->kept;
+  return fmt::format("<td class=\"number{}\" title=\"{}{}\">{}</td>", kept ? " kept" : "", exact_text(end->ratio),
+                     kept ? ": kept within the noise floor" : "", percent_text(end->ratio));
 }
 
 /// "; diverged at 1e-6", so that a trend is not read without its missing end.
@@ -255,8 +248,14 @@ std::string unfinished_steps(const Cases& cases) {
 
 /// Methods × steps: energy ratio and trend.
 std::string matrix(const CaseView& view) {
-  const Cases done = view.with_status("done");
-  if (extremes(done, measured("energy_ratio")).count == 0) return "";
+  const std::vector<EnergyEnd> ends = energy_ends(view);
+  const Table* table = derived(view, "energy_trends");
+  if (ends.empty() || !table) return "";
+  std::map<const CaseRecord*, const EnergyEnd*> end_of;
+  for (const EnergyEnd& end : ends) end_of[end.record] = &end;
+  const TableReader trends(*table);
+  std::map<std::string, size_t> trend_of;  // by the case that stands for the method
+  for (size_t row = 0; row < trends.size(); ++row) trend_of[trends.text(row, "case")] = row;
   const bool keeps = conservative(view);
   std::vector<double> steps;
   for (const CaseRecord* record : view.all())
@@ -277,71 +276,53 @@ std::string matrix(const CaseView& view) {
   out +=
       "<th scope=\"col\" class=\"number\">order</th><th scope=\"col\">as the step shrinks</th></tr></thead>\n<tbody>\n";
   for (const CaseGroup& group : groups) {
-    std::vector<double> at, ratios;
-    double noise = 0;
     out += fmt::format("<tr><th scope=\"row\">{}{}</th>", swatch(view.colour(*group.cases.front())),
                        escape(group.label.empty() ? "all" : group.label));
     for (const double step : steps) {
       const auto found = std::find_if(group.cases.begin(), group.cases.end(),
                                       [&](const CaseRecord* r) { return CaseView::number(*r, "step") == step; });
       const CaseRecord* record = found == group.cases.end() ? nullptr : *found;
-      out += matrix_cell(record, keeps);
-      const auto ratio = record && record->status == "done" ? CaseView::measure(*record, "energy_ratio") : std::nullopt;
-      if (!ratio) continue;
-      at.push_back(step);
-      ratios.push_back(*ratio);
-      noise = std::max(noise, noise_of(*record));
+      const auto end = end_of.find(record);
+      out += matrix_cell(record, end == end_of.end() ? nullptr : end->second, keeps);
     }
-    const Trend trend = step_trend(at, ratios, noise, keeps);
-    out += fmt::format("<td class=\"number\">{}</td><td>{}</td></tr>\n",
-                       trend.order ? number_text(*trend.order, 2) : "–", trend.words + unfinished_steps(group.cases));
+    std::string order = "–", words = "no finished case";
+    for (const CaseRecord* record : group.cases)
+      if (const auto trend = trend_of.find(record->id); trend != trend_of.end()) {
+        words = trend_sentence(trends, trend->second);
+        if (const auto fitted = trends.number(trend->second, "order")) order = number_text(*fitted, 2);
+      }
+    out += fmt::format("<td class=\"number\">{}</td><td>{}</td></tr>\n", order, words + unfinished_steps(group.cases));
   }
   return out + "</tbody></table></div>\n";
 }
 
-/// By how much a quantity moves when one choice alone changes.
-struct Effect {
-  size_t groups = 0;
-  double largest = 0, median = 0;
-};
-
-Effect effect_of(const CaseView& view, const Cases& cases, const std::string& choice, const Getter& of) {
-  Effect out;
-  std::vector<double> spreads;
-  for (const CaseGroup& group : view.group(cases, view.varying_without({choice}))) {
-    const Extremes e = extremes(group.cases, of);
-    if (e.count > 1) spreads.push_back(e.high - e.low);
+/// What each choice is worth: its rows of `choice_worth`, one for the energy and one for the tip, side by side.
+std::string choice_worth(const CaseView& view) {
+  const Table* table = derived(view, "choice_worth");
+  if (!table) return "";
+  const TableReader worth(*table);
+  struct Line {
+    std::string choice, energy, tip;
+    double comparisons = 0;
+  };
+  std::vector<Line> lines;
+  bool ratios = false;
+  for (size_t row = 0; row < worth.size(); ++row) {
+    const std::string choice = worth.text(row, "choice"), measure = worth.text(row, "measure");
+    if (lines.empty() || lines.back().choice != choice) lines.push_back({choice, "", "", 0});
+    Line& line = lines.back();
+    (measure == "tip_displacement_end" ? line.tip : line.energy) =
+        fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>",
+                    number_text(worth.number(row, "median").value_or(0), 3),
+                    number_text(worth.number(row, "largest").value_or(0), 3));
+    line.comparisons = std::max(line.comparisons, worth.number(row, "comparisons").value_or(0));
+    ratios = ratios || measure == "energy_ratio";
   }
-  if (spreads.empty()) return out;
-  std::sort(spreads.begin(), spreads.end());
-  out.groups = spreads.size();
-  out.largest = spreads.back();
-  out.median = spreads[(spreads.size() - 1) / 2];
-  return out;
-}
-
-std::string effects(const CaseView& view) {
-  const Cases done = view.with_status("done");
-  std::vector<std::string> choices;
-  for (const std::string& column : view.varying())
-    for (const std::string& choice : {role_of(column), column})
-      if (std::find(choices.begin(), choices.end(), choice) == choices.end()) choices.push_back(choice);
-  const bool has_ratio = extremes(done, measured("energy_ratio")).count > 0;
-  const Getter energy = measured(has_ratio ? "energy_ratio" : "energy_end"), tip = measured("tip_displacement_end");
   std::string rows;
-  for (const std::string& choice : choices) {
-    const Effect e = effect_of(view, done, choice, energy), d = effect_of(view, done, choice, tip);
-    if (e.groups == 0 && d.groups == 0) continue;
-    const auto cells = [](const Effect& effect) {
-      if (effect.groups == 0)
-        return std::string("<td class=\"number absent\">–</td><td class=\"number absent\">–</td>");
-      return fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_text(effect.median, 3),
-                         number_text(effect.largest, 3));
-    };
-    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td>{}{}</tr>\n", escape(choice),
-                        std::max(e.groups, d.groups), cells(e), cells(d));
-  }
-  if (rows.empty()) return "";
+  const std::string none = "<td class=\"number absent\">–</td><td class=\"number absent\">–</td>";
+  for (const Line& line : lines)
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td>{}{}</tr>\n", escape(line.choice),
+                        line.comparisons, line.energy.empty() ? none : line.energy, line.tip.empty() ? none : line.tip);
   return fmt::format(
       "<div class=\"scroll\"><table class=\"matrix\"><caption>What each choice is worth: the spread of a result over "
       "the finished cases that "
@@ -352,17 +333,14 @@ std::string effects(const CaseView& view) {
       "scope=\"col\" class=\"number\">{0}: largest</th><th scope=\"col\" class=\"number\">tip at the end (m): "
       "median</th><th scope=\"col\" "
       "class=\"number\">tip at the end (m): largest</th></tr></thead>\n<tbody>\n{1}</tbody></table></div>\n",
-      has_ratio ? "E(T)/E(0)" : "E(T) (J)", rows);
+      ratios ? "E(T)/E(0)" : "E(T) (J)", rows);
 }
 
 }  // namespace
 
 bool conservative(const CaseView& view) {
-  for (const CaseRecord* record : view.with_status("done"))
-    for (const char* work : {"work_of_damping", "work_of_loads"})
-      // A scheme that declares no work form leaves it open.
-      if (const auto value = CaseView::measure(*record, work); !value || *value != 0) return false;
-  return true;
+  const Table* ends = derived(view, "energy_ends");
+  return ends && TableReader(*ends).truth(0, "conservative") == true;
 }
 
 std::string answer_html(const CaseView& view) {
@@ -372,10 +350,10 @@ std::string answer_html(const CaseView& view) {
   if (done.empty()) return "<p>No case has finished with a result; the table below says why.</p>\n";
   const StudyResults& results = view.results();
   if (results.kind != "trajectory") return stability_html(view) + work_precision_html(view) + orders_html(view);
-  const bool energies = extremes(done, measured("energy_end")).count > 0;
-  if (!energies) return "<p>These cases have no energy measures; their figures are in the table below.</p>\n";
+  if (!derived(view, "energy_ends"))
+    return "<p>These cases have no energy measures; their figures are in the table below.</p>\n";
   return headline(view) + "<ul class=\"answer\">\n" + mass_sentences(view) + "</ul>\n" + work_sentence(view) +
-         matrix(view) + effects(view);
+         matrix(view) + choice_worth(view);
 }
 
 }  // namespace ricochet::report

@@ -26,9 +26,9 @@ struct Cell {
   bool filled = false;
 };
 
-Rank rank_of(const TableRows& rows, size_t row) {
-  if (const auto attractor = rows.number(row, "attractor")) return {std::llround(*attractor), ""};
-  const std::string status = rows.text(row, "status"), regime = rows.text(row, "class");
+Rank rank_of(const TableReader& rows, size_t row) {
+  if (const auto attractor = rows.number(row, rows.column_if_any("attractor"))) return {std::llround(*attractor), ""};
+  const std::string status = rows.text(row, rows.column_if_any("status")), regime = rows.text(row, "class");
   const auto period = rows.number(row, "period");
   if (!status.empty() && (status == "failed" || status == "refused" || status == "diverged"))
     return {no_attractor + static_cast<long long>(failed_group), regime_groups[failed_group].name};
@@ -40,8 +40,8 @@ std::vector<Cell> cells_of(const StudyResults& results) {
   std::map<std::string, const CaseRecord*> by_id;
   for (const CaseRecord& record : results.cases) by_id[record.id] = &record;
   std::vector<Cell> out;
-  const auto read = [&](const DerivedTable& table, const CaseRecord* record) {
-    const TableRows rows(table);
+  const auto read = [&](const Table& table, const CaseRecord* record) {
+    const TableReader rows(table);
     for (size_t row = 0; row < rows.size(); ++row) {
       const CaseRecord* owner = record;
       if (!owner) {
@@ -51,24 +51,24 @@ std::vector<Cell> cells_of(const StudyResults& results) {
       }
       const auto x = rows.number(row, "x"), y = rows.number(row, "y");
       if (x && y)
-        out.push_back(
-            {owner, *x, *y, rank_of(rows, row), rows.text(row, "reason"), !rows.flag(row, "marched").value_or(true)});
+        out.push_back({owner, *x, *y, rank_of(rows, row), rows.text(row, rows.column_if_any("reason")),
+                       !rows.truth(row, rows.column_if_any("marched")).value_or(true)});
     }
   };
-  for (const DerivedTable& table : results.derived)
+  for (const Table& table : results.derived)
     if (table.name == "cells") read(table, nullptr);
   if (!out.empty()) return out;
   for (const CaseRecord& record : results.cases)
-    if (const DerivedTable* table = case_table(record, "cells")) read(*table, &record);
+    if (const Table* table = find_table(record.tables, "cells")) read(*table, &record);
   return out;
 }
 
 /// "attractor 2 (periodic 3)".
 std::map<long long, std::string> attractor_names(const StudyResults& results) {
   std::map<long long, std::string> out;
-  for (const DerivedTable& table : results.derived) {
+  for (const Table& table : results.derived) {
     if (table.name != "attractors") continue;
-    const TableRows rows(table);
+    const TableReader rows(table);
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto number = rows.number(row, "attractor"), period = rows.number(row, "period");
       if (!number) continue;

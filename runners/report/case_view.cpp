@@ -6,6 +6,7 @@
 #include <set>
 
 #include "runners/report/html.hpp"
+#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -33,9 +34,7 @@ std::string with_unit(const Quantity& quantity) {
 }
 
 std::string role_of(std::string_view column) {
-  for (std::string_view role : roles)
-    if (column == role || (column.starts_with(role) && column.substr(role.size(), 1) == ".")) return std::string(role);
-  return std::string(column);
+  return axis_role(std::string(column));
 }
 
 std::string axis_unit(std::string_view column) {
@@ -176,6 +175,12 @@ std::vector<CaseGroup> CaseView::group(const Cases& cases, const std::vector<std
     groups[at->second].cases.push_back(record);
   }
   return groups;
+}
+
+const CaseRecord* CaseView::find(std::string_view id) const {
+  const auto found = std::find_if(results_.cases.begin(), results_.cases.end(),
+                                  [&](const CaseRecord& record) { return record.id == id; });
+  return found == results_.cases.end() ? nullptr : &*found;
 }
 
 Cases CaseView::all() const {

@@ -60,6 +60,8 @@ class CaseView {
   std::vector<std::string> varying_without(const std::vector<std::string>& roles) const;
   /// Cases grouped by the values of `columns`, in order of appearance, labelled by them.
   std::vector<CaseGroup> group(const Cases& cases, const std::vector<std::string>& columns) const;
+  /// The case of this id, as a table names it; null where there is none.
+  const CaseRecord* find(std::string_view id) const;
   /// All cases, and those with a status.
   Cases all() const;
   Cases with_status(std::string_view status) const;

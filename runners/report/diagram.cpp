@@ -44,8 +44,8 @@ class Diagram {
       if (orbits.empty()) continue;
       cases_.push_back(record);
       Interval points = Interval::nothing();
-      if (const NumberTable* table = number_table(*record, "points"))
-        if (const auto* column = number_column(*table, "tip_displacement"))
+      if (const NumberTable* table = find_table(record->numbers, "points"))
+        if (const auto* column = table->numbers("tip_displacement"))
           for (const double value : *column) points.include(value);
       heights_.emplace(record->id, points);
       for (const Orbit& orbit : orbits) {
@@ -499,7 +499,7 @@ class Diagram {
         if (panel.kind) marks["data"]["kind"] = *panel.kind;
         series.push_back(std::move(marks));
       }
-      const DerivedTable* table = case_table(*record, "bifurcations");
+      const Table* table = find_table(record->tables, "bifurcations");
       if (!table) continue;
       Json data = Json::array();
       for (const Change& change : changes(*table)) {
@@ -527,9 +527,9 @@ class Diagram {
     double value;
     std::string start, text;
   };
-  static std::vector<Change> changes(const DerivedTable& table) {
+  static std::vector<Change> changes(const Table& table) {
     std::vector<Change> out;
-    const TableRows rows(table);
+    const TableReader rows(table);
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto value = rows.number(row, "value"), low = rows.number(row, "low"), high = rows.number(row, "high");
       if (!value) continue;

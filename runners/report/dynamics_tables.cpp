@@ -129,9 +129,9 @@ std::string shifts_html(const StudyResults& results, const Names& names, const Q
 std::string changes_html(const CaseView& view, const Names& names, const Quantity& parameter) {
   std::vector<std::string> html;
   for (const CaseRecord* record : view.all()) {
-    const DerivedTable* table = case_table(*record, "bifurcations");
+    const Table* table = find_table(record->tables, "bifurcations");
     if (!table) continue;
-    const TableRows rows(*table);
+    const TableReader rows(*table);
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto low = rows.number(row, "low"), high = rows.number(row, "high");
       html.push_back("<th scope=\"row\">" + escape(names.of(record->id)) + "</th>" +

@@ -10,11 +10,10 @@
 namespace ricochet::report {
 namespace {
 
-std::string text_of(const nlohmann::ordered_json& value) {
-  if (value.is_null()) return "";
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return exact_text(value.get<double>());
-  return value.dump();
+/// As the axes of a case are written (see CaseView::text).
+std::string text_of(const Cell& cell) {
+  const auto number = cell.whole() ? std::nullopt : cell.number();
+  return number ? exact_text(*number) : cell.text();
 }
 
 void extend(std::string& key, std::string_view column, const std::string& text) {
@@ -27,12 +26,12 @@ void extend(std::string& key, std::string_view column, const std::string& text) 
 
 EvidenceRows::EvidenceRows(const StudyResults& results, std::string_view table, std::vector<std::string> keys)
     : keys_(std::move(keys)) {
-  for (const DerivedTable& one : results.derived)
-    if (one.name == table) table_ = &one;
-  if (!table_) return;
-  for (const std::string& column : table_->columns)
-    if (std::find(results.columns.begin(), results.columns.end(), column) != results.columns.end())
-      axes_.push_back(column);
+  const Table* found = find_table(results.derived, table);
+  if (!found) return;
+  rows_.emplace(*found);
+  for (const Column& column : found->columns)
+    if (std::find(results.columns.begin(), results.columns.end(), column.name) != results.columns.end())
+      axes_.push_back(column.name);
   for (size_t row = 0; row < size(); ++row) {
     std::string key;
     for (const std::string& column : axes_) extend(key, column, text(row, column));
@@ -41,28 +40,16 @@ EvidenceRows::EvidenceRows(const StudyResults& results, std::string_view table, 
   }
 }
 
-const nlohmann::ordered_json* EvidenceRows::cell(size_t row, std::string_view column) const {
-  const auto found = std::find(table_->columns.begin(), table_->columns.end(), column);
-  if (found == table_->columns.end()) return nullptr;
-  const auto at = static_cast<size_t>(found - table_->columns.begin());
-  return at < table_->rows[row].size() ? &table_->rows[row][at] : nullptr;
-}
-
 std::string EvidenceRows::text(size_t row, std::string_view column) const {
-  const auto* value = cell(row, column);
-  return value ? text_of(*value) : "";
+  return text_of(rows_->cell(row, rows_->column_if_any(column)));
 }
 
 std::optional<double> EvidenceRows::number(size_t row, std::string_view column) const {
-  const auto* value = cell(row, column);
-  if (!value || !value->is_number()) return std::nullopt;
-  const double number = value->get<double>();
-  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+  return rows_->number(row, rows_->column_if_any(column));
 }
 
 bool EvidenceRows::flag(size_t row, std::string_view column) const {
-  const auto* value = cell(row, column);
-  return value && value->is_boolean() && value->get<bool>();
+  return rows_->truth(row, rows_->column_if_any(column)).value_or(false);
 }
 
 std::vector<std::string> EvidenceRows::values(std::string_view column) const {

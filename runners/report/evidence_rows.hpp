@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runners/report/case_view.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
@@ -15,7 +16,7 @@ class EvidenceRows {
   /// `keys`: columns that tell rows of the same axes apart, such as "error".
   EvidenceRows(const StudyResults& results, std::string_view table, std::vector<std::string> keys = {});
 
-  size_t size() const { return table_ ? table_->rows.size() : 0; }
+  size_t size() const { return rows_ ? rows_->size() : 0; }
   bool empty() const { return size() == 0; }
   /// The cell as text, "" for null and for a column that the table does not have.
   std::string text(size_t row, std::string_view column) const;
@@ -33,9 +34,7 @@ class EvidenceRows {
   const CaseRecord* example(size_t row, const StudyResults& results) const;
 
  private:
-  const nlohmann::ordered_json* cell(size_t row, std::string_view column) const;
-
-  const DerivedTable* table_ = nullptr;
+  std::optional<TableReader> rows_;
   std::vector<std::string> axes_, keys_;
   std::map<std::string, size_t> places_;
 };

@@ -12,6 +12,7 @@
 
 #include "runners/report/options.hpp"
 #include "runners/report/orbits.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -23,9 +24,9 @@ constexpr double cells_across = 4000;
 /// Rows of a table of numbers by the orbit that they belong to; rows of no orbit are left out.
 std::vector<Rows> rows_by_orbit(const NumberTable& table, const std::vector<Orbit>& orbits) {
   std::vector<Rows> out(orbits.size());
-  const auto* parameter = number_column(table, "parameter");
-  const auto* start = number_column(table, "start");
-  const auto* words = column_words(table, "start");
+  const auto* parameter = table.numbers("parameter");
+  const auto* start = table.numbers("start");
+  const auto* words = table.words_of("start");
   if (!parameter || !start || !words) return out;
   std::map<std::pair<double, std::string>, size_t> place;
   for (size_t o = 0; o < orbits.size(); ++o) place.emplace(std::pair(orbits[o].parameter, orbits[o].start), o);
@@ -85,12 +86,12 @@ struct Section {
 };
 
 std::optional<Section> section_of(const CaseRecord& record) {
-  const NumberTable* table = number_table(record, "points");
+  const NumberTable* table = find_table(record.numbers, "points");
   if (!table) return std::nullopt;
   Section out;
   out.record = &record;
-  out.u = number_column(*table, "tip_displacement");
-  out.v = number_column(*table, "tip_velocity");
+  out.u = table->numbers("tip_displacement");
+  out.v = table->numbers("tip_velocity");
   if (!out.u || !out.v) return std::nullopt;
   const std::vector<Orbit> orbits = orbits_of(record);
   out.rows = rows_by_orbit(*table, orbits);
@@ -124,18 +125,16 @@ void put_orbits(CurveData& curves, const std::string& key, const std::vector<std
 }
 
 /// Columns of a case's `values` for the page's script: {"name": [cells]}, without columns that say nothing.
-Json columns_of(const DerivedTable& table) {
+Json columns_of(const Table& table) {
   Json out = Json::object();
   for (size_t c = 0; c < table.columns.size(); ++c) {
     Json column = Json::array();
     bool says = false;
     for (const auto& row : table.rows) {
-      const auto& cell = row[c];
-      const bool empty = cell.is_null() || (cell.is_string() && cell.get_ref<const std::string&>().empty());
-      says = says || !empty;
-      column.push_back(cell);
+      says = says || !row[c].text().empty();
+      column.push_back(json_of(row[c]));
     }
-    if (says) out[table.columns[c]] = std::move(column);
+    if (says) out[table.columns[c].name] = std::move(column);
   }
   return out;
 }
@@ -143,19 +142,14 @@ Json columns_of(const DerivedTable& table) {
 /// Attractors by (case, parameter, start), from the table that was derived of all cases.
 std::map<std::tuple<std::string, double, std::string>, std::string> attractors_of(const StudyResults& results) {
   std::map<std::tuple<std::string, double, std::string>, std::string> out;
-  for (const DerivedTable& table : results.derived) {
+  for (const Table& table : results.derived) {
     if (table.name != "values") continue;
-    const auto column = [&](const char* name) {
-      return static_cast<size_t>(std::find(table.columns.begin(), table.columns.end(), name) - table.columns.begin());
-    };
-    const size_t id = column("case"), parameter = column("parameter"), start = column("start"),
-                 attractor = column("attractor");
-    for (const auto& row : table.rows) {
-      if (std::max({id, parameter, start, attractor}) >= row.size() || row[attractor].is_null()) continue;
-      if (!row[id].is_string() || !row[parameter].is_number() || !row[start].is_string()) continue;
-      out[{row[id].get<std::string>(), row[parameter].get<double>(), row[start].get<std::string>()}] =
-          row[attractor].is_string() ? row[attractor].get<std::string>() : row[attractor].dump();
-    }
+    const TableReader rows(table);
+    const size_t id = rows.column("case"), parameter = rows.column("parameter"), start = rows.column("start"),
+                 attractor = rows.column("attractor");
+    for (size_t row = 0; row < rows.size(); ++row)
+      if (const auto value = rows.number(row, parameter); value && !rows.cell(row, attractor).is_nothing())
+        out[{rows.text(row, id), *value, rows.text(row, start)}] = rows.text(row, attractor);
   }
   return out;
 }
@@ -243,9 +237,8 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
   std::vector<Stored> all;
   size_t samples = 0, count = 0, kept = 0;
   for (const CaseRecord* record : view.all()) {
-    const NumberTable* table = number_table(*record, "portraits");
-    if (!table || !number_column(*table, "time") || !number_column(*table, "tip_displacement") ||
-        !number_column(*table, "tip_velocity"))
+    const NumberTable* table = find_table(record->numbers, "portraits");
+    if (!table || !table->numbers("time") || !table->numbers("tip_displacement") || !table->numbers("tip_velocity"))
       continue;
     all.push_back({record, table, rows_by_orbit(*table, orbits_of(*record))});
     for (const Rows& rows : all.back().rows) {
@@ -257,9 +250,8 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
   for (const Stored& stored : all) {
     std::vector<std::uint32_t> orbit;
     std::vector<double> columns[3];
-    const std::vector<double>* from[] = {number_column(*stored.table, "time"),
-                                         number_column(*stored.table, "tip_displacement"),
-                                         number_column(*stored.table, "tip_velocity")};
+    const std::vector<double>* from[] = {stored.table->numbers("time"), stored.table->numbers("tip_displacement"),
+                                         stored.table->numbers("tip_velocity")};
     for (size_t o = 0; o < stored.rows.size(); ++o) {
       if (stored.rows[o].empty() || o % every != 0) continue;
       ++kept;
@@ -291,7 +283,7 @@ Json orbit_data(const CaseView& view) {
       {"study", results.name}, {"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
   Json cases = Json::object();
   for (const CaseRecord* record : view.all()) {
-    const DerivedTable* table = case_table(*record, "values");
+    const Table* table = find_table(record->tables, "values");
     if (!table) continue;
     const std::vector<Orbit> orbits = orbits_of(*record);
     Json one = {{"label", view.label(*record)}, {"partial", is_partial(*record)}, {"columns", columns_of(*table)}};

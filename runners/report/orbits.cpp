@@ -16,76 +16,40 @@ int random_number(std::string_view start) {
 
 }  // namespace
 
-const nlohmann::ordered_json* TableRows::at(size_t row, std::string_view column) const {
-  for (size_t c = 0; c < table_.columns.size() && c < table_.rows[row].size(); ++c)
-    if (table_.columns[c] == column) return &table_.rows[row][c];
-  return nullptr;
-}
-
-std::string TableRows::text(size_t row, std::string_view column) const {
-  const auto* cell = at(row, column);
-  return cell && cell->is_string() ? cell->get<std::string>() : "";
-}
-
-std::optional<double> TableRows::number(size_t row, std::string_view column) const {
-  const auto* cell = at(row, column);
-  if (!cell || !cell->is_number()) return std::nullopt;
-  const double value = cell->get<double>();
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-std::optional<bool> TableRows::flag(size_t row, std::string_view column) const {
-  const auto* cell = at(row, column);
-  return cell && cell->is_boolean() ? std::optional(cell->get<bool>()) : std::nullopt;
-}
-
-const DerivedTable* case_table(const CaseRecord& record, std::string_view name) {
-  for (const DerivedTable& table : record.tables)
-    if (table.name == name) return &table;
-  return nullptr;
-}
-
-const NumberTable* number_table(const CaseRecord& record, std::string_view name) {
-  for (const NumberTable& table : record.numbers)
-    if (table.name == name) return &table;
-  return nullptr;
-}
-
-const std::vector<double>* number_column(const NumberTable& table, std::string_view name) {
-  for (size_t c = 0; c < table.names.size() && c < table.columns.size(); ++c)
-    if (table.names[c] == name) return &table.columns[c];
-  return nullptr;
-}
-
-const std::vector<std::string>* column_words(const NumberTable& table, std::string_view name) {
-  for (const auto& [column, words] : table.words)
-    if (column == name) return &words;
-  return nullptr;
-}
-
 std::vector<Orbit> orbits_of(const CaseRecord& record) {
   std::vector<Orbit> out;
-  const DerivedTable* table = case_table(record, "values");
+  const Table* table = find_table(record.tables, "values");
   if (!table) return out;
-  const TableRows rows(*table);
+  const TableReader rows(*table);
+  const size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
+               status = rows.column_if_any("status"), reason = rows.column_if_any("reason"),
+               method = rows.column_if_any("exponent_method"), marginal = rows.column_if_any("marginal"),
+               period = rows.column("period"), viscosity = rows.column_if_any("alpha_equivalent"),
+               twin = rows.column_if_any("exponent_twin");
+  std::vector<std::array<size_t, 3>> exponents;  // value, low, high
+  for (int k = 1;; ++k) {
+    const std::string name = "exponent_" + std::to_string(k);
+    const size_t value = rows.column_if_any(name);
+    if (value == TableReader::absent) break;
+    exponents.push_back({value, rows.column_if_any(name + "_low"), rows.column_if_any(name + "_high")});
+  }
   out.reserve(rows.size());
   for (size_t row = 0; row < rows.size(); ++row) {
     Orbit orbit;
-    orbit.parameter = rows.number(row, "parameter").value_or(0);
-    orbit.start = rows.text(row, "start");
-    orbit.regime = rows.text(row, "class");
-    orbit.status = rows.text(row, "status");
-    orbit.reason = rows.text(row, "reason");
-    orbit.exponent_method = rows.text(row, "exponent_method");
-    orbit.marginal = rows.text(row, "marginal");
-    if (const auto period = rows.number(row, "period")) orbit.period = static_cast<int>(*period);
-    orbit.alpha_equivalent = rows.number(row, "alpha_equivalent");
-    orbit.twin = rows.number(row, "exponent_twin");
-    for (int k = 1;; ++k) {
-      const std::string name = "exponent_" + std::to_string(k);
-      const auto value = rows.number(row, name);
-      if (!value) break;
-      orbit.exponents.push_back({*value, rows.number(row, name + "_low"), rows.number(row, name + "_high")});
+    orbit.parameter = rows.number(row, parameter).value_or(0);
+    orbit.start = rows.text(row, start);
+    orbit.regime = rows.text(row, regime);
+    orbit.status = rows.text(row, status);
+    orbit.reason = rows.text(row, reason);
+    orbit.exponent_method = rows.text(row, method);
+    orbit.marginal = rows.text(row, marginal);
+    if (const auto forcing_periods = rows.number(row, period)) orbit.period = static_cast<int>(*forcing_periods);
+    orbit.alpha_equivalent = rows.number(row, viscosity);
+    orbit.twin = rows.number(row, twin);
+    for (const auto& [value, low, high] : exponents) {
+      const auto exponent = rows.number(row, value);
+      if (!exponent) break;
+      orbit.exponents.push_back({*exponent, rows.number(row, low), rows.number(row, high)});
     }
     out.push_back(std::move(orbit));
   }

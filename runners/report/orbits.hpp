@@ -7,6 +7,7 @@
 
 #include "runners/report/case_view.hpp"
 #include "runners/report/options.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
@@ -91,29 +92,5 @@ bool is_partial(const Record& record) {
   else
     return false;
 }
-
-/// Cells of a table by row and column name.
-class TableRows {
- public:
-  explicit TableRows(const DerivedTable& table) : table_(table) {}
-  size_t size() const { return table_.rows.size(); }
-  /// "" for what is no text.
-  std::string text(size_t row, std::string_view column) const;
-  /// Nothing for what is no finite number.
-  std::optional<double> number(size_t row, std::string_view column) const;
-  /// Nothing for what is no truth value.
-  std::optional<bool> flag(size_t row, std::string_view column) const;
-
- private:
-  const nlohmann::ordered_json* at(size_t row, std::string_view column) const;
-  const DerivedTable& table_;
-};
-
-/// A column of a table of numbers; null where it has none.
-const std::vector<double>* number_column(const NumberTable& table, std::string_view name);
-const NumberTable* number_table(const CaseRecord& record, std::string_view name);
-const DerivedTable* case_table(const CaseRecord& record, std::string_view name);
-/// The index of each word of a column that holds words; empty where it holds none.
-const std::vector<std::string>* column_words(const NumberTable& table, std::string_view name);
 
 }  // namespace ricochet::report

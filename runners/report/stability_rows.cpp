@@ -4,59 +4,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "runners/report/html.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-const DerivedTable* table_of(const CaseRecord& record, const std::string& name) {
-  const auto found = std::find_if(record.tables.begin(), record.tables.end(),
-                                  [&](const DerivedTable& table) { return table.name == name; });
-  return found == record.tables.end() ? nullptr : &*found;
-}
-
-const Json& cell(const DerivedTable& table, const std::vector<Json>& row, const std::string& column) {
-  static const Json none;
-  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
-  const auto index = static_cast<size_t>(found - table.columns.begin());
-  return found == table.columns.end() || index >= row.size() ? none : row[index];
-}
-
-std::optional<double> number(const Json& value) {
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-std::string text(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : "";
-}
-
-}  // namespace
-
 std::optional<StabilityRange> stability_range(const CaseRecord& record, bool closed) {
-  const DerivedTable* predicted = table_of(record, "stability");
+  const Table* predicted = find_table(record.tables, "stability");
   if (!predicted) return std::nullopt;
-  const DerivedTable* observed = table_of(record, "stability_observed");
-  const std::string contact = closed ? "closed" : "open";
   StabilityRange out;
   out.record = &record;
   out.closed = closed;
-  for (const auto& row : predicted->rows) {
-    const auto step = number(cell(*predicted, row, "step"));
-    if (text(cell(*predicted, row, "contact")) != contact || !step) continue;
+  std::map<double, std::string> behaviours;
+  if (const Table* observed = find_table(record.tables, "stability_observed")) {
+    const TableReader rows(*observed);
+    const size_t step = rows.column("step"), state = rows.column("closed"), behaviour = rows.column("behaviour");
+    for (size_t row = 0; row < rows.size(); ++row)
+      if (const auto h = rows.number(row, step); h && rows.truth(row, state) == closed)
+        behaviours[*h] = rows.text(row, behaviour);
+  }
+  const TableReader rows(*predicted);
+  const size_t step = rows.column("step"), state = rows.column("closed"), radius = rows.column("radius"),
+               marginal = rows.column("marginal"), status = rows.column("status"), reason = rows.column("reason"),
+               limit_predicted = rows.column("limit_predicted"), limit_observed = rows.column("limit_observed");
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto h = rows.number(row, step);
+    if (rows.truth(row, state) != closed || !h) continue;
     StabilityCell one;
-    one.step = *step;
-    one.radius = number(cell(*predicted, row, "radius"));
-    one.marginal = text(cell(*predicted, row, "marginal"));
-    one.status = text(cell(*predicted, row, "status"));
-    one.reason = text(cell(*predicted, row, "reason"));
-    out.predicted = number(cell(*predicted, row, "limit_predicted"));
-    out.observed = number(cell(*predicted, row, "limit_observed"));
-    if (observed)
-      for (const auto& seen : observed->rows)
-        if (text(cell(*observed, seen, "contact")) == contact && number(cell(*observed, seen, "step")) == step)
-          one.behaviour = text(cell(*observed, seen, "behaviour"));
+    one.step = *h;
+    one.radius = rows.number(row, radius);
+    one.marginal = rows.text(row, marginal);
+    one.status = rows.text(row, status);
+    one.reason = rows.text(row, reason);
+    if (const auto seen = behaviours.find(*h); seen != behaviours.end()) one.behaviour = seen->second;
+    out.predicted = rows.number(row, limit_predicted);
+    out.observed = rows.number(row, limit_observed);
     out.cells.push_back(std::move(one));
   }
   if (out.cells.empty()) return std::nullopt;

@@ -13,8 +13,7 @@ void derive_tables(StudyResults& results) {
     kind->tables(results);
   else
     collect_tables(results);
-  if (DerivedTable effects = effects_table(results); !effects.rows.empty())
-    results.derived.push_back(std::move(effects));
+  if (Table effects = effects_table(results); !effects.rows.empty()) results.derived.push_back(std::move(effects));
 }
 
 }  // namespace ricochet

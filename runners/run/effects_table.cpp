@@ -9,12 +9,6 @@
 namespace ricochet {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string cell_text(const Json& value) {
-  return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
-}
-
 // A measure that no kind declares is taken for one of the motion.
 bool of_the_motion(const std::string& measure) {
   const MeasureInfo* info = measure_info(measure);
@@ -39,13 +33,21 @@ bool absent_by_level(const StudyResults& results, const std::vector<Factor>& fac
 
 }  // namespace
 
-DerivedTable effects_table(const StudyResults& results) {
-  DerivedTable table{"effects", {"measure", "factor", "share", "low", "high", "log"}, {}};
+Table effects_table(const StudyResults& results) {
+  Table table{"effects",
+              "Over all cases: what one choice, or two together, explain of the spread of one measure.",
+              {{"measure", "", "The measure, a column of cases.csv."},
+               {"factor", "", "The axis that was varied; two joined by × for what only their combination explains."},
+               {"share", "1", "Share of the variance of the measure over the finished cases that the factor explains."},
+               {"low", "1", "Lower end of the 95 % interval of the share."},
+               {"high", "1", "Upper end of the 95 % interval of the share."},
+               {"log", "", "Whether the logarithm of the measure was analysed, because it spans orders of magnitude."}},
+              {}};
   std::vector<std::vector<std::string>> cells;
   std::vector<std::string> measures;
   for (const CaseRecord& record : results.cases) {
     std::vector<std::string> row;
-    for (const Json& value : axes_of(record, results.columns)) row.push_back(cell_text(value));
+    for (const Cell& value : axes_of(record, results.columns)) row.push_back(value.text());
     cells.push_back(std::move(row));
     for (const auto& [name, value] : record.measures)
       if (of_the_motion(name) && std::find(measures.begin(), measures.end(), name) == measures.end())
@@ -61,8 +63,7 @@ DerivedTable effects_table(const StudyResults& results) {
     if (absent_by_level(results, factors, values)) continue;
     const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)
-      table.rows.push_back(
-          {name, share.factor, number(share.share), number(share.low), number(share.high), effects.log});
+      table.rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
   }
   return table;
 }

@@ -5,6 +5,6 @@ namespace ricochet {
 
 /// effects: per measure of the motion, the share of its spread that each choice explains; no rows where fewer than two
 /// choices vary.
-DerivedTable effects_table(const StudyResults& results);
+Table effects_table(const StudyResults& results);
 
 }  // namespace ricochet

@@ -4,9 +4,12 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/csv.hpp"
+#include "runners/store/record_tables.hpp"
+#include "runners/table/csv_text.hpp"
+#include "runners/table/dictionary.hpp"
 
 namespace ricochet {
 namespace {
@@ -43,16 +46,50 @@ void remove_stale_curves(const std::filesystem::path& folder, const StudyResults
   for (const auto& file : stale) std::filesystem::remove(file, ignored);
 }
 
-void write_derived(const std::filesystem::path& folder, const StudyResults& results) {
-  for (const DerivedTable& table : results.derived) write_file(folder / (table.name + ".csv"), derived_csv(table));
-}
+/// The tables of one folder, each written as CSV and remembered for the dictionary.
+class TableFolder {
+ public:
+  explicit TableFolder(const std::filesystem::path& folder) : folder_(folder) {}
 
-void write_numbers(const std::filesystem::path& folder, const StudyResults& results) {
-  for (const std::string& name : exported_tables(results)) {
-    FileWriter file(folder / (name + ".csv"));
-    write_numbers_csv(results, name, [&](std::string_view piece) { file.write(piece); });
-    file.commit();
+  void write(const Table& table) {
+    write_file(file(table), table_csv(table));
+    remember(table);
   }
+  void write_numbers(const StudyResults& results) {
+    for (const Table& head : number_heads(results)) {
+      FileWriter file(this->file(head));
+      write_numbers_csv(results, head, [&](std::string_view piece) { file.write(piece); });
+      file.commit();
+      remember(head);
+    }
+  }
+  /// Curves are written one by one; their columns are those that any case has.
+  void remember_curves(const StudyResults& results) {
+    Table curves = curves_head();
+    curves.columns.clear();
+    for (const CaseRecord& record : results.cases)
+      for (const std::string& name : record.curve.names)
+        if (!find_column(curves.columns, name)) curves.columns.push_back({name, "", ""});
+    describe(curves, curves_head());
+    if (!curves.columns.empty()) remember(curves);
+  }
+  /// Last, when every table is known.
+  void write_dictionary() { write(dictionary_of(heads_)); }
+
+ private:
+  std::filesystem::path file(const Table& table) const { return folder_ / (table.name + ".csv"); }
+  void remember(const Table& table) { heads_.push_back({table.name, table.text, table.columns, {}}); }
+
+  const std::filesystem::path& folder_;
+  std::vector<Table> heads_;
+};
+
+/// What every results folder has beside its curves, and what an export begins with.
+void write_results(TableFolder& tables, const StudyResults& results) {
+  tables.write(cases_table(results));
+  tables.remember_curves(results);
+  for (const Table& table : results.derived) tables.write(table);
+  tables.write_numbers(results);
 }
 
 /// failures/ID.json, one study per case that went wrong; files of cases that do no longer are removed.
@@ -87,9 +124,9 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   write_file(folder / "study.json", results.study.dump(indent, ' ', false, replace) + '\n');
   write_curves(folder / "curves", results, changed);
   remove_stale_curves(folder / "curves", results);
-  write_file(folder / "cases.csv", cases_csv(results));
-  write_derived(folder, results);
-  write_numbers(folder, results);
+  TableFolder tables(folder);
+  write_results(tables, results);
+  tables.write_dictionary();
   write_failures(folder / "failures", results);
   write_file(folder / "report.html", render(results));
 }
@@ -97,13 +134,13 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
 void write_tables(const std::filesystem::path& folder, const StudyResults& results) {
   make_folder(folder);
   write_curves(folder / "curves", results, nullptr);
-  write_file(folder / "cases.csv", cases_csv(results));
-  write_derived(folder, results);
-  write_numbers(folder, results);
-  write_file(folder / "measures.csv", measures_csv());
-  write_file(folder / "left_out.csv", left_out_csv(results));
-  write_file(folder / "notes.csv", notes_csv(results));
-  write_file(folder / "environment.csv", environment_csv(results.environment));
+  TableFolder tables(folder);
+  write_results(tables, results);
+  tables.write(measures_table());
+  tables.write(left_out_table(results));
+  tables.write(notes_table(results));
+  tables.write(environment_table(results.environment));
+  tables.write_dictionary();
 }
 
 }  // namespace ricochet

@@ -10,15 +10,15 @@ namespace ricochet {
 
 using RenderReport = std::function<std::string(const StudyResults&)>;
 
-/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv, failures/ID.json
-/// and report.html into `folder` from the results alone, each file whole or not at all, and removes the curves of cases
-/// that are no longer in the study. `changed`: the cases whose curve must be written again; nothing means all. Throws
-/// StoreError.
+/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv, dictionary.csv
+/// (what every column of these means), failures/ID.json and report.html into `folder` from the results alone, each file
+/// whole or not at all, and removes the curves of cases that are no longer in the study. `changed`: the cases whose
+/// curve must be written again; nothing means all. Throws StoreError.
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
                    const std::set<std::string>* changed = nullptr);
 
 /// Writes the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each means),
-/// left_out, notes, environment. Throws StoreError.
+/// left_out, notes, environment, dictionary. Throws StoreError.
 void write_tables(const std::filesystem::path& folder, const StudyResults& results);
 
 }  // namespace ricochet

@@ -36,6 +36,7 @@ StudyResults header(const Study& study) {
   results.question = study.question;
   results.kind = study.kind;
   results.columns = study.columns;
+  results.axes = study.axes;
   results.expected_cases = static_cast<int>(study.cases.size());
   return results;
 }

@@ -7,16 +7,14 @@
 #include <optional>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/store/csv.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
 
 std::string cell(const CaseRecord& record, const std::string& column) {
-  for (const auto& [name, value] : record.axes)
-    if (name == column) return value.is_string() ? value.get<std::string>() : csv_value(value);
-  return "";
+  return axis(record, column).text();
 }
 
 /// Characters shown, for UTF-8 text without combining marks.

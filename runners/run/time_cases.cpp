@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/run/say.hpp"
@@ -14,12 +15,6 @@ namespace {
 bool timed(const CaseRecord& record) {
   return std::any_of(record.measures.begin(), record.measures.end(),
                      [](const auto& measure) { return measure.first == "timed_seconds"; });
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 }  // namespace

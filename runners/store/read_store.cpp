@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 
+#include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
@@ -43,6 +44,10 @@ void read_study(SQLite::Database& database, StudyResults& results) {
     if (key == "kind") results.kind = value.get<std::string>();
     if (key == "resolved") results.study = value;
     if (key == "columns") results.columns = value.get<std::vector<std::string>>();
+    if (key == "axes")
+      for (const Json& axis : value)
+        results.axes.push_back(
+            {axis.at(0).get<std::string>(), axis.at(1).get<std::string>(), axis.at(2).get<std::string>()});
     if (key == "expected_cases") results.expected_cases = value.get<int>();
   }
 }
@@ -95,13 +100,18 @@ StudyResults read_tables(SQLite::Database& database) {
              record.curve.names.push_back(row.getColumn(1).getString());
              record.curve.columns.push_back(series(row.getColumn(2)));
            });
-  per_case(
-      database, cases, "SELECT case_id, name, content FROM case_tables ORDER BY case_id, position",
-      [](CaseRecord& record, Statement& row) {
-        const Json content = Json::parse(row.getColumn(2).getString());
-        record.tables.push_back({row.getColumn(1).getString(), content.at("columns").get<std::vector<std::string>>(),
-                                 content.at("rows").get<std::vector<std::vector<Json>>>()});
-      });
+  per_case(database, cases, "SELECT case_id, name, content FROM case_tables ORDER BY case_id, position",
+           [](CaseRecord& record, Statement& row) {
+             // What the columns mean is not stored: the kind of study declares it.
+             const Json content = Json::parse(row.getColumn(2).getString());
+             Table& table = record.tables.emplace_back();
+             table.name = row.getColumn(1).getString();
+             table.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
+             for (const Json& cells : content.at("rows")) {
+               Row& one = table.rows.emplace_back();
+               for (const Json& cell : cells) one.push_back(cell_of(cell));
+             }
+           });
 
   per_case(database, cases,
            "SELECT case_id, part, name, exported, column_name, words, series FROM case_numbers "
@@ -113,11 +123,11 @@ StudyResults read_tables(SQLite::Database& database) {
                table.exported = row.getColumn(3).getInt() != 0;
              }
              NumberTable& table = record.numbers.back();
-             table.names.push_back(row.getColumn(4).getString());
+             table.columns.push_back({row.getColumn(4).getString(), "", ""});
              if (!row.getColumn(5).isNull())
-               table.words.emplace_back(table.names.back(),
+               table.words.emplace_back(table.columns.back().name,
                                         Json::parse(row.getColumn(5).getString()).get<std::vector<std::string>>());
-             table.columns.push_back(series(row.getColumn(6)));
+             table.values.push_back(series(row.getColumn(6)));
            });
 
   SQLite::Statement environment(database, "SELECT name, value FROM environment ORDER BY position");

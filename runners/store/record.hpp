@@ -4,33 +4,15 @@
 #include <utility>
 #include <vector>
 
+#include "runners/table/number_table.hpp"
+#include "runners/table/table.hpp"
+
 namespace ricochet {
 
 /// Sampled series of one case: columns of equal length, in the order of `names` (design §5).
 struct Curve {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
-};
-
-/// Rows that were worked out of the cases, as they stand in NAME.csv: `errors`, `orders`, `work_precision`,
-/// `stability`, `effects`. A cell is a number, a text, a truth value, or null where there is none; never NaN.
-struct DerivedTable {
-  std::string name;
-  std::vector<std::string> columns;
-  std::vector<std::vector<nlohmann::ordered_json>> rows;  ///< each as long as `columns`
-};
-
-/// Many numbers in columns of equal length, as they stand in NAME.csv behind the axes of their case: sections, impacts.
-/// NaN is an absent number (an empty cell).
-struct NumberTable {
-  std::string name;
-  std::vector<std::string> names;            ///< of the columns
-  std::vector<std::vector<double>> columns;  ///< in the order of `names`
-  /// Columns that hold words: column name, and the words; the numbers are indices into them.
-  std::vector<std::pair<std::string, std::vector<std::string>>> words;
-  bool exported = true;  ///< false: for the report and for going on, not written as CSV
-
-  std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
 /// What one case left behind: a row of cases.csv, and its curve.
@@ -46,7 +28,7 @@ struct CaseRecord {
   std::vector<std::string> notes;
   std::string operator_name;  ///< what compile chose: diagonal, modal, band, sparse
   Curve curve;
-  std::vector<DerivedTable> tables;  ///< rows of its own, without the case's axes (stability.csv)
+  std::vector<Table> tables;         ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
   bool partial = false;              ///< saved while the case was running: what it had by then
 };
@@ -62,10 +44,11 @@ struct StudyResults {
   nlohmann::ordered_json study;  ///< resolved study
   std::string name, question, kind;
   std::vector<std::string> columns;  ///< axis columns of cases.csv, in order
+  std::vector<Column> axes = {};     ///< what is known of them beyond the study format: parameters of methods
   std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   Environment environment;
-  std::vector<DerivedTable> derived;  ///< worked out of the cases when they are read, not stored
+  std::vector<Table> derived;  ///< worked out of the cases when they are read, not stored
 };
 
 /// What a measure of a case means, as the kinds of study declare theirs (also the report's tooltips).

@@ -1,5 +1,10 @@
 #include "runners/store/record_values.hpp"
 
+#include <algorithm>
+#include <limits>
+
+#include "runners/study/axis_meaning.hpp"
+
 namespace ricochet {
 
 std::optional<double> measure(const CaseRecord& record, const std::string& name) {
@@ -8,20 +13,86 @@ std::optional<double> measure(const CaseRecord& record, const std::string& name)
   return std::nullopt;
 }
 
-nlohmann::ordered_json axis(const CaseRecord& record, const std::string& column) {
+Cell axis(const CaseRecord& record, const std::string& column) {
   for (const auto& [name, value] : record.axes)
-    if (name == column) return value;
-  return nullptr;
+    if (name == column) return cell_of(value);
+  return {};
 }
 
-nlohmann::ordered_json number(std::optional<double> value) {
-  return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
-std::vector<nlohmann::ordered_json> axes_of(const CaseRecord& record, const std::vector<std::string>& columns) {
-  std::vector<nlohmann::ordered_json> row;
+Row axes_of(const CaseRecord& record, const std::vector<std::string>& columns) {
+  Row row;
   for (const std::string& column : columns) row.push_back(axis(record, column));
   return row;
+}
+
+std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names) {
+  std::vector<Column> columns;
+  for (const std::string& name : names) {
+    const auto known = find_column(results.axes, name);
+    columns.push_back(known ? results.axes[*known] : axis_meaning(name, results.study));
+  }
+  return columns;
+}
+
+Column case_column() {
+  return {"case", "", "The case: ten hexadecimal digits that depend on its axes alone, the same in every table."};
+}
+
+std::vector<Column> place_columns(const StudyResults& results) {
+  return joined({case_column()}, axis_columns(results, results.columns));
+}
+
+Row place_of(const StudyResults& results, const CaseRecord& record) {
+  Row row = {record.id};
+  for (const std::string& column : results.columns) row.push_back(axis(record, column));
+  return row;
+}
+
+void append_rows(const StudyResults& results, const CaseRecord& record, const Table& own, Table& into) {
+  // Cases of one study may have different columns (as many exponents as each was asked for).
+  for (const Column& column : own.columns)
+    if (!find_column(into.columns, column.name)) {
+      into.columns.push_back(column);
+      for (Row& row : into.rows) row.emplace_back();
+    }
+  std::vector<std::size_t> places;
+  for (const Column& column : own.columns) places.push_back(*find_column(into.columns, column.name));
+  const Row place = place_of(results, record);
+  for (const Row& row : own.rows) {
+    Row whole = place;
+    whole.resize(into.columns.size());
+    for (std::size_t c = 0; c < places.size() && c < row.size(); ++c) whole[places[c]] = row[c];
+    into.rows.push_back(std::move(whole));
+  }
+}
+
+Table table_of_cases(const StudyResults& results, std::string name, std::string text,
+                     const std::vector<Column>& columns) {
+  return {std::move(name), std::move(text), joined(place_columns(results), columns), {}};
+}
+
+Table table_of_cases(const StudyResults& results, const Table& own) {
+  return table_of_cases(results, own.name, own.text, own.columns);
+}
+
+Cell cell_of(const nlohmann::ordered_json& value) {
+  if (value.is_null()) return {};
+  if (value.is_string()) return value.get_ref<const std::string&>();
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_float()) return value.get<double>();
+  const bool fits = !value.is_number_unsigned() ||
+                    value.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (value.is_number_integer() && fits) return value.get<std::int64_t>();
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+nlohmann::ordered_json json_of(const Cell& cell) {
+  return cell.visit([](const auto& content) -> nlohmann::ordered_json {
+    if constexpr (std::is_same_v<std::decay_t<decltype(content)>, std::monostate>)
+      return nullptr;
+    else
+      return content;
+  });
 }
 
 }  // namespace ricochet

@@ -1,23 +1,44 @@
 #pragma once
-#include <cmath>
 #include <optional>
 
 #include "runners/store/record.hpp"
 
 /// \file
-/// What a record holds, by name.
+/// What a record holds, by name, and how the rows of tables begin.
 namespace ricochet {
 
 /// The measure of this name, if the case has it.
 std::optional<double> measure(const CaseRecord& record, const std::string& name);
 
-/// The case's value on this axis; null where it has no such axis.
-nlohmann::ordered_json axis(const CaseRecord& record, const std::string& column);
+/// The case's value on this axis; nothing where it has no such axis.
+Cell axis(const CaseRecord& record, const std::string& column);
 
 /// The case's values on these axes, in their order.
-std::vector<nlohmann::ordered_json> axes_of(const CaseRecord& record, const std::vector<std::string>& columns);
+Row axes_of(const CaseRecord& record, const std::vector<std::string>& columns);
 
-/// A cell of a table: null for what is absent or not finite.
-nlohmann::ordered_json number(std::optional<double> value);
+/// What the axes of these names mean: as the run described them, else as the study format does.
+std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names);
+
+/// `case`, the key of every table that speaks of cases.
+Column case_column();
+
+/// `case` and every axis of the study: how a row that speaks of one case begins.
+std::vector<Column> place_columns(const StudyResults& results);
+/// The cells of these columns.
+Row place_of(const StudyResults& results, const CaseRecord& record);
+
+/// The rows of a table that the case carries, each behind its case and axes; `into` has the columns for them.
+void append_rows(const StudyResults& results, const CaseRecord& record, const Table& own, Table& into);
+
+/// A table without rows whose columns are `case`, every axis, then these.
+Table table_of_cases(const StudyResults& results, std::string name, std::string text,
+                     const std::vector<Column>& columns);
+/// The same of a table that has these alone.
+Table table_of_cases(const StudyResults& results, const Table& own);
+
+/// A value of a study or of a store as a cell: what is neither a word, a number nor a truth value is its JSON text.
+Cell cell_of(const nlohmann::ordered_json& value);
+/// The same cell as it is stored.
+nlohmann::ordered_json json_of(const Cell& cell);
 
 }  // namespace ricochet

@@ -12,6 +12,7 @@
 
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/read_store.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store_error.hpp"
 
@@ -106,6 +107,9 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     insert(state, "kind", text_of(study.kind));
     insert(state, "resolved", text_of(study.study));
     insert(state, "columns", text_of(study.columns));
+    Json axes = Json::array();
+    for (const Column& axis : study.axes) axes.push_back({axis.name, axis.unit, axis.text});
+    insert(state, "axes", text_of(axes));
     insert(state, "expected_cases", text_of(study.expected_cases));
     transaction.commit();
   });
@@ -224,8 +228,14 @@ void Store::save_one(const CaseRecord& record, bool partial) {
 
   position = 0;
   SQLite::Statement table(database, "INSERT INTO case_tables VALUES(?, ?, ?, ?)");
-  for (const DerivedTable& one : record.tables) {
-    const Json content = {{"columns", one.columns}, {"rows", one.rows}};
+  for (const Table& one : record.tables) {
+    Json columns = Json::array(), rows = Json::array();
+    for (const Column& column : one.columns) columns.push_back(column.name);
+    for (const Row& row : one.rows) {
+      Json& cells = rows.emplace_back(Json::array());
+      for (const Cell& cell : row) cells.push_back(json_of(cell));
+    }
+    const Json content = {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
     insert(table, record.id, position++, one.name, text_of(content));
   }
 
@@ -245,8 +255,8 @@ void Store::save_numbers(const CaseRecord& record) {
   SQLite::Statement add(*database_, "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t t = 0; t < record.numbers.size(); ++t) {
     const NumberTable& table = record.numbers[t];
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      const std::string& column = table.names.at(c);
+    for (std::size_t c = 0; c < table.values.size(); ++c) {
+      const std::string& column = table.columns.at(c).name;
       add.reset();
       add.bind(1, record.id);
       add.bind(2, static_cast<int>(t));
@@ -255,9 +265,8 @@ void Store::save_numbers(const CaseRecord& record) {
       add.bind(5, table.exported ? 1 : 0);
       add.bind(6, column);
       add.bind(7);
-      for (const auto& [name, words] : table.words)
-        if (name == column) add.bind(7, text_of(words));
-      bind_series(add, 8, table.columns[c]);
+      if (const auto* words = table.words_of(column)) add.bind(7, text_of(*words));
+      bind_series(add, 8, table.values[c]);
       add.exec();
     }
   }

@@ -10,6 +10,7 @@
 #include <ricochet/scene/semi_discrete.hpp>
 #include <sstream>
 
+#include "runners/study/axis_meaning.hpp"
 #include "runners/study/case_id.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/excludes.hpp"
@@ -267,6 +268,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   }
   apply_excludes(resolved["exclude"], study);
   if (kind.check_cases) kind.check_cases(study);
+  study.axes = axis_meanings(study, registry);
   return study;
 }
 

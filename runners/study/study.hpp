@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "runners/table/table.hpp"
+
 namespace ricochet {
 
 using Json = nlohmann::ordered_json;
@@ -44,6 +46,7 @@ struct Study {
   std::string name, question, kind;
   Json resolved;                     ///< the study with every default written out
   std::vector<std::string> columns;  ///< axis columns over all cases, in order
+  std::vector<Column> axes;          ///< what these mean
   std::vector<StudyCase> cases;
 };
 

@@ -38,10 +38,13 @@ Kind half_lives() {
       record.id = study_case.id;
       record.axes = study_case.axes;
       record.status = "done";
-      DerivedTable table{"half_lives", {"share", "time"}, {}};
+      Table table{"half_lives",
+                  "When the amplitude has fallen to each share.",
+                  {{"share", "1", "Share of the first amplitude."}, {"time", "s", "Time after which it is reached."}},
+                  {}};
       for (const Json& share : study_case.settings.at("shares")) {
         const double time = -std::log(share.get<double>()) / decay;
-        table.rows.push_back({share, time});
+        table.rows.push_back({share.get<double>(), time});
         record.measures = {{"longest_half_life", time}};
       }
       record.tables.push_back(std::move(table));

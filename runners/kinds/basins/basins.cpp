@@ -29,7 +29,6 @@ std::vector<Field> basins_keys() {
   return fields;
 }
 
-
 }  // namespace
 
 Kind basins_kind() {

@@ -36,10 +36,16 @@ std::size_t find_place(const GridAxis& axis, double wanted) {
 // The strobed points that the run stored for a row of cells.csv.
 std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t row) {
   std::vector<SectionPoint> out;
-  for (const NumberTable& table : record.numbers)
-    for (std::size_t i = 0; table.name == "cell_points" && i < table.rows(); ++i)
-      if (table.columns[0][i] == static_cast<double>(row))
-        out.push_back({table.columns[2][i], table.columns[3][i], table.columns[4][i], table.columns[5][i]});
+  const NumberTable* table = find_table(record.numbers, "cell_points");
+  const auto* cells = table ? table->numbers("cell") : nullptr;
+  if (!cells) return out;
+  std::vector<const std::vector<double>*> columns;
+  for (const char* name : {"tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"})
+    columns.push_back(table->numbers(name));
+  if (std::count(columns.begin(), columns.end(), nullptr) > 0) return out;
+  for (std::size_t i = 0; i < table->rows(); ++i)
+    if ((*cells)[i] == static_cast<double>(row))
+      out.push_back({(*columns[0])[i], (*columns[1])[i], (*columns[2])[i], (*columns[3])[i]});
   return out;
 }
 
@@ -59,19 +65,21 @@ int march_cell_again(const StudyResults& results, const PointRequest& asked, std
   const StudyCase& study_case = stored.find(record.id);
   const std::vector<GridAxis> axes = grid_axes(study_case.settings);
   const std::size_t column = find_place(axes[0], x), line = find_place(axes[1], y);
-  const StoredRows cells(record, "cells");
+  const TableReader cells(stored_table(record, "cells"));
+  const std::size_t across = cells.column("x"), along = cells.column("y");
   std::size_t row = 0;
-  while (row < cells.count() &&
-         !(cells.number(row, "x") == axes[0].values[column] && cells.number(row, "y") == axes[1].values[line]))
+  while (row < cells.size() &&
+         !(cells.number(row, across) == axes[0].values[column] && cells.number(row, along) == axes[1].values[line]))
     ++row;
 
   SamplePrinter print(out);
   const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(asked), std::ref(print));
   std::cerr << regime_text(end);
-  if (row == cells.count()) {
+  if (row == cells.size()) {
     std::cerr << "; the run has not come to this cell";
-  } else if (cells.cell(row, "marched") == false) {
-    std::cerr << fmt::format("; the run filled this cell from a marched one of its basin ({})", cells.regime(row));
+  } else if (cells.truth(row, "marched") == false) {
+    std::cerr << fmt::format("; the run filled this cell from a marched one of its basin ({})",
+                             stored_regime(cells, row));
   } else {
     const std::vector<SectionPoint> section = stored_section(record, row);
     std::size_t equal = 0;

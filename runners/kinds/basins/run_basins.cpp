@@ -9,6 +9,7 @@
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/grid_refinement.hpp"
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
 
@@ -138,13 +139,8 @@ class BasinsRun {
 
   // Of a case under way (not complete) only the cells that are known have a row.
   void write_tables(CaseRecord& record, bool complete) const {
-    DerivedTable cells{
-        "cells", {"x", "y", "class", "period", "attractor", "marched", "source", "status", "reason"}, {}};
-    NumberTable points;
-    points.name = "cell_points";
-    points.names = {"cell", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"};
-    points.columns.resize(points.names.size());
-    points.exported = false;
+    Table cells = cells_head();
+    NumberTable points = cell_points_head();
     const std::vector<std::size_t> sources = refinement_.sources();
     std::vector<std::size_t> row_of(sources.size());
     std::size_t rows = 0;
@@ -159,14 +155,12 @@ class BasinsRun {
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
-      cells.rows.push_back({x, y, regime_name(end.regime), end.period > 0 ? Json(end.period) : Json(nullptr), nullptr,
+      cells.rows.push_back({x, y, regime_name(end.regime), end.period > 0 ? Cell(end.period) : Cell(), nullptr,
                             sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
       for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
-        std::size_t column = 0;
-        for (const double value : {static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement,
-                                   point.velocity, point.opposite_displacement, point.opposite_velocity})
-          points.columns[column++].push_back(value);
+        points.add({static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement, point.velocity,
+                    point.opposite_displacement, point.opposite_velocity});
       }
     }
     record.tables.push_back(std::move(cells));

@@ -23,8 +23,8 @@ std::vector<Field> bifurcation_keys() {
   random.fields = {integer("random", {1, 10000, false, false}, std::nullopt, "Number of random initial states."),
                    integer("seed", {0, 9007199254740992.0, false, false}, 1, "Seed of the random states.")};
   Field start = of_form(Field::Form::starts, "start", Json::array({"rest"}),
-                      "Where the orbits of each value begin: at rest in the laboratory frame, in the scene's own "
-                      "initial state, where the next lower (up) or higher (down) value ended, or in random states.");
+                        "Where the orbits of each value begin: at rest in the laboratory frame, in the scene's own "
+                        "initial state, where the next lower (up) or higher (down) value ended, or in random states.");
   start.spec = word_parameter("start", {"rest", "state", "up", "down"}, std::nullopt, start.spec.text);
   start.nested.push_back(std::move(random));
 
@@ -38,7 +38,6 @@ std::vector<Field> bifurcation_keys() {
   fields.push_back(budget());
   return fields;
 }
-
 
 }  // namespace
 

@@ -13,14 +13,15 @@
 namespace ricochet {
 namespace {
 
-std::size_t find_row(const StoredRows& values, double wanted, const std::string& start) {
+std::size_t find_row(const TableReader& values, double wanted, const std::string& start) {
   std::vector<std::string> starts;
   std::vector<double> marched;  // from this start
-  for (std::size_t row = 0; row < values.count(); ++row) {
-    const std::string name = values.text(row, "start");
+  const std::size_t starting = values.column("start"), parameter = values.column("parameter");
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const std::string name = values.text(row, starting);
     if (std::find(starts.begin(), starts.end(), name) == starts.end()) starts.push_back(name);
     if (name != start) continue;
-    marched.push_back(values.number(row, "parameter"));
+    marched.push_back(values.number(row, parameter).value());
     if (is_value(marched.back(), wanted)) return row;
   }
   if (!marched.empty())
@@ -33,14 +34,17 @@ std::size_t find_row(const StoredRows& values, double wanted, const std::string&
 }
 
 // "periodic 1; 2 impacts per period; exponent_1 -0.31 in [-0.32, -0.3] 1/s (tangent)".
-std::string description(const StoredRows& values, std::size_t row) {
-  std::string text = values.regime(row);
+std::string description(const TableReader& values, std::size_t row) {
+  std::string text = stored_regime(values, row);
   if (const std::string impacts = values.text(row, "impacts_per_period"); !impacts.empty())
     text += fmt::format("; {} impacts per period", impacts);
-  for (int k = 1; !values.text(row, fmt::format("exponent_{}", k)).empty(); ++k)
-    text += fmt::format("; exponent_{} {} in [{}, {}] 1/s", k, values.text(row, fmt::format("exponent_{}", k)),
-                        values.text(row, fmt::format("exponent_{}_low", k)),
-                        values.text(row, fmt::format("exponent_{}_high", k)));
+  for (int k = 1;; ++k) {
+    const std::string name = fmt::format("exponent_{}", k);
+    const std::string exponent = values.text(row, values.column_if_any(name));
+    if (exponent.empty()) break;
+    text += fmt::format("; {} {} in [{}, {}] 1/s", name, exponent, values.text(row, name + "_low"),
+                        values.text(row, name + "_high"));
+  }
   if (const std::string method = values.text(row, "exponent_method"); !method.empty()) text += " (" + method + ")";
   return text;
 }
@@ -50,14 +54,15 @@ std::vector<double> stored_strobes(const CaseRecord& record, const StudyCase& st
                                    const std::string& start) {
   std::vector<double> strobes;
   if (study_case.settings.at("section") != "strobe") return strobes;
-  for (const NumberTable& table : record.numbers) {
-    if (table.name != "points" || table.words.empty()) continue;
-    const auto& starts = table.words.front().second;
-    const auto word = std::find(starts.begin(), starts.end(), start) - starts.begin();
-    for (std::size_t i = 0; i < table.rows(); ++i)
-      if (table.columns[0][i] == parameter && table.columns[1][i] == static_cast<double>(word))
-        strobes.push_back(table.columns[3][i]);
-  }
+  const NumberTable* table = find_table(record.numbers, "points");
+  const auto* starts = table ? table->words_of("start") : nullptr;
+  const auto *parameters = table ? table->numbers("parameter") : nullptr,
+             *froms = table ? table->numbers("start") : nullptr,
+             *displacements = table ? table->numbers("tip_displacement") : nullptr;
+  if (!starts || !parameters || !froms || !displacements) return strobes;
+  const auto word = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
+  for (std::size_t i = 0; i < table->rows(); ++i)
+    if ((*parameters)[i] == parameter && (*froms)[i] == word) strobes.push_back((*displacements)[i]);
   return strobes;
 }
 
@@ -69,12 +74,12 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
         "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");
   const CaseRecord& record = find_case(results, asked.case_id);
-  const StoredRows values(record, "values");
+  const TableReader values(stored_table(record, "values"));
   const std::size_t row = find_row(values, *asked.parameter, asked.start);
   if (const std::string status = values.text(row, "status"); status != "done")
     throw PointRefused(fmt::format("this orbit is {}: {}", status, values.text(row, "reason")));
   PointTask task;
-  task.parameter = values.number(row, "parameter");
+  task.parameter = values.number(row, "parameter").value();
   task.start = asked.start;
   task.count = wanted_count(asked);
   auto entry = find_entry(record, task.parameter, task.start);

@@ -14,7 +14,6 @@ namespace ricochet {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Row = std::vector<Json>;
 
 std::vector<std::string> without(std::vector<std::string> columns, const std::string& one) {
   std::erase(columns, one);
@@ -26,13 +25,23 @@ std::vector<std::string> errors_of(const StudyResults& results) {
   return errors.get<std::vector<std::string>>();
 }
 
+// Tells places apart.
+std::string key_of(const Row& place) {
+  std::string key;
+  for (const Cell& cell : place) key += cell.text() + '\x1f';
+  return key;
+}
+
+const Column error_column{"error", "", "Which error: a quantity of the motion and how its difference is measured."};
+const Column value_column{"value", "that of the error", "The error of the case against its reference."};
+
 // The cases that differ in `refined` alone, in the study's order.
 std::vector<std::vector<const CaseRecord*>> refinements(const StudyResults& results, const std::string& refined) {
   const std::vector<std::string> columns = without(results.columns, refined);
   std::map<std::string, std::size_t> known;
   std::vector<std::vector<const CaseRecord*>> groups;
   for (const CaseRecord& record : results.cases) {
-    const auto [found, fresh] = known.emplace(Json(axes_of(record, columns)).dump(), groups.size());
+    const auto [found, fresh] = known.emplace(key_of(axes_of(record, columns)), groups.size());
     if (fresh) groups.emplace_back();
     groups[found->second].push_back(&record);
   }
@@ -40,7 +49,7 @@ std::vector<std::vector<const CaseRecord*>> refinements(const StudyResults& resu
 }
 
 double size_of(const CaseRecord& record, const std::string& refined) {
-  const double value = axis(record, refined).get<double>();
+  const double value = axis(record, refined).number().value();
   return refined == "step" ? value : 1 / value;
 }
 
@@ -64,7 +73,7 @@ double other_error(const StudyResults& results, const CaseRecord& finest, const 
 
 bool single_valued(const StudyResults& results, const std::string& column) {
   std::set<std::string> values;
-  for (const CaseRecord& record : results.cases) values.insert(axis(record, column).dump());
+  for (const CaseRecord& record : results.cases) values.insert(axis(record, column).text());
   return values.size() < 2;
 }
 
@@ -75,24 +84,41 @@ bool meshed(const StudyResults& results) {
 
 }  // namespace
 
-DerivedTable errors_table(const StudyResults& results) {
-  DerivedTable table{"errors", results.columns, {}};
-  table.columns.insert(table.columns.end(), {"error", "value", "floor"});
+Table errors_table(const StudyResults& results) {
+  Table table = table_of_cases(
+      results, "errors", "One kind of error of one case.",
+      {error_column,
+       value_column,
+       {"floor", "that of the error",
+        "What the reference itself may be wrong by: below it the error says nothing, and below four of it no order."}});
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : errors_of(results)) {
       const auto value = measure(record, "error." + name);
       if (!value) continue;
-      Row row = axes_of(record, results.columns);
-      row.insert(row.end(), {name, *value, number(measure(record, "floor." + name))});
+      Row row = place_of(results, record);
+      row.insert(row.end(), {name, *value, measure(record, "floor." + name)});
       table.rows.push_back(std::move(row));
     }
   return table;
 }
 
-DerivedTable orders_table(const StudyResults& results) {
-  DerivedTable table{"orders", without(results.columns, "step"), {}};
-  table.columns.insert(table.columns.end(),
-                       {"refined", "error", "order", "low", "high", "declared", "verdict", "reason"});
+Table orders_table(const StudyResults& results) {
+  Table table{
+      "orders", "The order with which one kind of error of one method falls as one quantity is refined.", {}, {}};
+  table.columns = {{"case", "",
+                    "The finest of the cases that the order is fitted to; the others differ in the refined "
+                    "quantity alone."}};
+  table.columns = joined(std::move(table.columns), axis_columns(results, without(results.columns, "step")));
+  table.columns = joined(
+      std::move(table.columns),
+      {{"refined", "", "What is refined: step or elements; the order is one in the step, or in the element length."},
+       error_column,
+       {"order", "1", "Fitted order: the slope of the error over the refined quantity, both on logarithmic scales."},
+       {"low", "1", "Lower end of the 95 % interval of the order."},
+       {"high", "1", "Upper end of the 95 % interval of the order."},
+       {"declared", "1", "The order in the step that the scheme declares; empty where it declares none."},
+       {"verdict", "", "Whether the fit confirms the declared order, refutes it, or cannot decide."},
+       {"reason", "", "What the verdict rests on: which points were used, and what was in the way."}});
   for (const std::string refined : {"step", "elements"}) {
     const std::string other = refined == "step" ? "elements" : "step";
     std::set<double> sizes;
@@ -103,12 +129,12 @@ DerivedTable orders_table(const StudyResults& results) {
     const std::vector<std::string> methods = without(without(results.columns, "step"), "elements");
     for (const CaseRecord& record : results.cases) {
       const double size = size_of(record, other);
-      const auto [found, fresh] = finest_other.emplace(Json(axes_of(record, methods)).dump(), size);
+      const auto [found, fresh] = finest_other.emplace(key_of(axes_of(record, methods)), size);
       if (!fresh) found->second = std::min(found->second, size);
     }
     for (const auto& group : refinements(results, refined)) {
       const CaseRecord& first = *group.front();
-      const bool fine = size_of(first, other) == finest_other.at(Json(axes_of(first, methods)).dump());
+      const bool fine = size_of(first, other) == finest_other.at(key_of(axes_of(first, methods)));
       if (refined == "elements" && !fine) continue;
       for (const std::string& name : errors_of(results)) {
         std::vector<OrderPoint> points;
@@ -129,14 +155,13 @@ DerivedTable orders_table(const StudyResults& results) {
         question.other_unknown = single_valued(results, other) && meshed(results) &&
                                  (refined == "elements" || measure(*finest, "reference_of_mesh") != 1.0);
         const OrderFit fit = fit_order(points, question);
-        Row row = axes_of(first, without(results.columns, "step"));
-        if (refined == "elements")
-          for (std::size_t c = 0; c + 8 < table.columns.size(); ++c)
-            if (table.columns[c] == "elements") row[c] = nullptr;
+        Row row = {finest->id};
+        for (const std::string& column : without(results.columns, "step"))
+          row.push_back(column == refined ? Cell() : axis(first, column));
         const std::string gci =
             fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "";
-        row.insert(row.end(), {refined, name, number(fit.order), number(fit.low), number(fit.high),
-                               number(question.declared), verdict_word(fit.verdict), fit.reason + gci});
+        row.insert(row.end(), {refined, name, fit.order, fit.low, fit.high, question.declared,
+                               verdict_word(fit.verdict), fit.reason + gci});
         table.rows.push_back(std::move(row));
       }
     }
@@ -144,17 +169,27 @@ DerivedTable orders_table(const StudyResults& results) {
   return table;
 }
 
-DerivedTable work_precision_table(const StudyResults& results) {
+Table work_precision_table(const StudyResults& results) {
   const std::vector<std::string> methods = without(results.columns, "step");
-  DerivedTable table{"work_precision", methods, {}};
-  table.columns.insert(table.columns.end(),
-                       {"step", "error", "value", "run_seconds", "low", "high", "steps", "status"});
+  Table table{"work_precision", "One kind of error of one case, and what the case costs.", {case_column()}, {}};
+  table.columns = joined(std::move(table.columns), axis_columns(results, methods));
+  table.columns = joined(std::move(table.columns), axis_columns(results, {"step"}));
+  table.columns =
+      joined(std::move(table.columns),
+             {error_column,
+              value_column,
+              {"run_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats."},
+              {"low", "s", "The fastest repeat."},
+              {"high", "s", "The slowest repeat."},
+              {"steps", "1", "Steps of time that were marched."},
+              {"status", "", "done, refused, diverged or failed, as in cases.csv."}});
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : errors_of(results)) {
-      Row row = axes_of(record, methods);
-      row.insert(row.end(), {axis(record, "step"), name, number(measure(record, "error." + name)),
-                             number(measure(record, "timed_seconds")), number(measure(record, "timed_low")),
-                             number(measure(record, "timed_high")), record.steps, record.status});
+      Row row = {record.id};
+      for (const Cell& cell : axes_of(record, methods)) row.push_back(cell);
+      row.insert(row.end(),
+                 {axis(record, "step"), name, measure(record, "error." + name), measure(record, "timed_seconds"),
+                  measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status});
       table.rows.push_back(std::move(row));
     }
   return table;

@@ -4,12 +4,12 @@
 namespace ricochet {
 
 /// errors: one row per case and error, with the floor below which it says nothing.
-DerivedTable errors_table(const StudyResults& results);
+Table errors_table(const StudyResults& results);
 
 /// orders: one row per method, error and refined quantity, with the fit's verdict and reason.
-DerivedTable orders_table(const StudyResults& results);
+Table orders_table(const StudyResults& results);
 
 /// work_precision: one row per case and error, with the processor time it took.
-DerivedTable work_precision_table(const StudyResults& results);
+Table work_precision_table(const StudyResults& results);
 
 }  // namespace ricochet

@@ -9,12 +9,11 @@
 #include <ricochet/measure/stability/observed_stability.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
 namespace {
-
-using Cell = nlohmann::ordered_json;
 
 // A growth per step that 3000 steps without contact show beyond doubt: by a factor of twenty.
 constexpr double plain_growth = 1e-3;
@@ -33,13 +32,6 @@ std::vector<double> steps_of(const StudyCase& study_case) {
     steps.push_back(
         std::stod(fmt::format("{:.12g}", count == 1 ? from : from * std::pow(to / from, i / (count - 1.0)))));
   return steps;
-}
-
-Cell number(double value) {
-  return std::isfinite(value) ? Cell(value) : Cell(nullptr);
-}
-Cell number(const std::optional<double>& value) {
-  return value ? number(*value) : Cell(nullptr);
 }
 
 void append(std::string& reason, const std::string& sentence) {
@@ -138,8 +130,8 @@ class StabilityRun {
   CaseRecord refused(const std::string& sentence) {
     record_.status = "refused";
     record_.reason = sentence;
-    DerivedTable table = rows_table();
-    for (const double h : steps_) table.rows.push_back({h, "open", nullptr, "", nullptr, nullptr, "refused", sentence});
+    Table table = stability_head();
+    for (const double h : steps_) table.rows.push_back({h, false, nullptr, "", nullptr, nullptr, "refused", sentence});
     record_.tables.push_back(std::move(table));
     return std::move(record_);
   }
@@ -228,12 +220,6 @@ class StabilityRun {
           fmt::format("the budget of {:g} s was spent: some cells were not observed", budget_of(case_)));
   }
 
-  static DerivedTable rows_table() {
-    return {"stability",
-            {"step", "contact", "radius", "marginal", "limit_predicted", "limit_observed", "status", "reason"},
-            {}};
-  }
-
   static std::string growth_text(const StepSpectrum& known, bool closed) {
     const double growth = known.radius - 1;
     return fmt::format(
@@ -281,27 +267,21 @@ class StabilityRun {
   }
 
   void tabulate(const std::vector<Side>& sides, bool observed) {
-    DerivedTable table = rows_table();
-    DerivedTable seen{"stability_observed",
-                      {"step", "contact", "behaviour", "growth", "gain", "impacts", "changes_per_impact", "fast_share",
-                       "chatter", "first_bad_step", "steps", "cause"},
-                      {}};
+    Table table = stability_head(), seen = stability_observed_head();
     for (const Side& side : sides)
       for (std::size_t i = 0; i < steps_.size(); ++i) {
         const StepSpectrum* known = side.spectrum(i);
         const auto [status, reason] = verdict(sides.front(), side, i, observed);
-        table.rows.push_back({steps_[i], side.name(), known ? number(known->radius) : Cell(nullptr),
-                              known ? known->marginal : "", number(side.predicted.step), number(side.observed.step),
-                              status, reason});
+        table.rows.push_back({steps_[i], side.closed, known ? Cell(known->radius) : Cell(),
+                              known ? known->marginal : "", side.predicted.step, side.observed.step, status, reason});
         if (!observed || !side.cells[i]) continue;
         const ObservedCell& cell = *side.cells[i];
         const bool touched = cell.impacts > 0;
-        seen.rows.push_back(
-            {steps_[i], side.name(), behaviour_word(cell.behaviour), number(cell.growth),
-             side.closed ? number(cell.gain) : Cell(nullptr), side.closed ? Cell(cell.impacts) : Cell(nullptr),
-             touched ? number(cell.changes_per_impact) : Cell(nullptr),
-             touched ? number(cell.fast_share) : Cell(nullptr), Cell(cell.chatters()),
-             cell.first_bad_step >= 0 ? Cell(cell.first_bad_step) : Cell(nullptr), Cell(cell.steps), cell.cause});
+        seen.rows.push_back({steps_[i], side.closed, behaviour_word(cell.behaviour), cell.growth,
+                             side.closed ? Cell(cell.gain) : Cell(), side.closed ? Cell(cell.impacts) : Cell(),
+                             touched ? Cell(cell.changes_per_impact) : Cell(), touched ? Cell(cell.fast_share) : Cell(),
+                             cell.chatters(), cell.first_bad_step >= 0 ? Cell(cell.first_bad_step) : Cell(), cell.steps,
+                             cell.cause});
       }
     record_.tables.push_back(std::move(table));
     if (observed) record_.tables.push_back(std::move(seen));

@@ -5,8 +5,12 @@
 #include <algorithm>
 
 #include "runners/kinds/stability/run_stability.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/kinds/stability/step_limits.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -28,7 +32,6 @@ std::vector<Field> stability_keys() {
           budget()};
 }
 
-
 void check_stability(const Json& study) {
   if (const auto steps = study.find("steps"); steps != study.end()) {
     // The square of a step and of its inverse are numbers of a plan.
@@ -45,15 +48,11 @@ void check_stability(const Json& study) {
 
 // Marched at some steps, and stable at none of them.
 bool never_stable(const CaseRecord& record) {
-  for (const DerivedTable& table : record.tables) {
-    if (table.name != "stability_observed" || table.rows.empty()) continue;
-    const auto column = std::find(table.columns.begin(), table.columns.end(), "behaviour") - table.columns.begin();
-    return std::none_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
-      const auto& cell = row.at(static_cast<std::size_t>(column));
-      return cell == "stable" || cell == "marginal";
-    });
-  }
-  return false;
+  const Table* table = find_table(record.tables, "stability_observed");
+  if (!table || table->rows.empty()) return false;
+  const std::size_t behaviour = TableReader(*table).column("behaviour");
+  return std::none_of(table->rows.begin(), table->rows.end(),
+                      [&](const Row& row) { return row.at(behaviour) == "stable" || row.at(behaviour) == "marginal"; });
 }
 
 std::string limits_text(const CaseRecord& record) {
@@ -78,7 +77,8 @@ std::vector<MeasureInfo> stability_measures() {
       {"largest_radius", "1", "Largest spectral radius of the step over the range."},
       {"agreement", "1", "Observed over predicted step limit."},
       {"contradictions", "1",
-       "Steps of the range at which spectrum and march disagree without contact: an error of the method.", Of::computation},
+       "Steps of the range at which spectrum and march disagree without contact: an error of the method.",
+       Of::computation},
   };
 }
 
@@ -98,6 +98,12 @@ Kind stability_kind() {
       return run_stability(study_case, registry, stop);
     };
     return runner;
+  };
+  kind.tables = [](StudyResults& results) {
+    for (CaseRecord& record : results.cases) describe_stability(record);
+    collect_tables(results);
+    results.derived.push_back(step_limits_table(results));
+    results.derived.push_back(step_limit_agreement_table(results.derived.back()));
   };
   kind.outcome = limits_text;
   kind.measures = stability_measures();

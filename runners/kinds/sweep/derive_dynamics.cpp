@@ -1,36 +1,21 @@
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
 using namespace dynamics;
 
-/// The rows of a case's own table behind its id and axes, in the columns of the whole.
-void append_rows(const StudyResults& results, const CaseRecord& record, const DerivedTable& own, DerivedTable& table) {
-  for (const std::string& column : own.columns)
-    if (!column_of(table, column)) {
-      table.columns.push_back(column);
-      for (Row& row : table.rows) row.emplace_back(nullptr);
-    }
-  std::vector<std::size_t> places;
-  for (const std::string& column : own.columns) places.push_back(*column_of(table, column));
-  for (const Row& row : own.rows) {
-    Row whole = axes_row(results, record);
-    whole.resize(table.columns.size(), nullptr);
-    for (std::size_t c = 0; c < places.size() && c < row.size(); ++c) whole[places[c]] = row[c];
-    table.rows.push_back(std::move(whole));
-  }
-}
-
-DerivedTable values_table(const Diagram& diagram) {
+Table values_table(const Diagram& diagram) {
   const StudyResults& results = *diagram.results;
-  DerivedTable table = table_with_axes(results, "values", {});
+  Table table = table_of_cases(results, values_head(0, diagram.swept).name, values_head(0, diagram.swept).text, {});
   for (const CaseRuns& owner : diagram.cases) {
     const std::size_t first = table.rows.size();
     append_rows(results, *owner.record, *owner.table, table);
-    const auto column = column_of(table, "attractor");
+    const auto column = find_column(table.columns, "attractor");
     if (!column) continue;
     for (const Run& run : owner.runs)
       if (run.attractor > 0) table.rows[first + run.row][*column] = run.attractor;
@@ -38,10 +23,11 @@ DerivedTable values_table(const Diagram& diagram) {
   return table;
 }
 
-DerivedTable bifurcations_table(const Diagram& diagram) {
-  DerivedTable table = table_with_axes(*diagram.results, "bifurcations", {});
+Table bifurcations_table(const Diagram& diagram) {
+  const Table head = bifurcations_head(diagram.swept);
+  Table table = table_of_cases(*diagram.results, head.name, head.text, {});
   for (const CaseRuns& owner : diagram.cases)
-    if (const DerivedTable* own = table_of(*owner.record, "bifurcations"))
+    if (const Table* own = find_table(owner.record->tables, head.name))
       append_rows(*diagram.results, *owner.record, *own, table);
   return table;
 }
@@ -60,11 +46,15 @@ void derive_dynamics(StudyResults& results) {
   if (results.kind == "basins") return derive_basins(results);
   Diagram diagram = read_diagram(results);
   if (diagram.cases.empty()) return;
-  DerivedTable distances = find_attractors(diagram);
-  std::vector<DerivedTable> tables = {values_table(diagram), bifurcations_table(diagram), attractors_table(diagram),
-                                      std::move(distances),  verdicts_table(diagram),     agreement_table(diagram),
-                                      shifts_table(diagram)};
-  for (DerivedTable& table : tables) results.derived.push_back(std::move(table));
+  Table distances = find_attractors(diagram);
+  std::vector<Table> tables = {values_table(diagram), bifurcations_table(diagram), attractors_table(diagram),
+                               std::move(distances),  verdicts_table(diagram),     agreement_table(diagram),
+                               shifts_table(diagram)};
+  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), diagram.swept));
+  for (Table table :
+       {class_counts_table(results), grazing_ranges_table(results, diagram.swept), numerical_viscosity_table(results)})
+    tables.push_back(std::move(table));
+  for (Table& table : tables) results.derived.push_back(std::move(table));
 }
 
 }  // namespace ricochet

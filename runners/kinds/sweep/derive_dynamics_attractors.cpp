@@ -7,6 +7,7 @@
 #include <set>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -65,8 +66,7 @@ std::vector<OwnAttractor> own_attractors(const Diagram& diagram, const Sections&
   return out;
 }
 
-void add_distances(const Diagram& diagram, const Sections& sections, int value, std::size_t reference,
-                   DerivedTable& table) {
+void add_distances(const Diagram& diagram, const Sections& sections, int value, std::size_t reference, Table& table) {
   const CaseRuns& standard = diagram.cases[reference];
   for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s) {
     const Run* one = diagram.run(reference, value, s);
@@ -77,10 +77,10 @@ void add_distances(const Diagram& diagram, const Sections& sections, int value, 
     for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
       const Run* other = diagram.run(c, value, s);
       if (c == reference || !other) continue;
-      Row row = axes_row(*diagram.results, *diagram.cases[c].record);
+      Row row = place_of(*diagram.results, *diagram.cases[c].record);
       row.insert(row.end(), {standard.record->id, one->parameter, diagram.starts[static_cast<std::size_t>(s)]});
       const auto of_other = sections.find({c, s});
-      const Json same = one->decided() && other->decided() ? Json(one->kind == other->kind) : Json(nullptr);
+      const Cell same = one->decided() && other->decided() ? Cell(one->kind == other->kind) : Cell();
       if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
           of_other->second.cloud.empty()) {
         row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr, nullptr, same, ""});
@@ -89,7 +89,7 @@ void add_distances(const Diagram& diagram, const Sections& sections, int value, 
         const double distance = cloud_distance(a, b);
         const bool noisy = null.wasserstein > kNothing;
         row.insert(row.end(), {distance, cloud_hausdorff(a, b), null.wasserstein, null.hausdorff,
-                               noisy ? number_cell(distance / null.wasserstein) : Json(nullptr), same,
+                               noisy ? Cell(distance / null.wasserstein) : Cell(), same,
                                compared_exactly(a, b) ? "exact" : "sliced"});
       }
       table.rows.push_back(std::move(row));
@@ -254,18 +254,16 @@ Proportion fraction_of(const Diagram& diagram, const Extent& extent, int attract
   return wilson_interval(tried > 0 ? reached / tried : 0, static_cast<double>(used.size()));
 }
 
-Json symmetric_cell(const Extent& extent) {
+std::optional<bool> symmetric(const Extent& extent) {
   if (extent.symmetric > 0 && extent.asymmetric == 0) return true;
   if (extent.asymmetric > 0 && extent.symmetric == 0) return false;
-  return nullptr;
+  return std::nullopt;
 }
 
 }  // namespace
 
-DerivedTable find_attractors(Diagram& diagram) {
-  DerivedTable distances = table_with_axes(*diagram.results, "distances",
-                                           {"reference_case", "parameter", "start", "wasserstein", "hausdorff",
-                                            "null_wasserstein", "null_hausdorff", "ratio", "same_class", "formula"});
+Table find_attractors(Diagram& diagram) {
+  Table distances = table_of_cases(*diagram.results, distances_head(diagram.swept));
   const auto reference = reference_case(diagram);
   Following following(diagram.cases.size());
   for (int value = 0; value < static_cast<int>(diagram.values.size()); ++value) {
@@ -277,11 +275,8 @@ DerivedTable find_attractors(Diagram& diagram) {
   return distances;
 }
 
-DerivedTable attractors_table(const Diagram& diagram) {
-  DerivedTable table{"attractors",
-                     {"attractor", "label", "cases", "from", "to", "class", "period", "symmetric", "fraction",
-                      "fraction_low", "fraction_high", "presence", "sentence"},
-                     {}};
+Table attractors_table(const Diagram& diagram) {
+  Table table = attractors_head(diagram.swept);
   const std::vector<Extent> extents = extents_of(diagram);
   for (std::size_t k = 0; k < extents.size(); ++k) {
     const Extent& extent = extents[k];
@@ -298,8 +293,8 @@ DerivedTable attractors_table(const Diagram& diagram) {
                                   : fmt::format("{} to {}, {}", short_number(from), short_number(to),
                                                 count_of(extent.values.size(), "value"));
     table.rows.push_back({attractor, label.label, extent.cases.size(), from, to, periodic ? "periodic" : kind,
-                          periodic ? Json(std::stoi(kind.substr(9))) : Json(nullptr), symmetric_cell(extent),
-                          fraction.value, fraction.low, fraction.high, label.presence,
+                          periodic ? Cell(std::stoi(kind.substr(9))) : Cell(), symmetric(extent), fraction.value,
+                          fraction.low, fraction.high, label.presence,
                           fmt::format("Attractor {} ({}, {}) {}", attractor, kind, range, label.sentence)});
   }
   return table;

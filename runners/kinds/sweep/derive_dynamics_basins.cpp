@@ -10,6 +10,7 @@
 #include <set>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -20,7 +21,7 @@ constexpr LinkRule kSameCase{0.05, 2};
 constexpr double kShown = 0.25;
 
 /// One cell of a case.
-struct Cell {
+struct GridCell {
   std::size_t row = 0;
   int kind = -1, period = 0;
   int label = -1;      ///< within the case
@@ -30,9 +31,9 @@ struct Cell {
 /// A case on the grid of the study, row after row; −1 where it has no cell.
 struct Image {
   const CaseRecord* record = nullptr;
-  const DerivedTable* table = nullptr;
+  const Table* table = nullptr;
   SectionIndex sections;
-  std::vector<Cell> cells;
+  std::vector<GridCell> cells;
   std::vector<int> at;
   int labels = 0;
 };
@@ -51,7 +52,7 @@ class BasinImages {
   bool empty() const { return images_.empty(); }
 
   void append_tables() const {
-    for (DerivedTable table : {cells(), attractors(), fractions(), differences(), uncertainty()})
+    for (Table table : {cells(), attractors(), fractions(), differences(), uncertainty()})
       results_.derived.push_back(std::move(table));
   }
 
@@ -60,23 +61,23 @@ class BasinImages {
     ScaleOfPoints scale;
     std::set<double> xs, ys;
     for (const CaseRecord& record : results_.cases) {
-      const DerivedTable* table = table_of(record, "cells");
+      const Table* table = find_table(record.tables, "cells");
       if (!table) continue;
       images_.push_back({&record, table, SectionIndex(record, "cell_points", "cell", ""), {}, {}, 0});
       Image& image = images_.back();
-      const auto x = column_of(*table, "x"), y = column_of(*table, "y"), regime = column_of(*table, "class"),
-                 period = column_of(*table, "period"), status = column_of(*table, "status");
-      for (std::size_t r = 0; r < table->rows.size(); ++r) {
-        const auto across = number_of(cell_of(*table, r, x)), along = number_of(cell_of(*table, r, y));
+      const TableReader rows(*table);
+      const std::size_t x = rows.column("x"), y = rows.column("y"), regime = rows.column("class"),
+                        period = rows.column("period"), status = rows.column_if_any("status");
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const auto across = rows.number(r, x), along = rows.number(r, y);
         if (!across || !along) continue;
         xs.insert(*across);
         ys.insert(*along);
-        Cell cell;
+        GridCell cell;
         cell.row = r;
-        const Json word = cell_of(*table, r, regime), state = cell_of(*table, r, status);
-        cell.period = static_cast<int>(number_of(cell_of(*table, r, period)).value_or(0));
-        cell.kind = kind_of(word.is_string() ? word.get<std::string>() : "",
-                            state.is_string() ? state.get<std::string>() : "done", cell.period);
+        cell.period = static_cast<int>(rows.number(r, period).value_or(0));
+        cell.kind =
+            kind_of(rows.text(r, regime), status == TableReader::absent ? "done" : rows.text(r, status), cell.period);
         image.cells.push_back(cell);
       }
       for (const char* name : {"tip", "opposite"}) {
@@ -96,10 +97,11 @@ class BasinImages {
   void number_places() {
     for (Image& image : images_) {
       image.at.assign(xs_.size() * ys_.size(), -1);
-      const auto x = column_of(*image.table, "x"), y = column_of(*image.table, "y");
+      const TableReader rows(*image.table);
+      const std::size_t x = rows.column("x"), y = rows.column("y");
       for (std::size_t k = 0; k < image.cells.size(); ++k) {
-        const auto place = [&](const std::vector<double>& list, std::optional<std::size_t> column) {
-          const double value = *number_of(cell_of(*image.table, image.cells[k].row, column));
+        const auto place = [&](const std::vector<double>& list, std::size_t column) {
+          const double value = *rows.number(image.cells[k].row, column);
           return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), value) - list.begin());
         };
         image.at[place(ys_, y) * xs_.size() + place(xs_, x)] = static_cast<int>(k);
@@ -128,7 +130,7 @@ class BasinImages {
     });
   }
 
-  SettledSection section(const Image& image, const Cell& cell) const {
+  SettledSection section(const Image& image, const GridCell& cell) const {
     const std::string& kind = kinds_[static_cast<std::size_t>(cell.kind)];
     // A motion without contact is the linear response, told by its kind.
     if (kind == "no contact") return {cell.kind, true, {}};
@@ -140,7 +142,7 @@ class BasinImages {
   /// Each cell goes to the nearest of the sections met before, or leads the way for those to come.
   void label_by_leaders(Image& image) {
     std::vector<SettledSection>& leaders = leaders_.emplace_back();
-    for (Cell& cell : image.cells) {
+    for (GridCell& cell : image.cells) {
       if (cell.kind < 0) continue;
       SettledSection own = section(image, cell);
       if (own.cloud.empty() && kinds_[static_cast<std::size_t>(cell.kind)] != "no contact") continue;
@@ -167,10 +169,10 @@ class BasinImages {
         front.push_back(place);
     const auto flood = [&] {
       for (; !front.empty(); front.pop_front()) {
-        const Cell from = image.cells[static_cast<std::size_t>(image.at[front.front()])];
+        const GridCell from = image.cells[static_cast<std::size_t>(image.at[front.front()])];
         for (const std::size_t place : neighbours(front.front())) {
           if (image.at[place] < 0) continue;
-          Cell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
+          GridCell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
           if (cell.label >= 0 || cell.kind != from.kind) continue;
           cell.label = from.label;
           front.push_back(place);
@@ -180,7 +182,7 @@ class BasinImages {
     flood();
     for (std::size_t place = 0; place < image.at.size(); ++place) {
       if (image.at[place] < 0) continue;
-      Cell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
+      GridCell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
       if (cell.label >= 0 || cell.kind < 0) continue;
       const auto same = std::find_if(leaders.begin(), leaders.end(),
                                      [&](const SettledSection& leader) { return leader.kind == cell.kind; });
@@ -217,7 +219,7 @@ class BasinImages {
       if (x == 0) std::swap(above, here);
       here[x] = {-1, false, {}};
       if (image.at[place] < 0) continue;
-      const Cell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
+      const GridCell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
       if (cell.kind < 0) continue;
       here[x] = section(image, cell);
       if (x > 0 && relative_distance(here[x - 1], here[x], kAlongParameter) <= 1) parent[root(place)] = root(place - 1);
@@ -227,7 +229,7 @@ class BasinImages {
     std::map<std::size_t, int> known;
     for (std::size_t place = 0; place < image.at.size(); ++place) {
       if (image.at[place] < 0) continue;
-      Cell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
+      GridCell& cell = image.cells[static_cast<std::size_t>(image.at[place])];
       if (cell.kind >= 0) cell.label = known.emplace(root(place), static_cast<int>(known.size())).first->second;
     }
     image.labels = static_cast<int>(known.size());
@@ -240,7 +242,7 @@ class BasinImages {
     const std::vector<int> groups = match_owners(sections);
     std::size_t first = 0;
     for (std::size_t c = 0; c < images_.size(); ++c) {
-      for (Cell& cell : images_[c].cells)
+      for (GridCell& cell : images_[c].cells)
         if (cell.label >= 0) cell.attractor = groups[first + static_cast<std::size_t>(cell.label)];
       first += leaders_[c].size();
     }
@@ -255,8 +257,8 @@ class BasinImages {
       for (std::size_t before = 0; before < c; ++before)
         for (std::size_t place = 0; place < image.at.size(); ++place) {
           if (image.at[place] < 0 || images_[before].at[place] < 0) continue;
-          const Cell &one = image.cells[static_cast<std::size_t>(image.at[place])],
-                     &other = images_[before].cells[static_cast<std::size_t>(images_[before].at[place])];
+          const GridCell &one = image.cells[static_cast<std::size_t>(image.at[place])],
+                         &other = images_[before].cells[static_cast<std::size_t>(images_[before].at[place])];
           if (one.label >= 0 && one.kind == other.kind) ++shared[{one.label, other.attractor}];
         }
       std::vector<std::pair<int, std::pair<int, int>>> most;
@@ -269,7 +271,7 @@ class BasinImages {
           attractor[static_cast<std::size_t>(pair.first)] = pair.second;
       for (int& one : attractor)
         if (one < 0) one = attractors_++;
-      for (Cell& cell : image.cells)
+      for (GridCell& cell : image.cells)
         if (cell.label >= 0) cell.attractor = attractor[static_cast<std::size_t>(cell.label)];
     }
   }
@@ -278,7 +280,7 @@ class BasinImages {
   void sort_attractors() {
     std::vector<int> size(static_cast<std::size_t>(attractors_), 0), order(size.size()), place(size.size());
     for (const Image& image : images_)
-      for (const Cell& cell : image.cells)
+      for (const GridCell& cell : image.cells)
         if (cell.attractor >= 0) ++size[static_cast<std::size_t>(cell.attractor)];
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -287,7 +289,7 @@ class BasinImages {
     for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     kind_of_attractor_.assign(size.size(), -1);
     for (Image& image : images_)
-      for (Cell& cell : image.cells)
+      for (GridCell& cell : image.cells)
         if (cell.attractor >= 0) {
           cell.attractor = place[static_cast<std::size_t>(cell.attractor)];
           kind_of_attractor_[static_cast<std::size_t>(cell.attractor)] = cell.kind;
@@ -297,7 +299,7 @@ class BasinImages {
 
   std::size_t count_in(const Image& image, int attractor) const {
     return static_cast<std::size_t>(std::count_if(image.cells.begin(), image.cells.end(),
-                                                  [&](const Cell& cell) { return cell.attractor == attractor; }));
+                                                  [&](const GridCell& cell) { return cell.attractor == attractor; }));
   }
   std::size_t decided_in(const Image& image) const { return image.cells.size() - count_in(image, -1); }
 
@@ -305,37 +307,28 @@ class BasinImages {
     return kinds_[static_cast<std::size_t>(kind_of_attractor_[attractor])];
   }
   /// Class and period of an attractor.
-  std::pair<Json, Json> class_of(std::size_t attractor) const {
+  std::pair<std::string, Cell> class_of(std::size_t attractor) const {
     const std::string& kind = kind_name(attractor);
-    if (kind.starts_with("periodic ")) return {"periodic", std::stoi(kind.substr(9))};
-    return {kind, nullptr};
+    if (kind.starts_with("periodic ")) return {"periodic", Cell(std::stoi(kind.substr(9)))};
+    return {kind, Cell()};
   }
 
-  DerivedTable cells() const {
-    DerivedTable table = table_with_axes(results_, "cells", images_.front().table->columns);
-    const std::size_t first = 1 + results_.columns.size();
+  Table cells() const {
+    const Table head = cells_head(swept_);
+    Table table = table_of_cases(results_, head.name, head.text, {});
     for (const Image& image : images_) {
-      const auto column = column_of(*image.table, "attractor");
-      const Row axes = axes_row(results_, *image.record);
       const std::size_t begin = table.rows.size();
-      for (const Row& row : image.table->rows) {
-        Row whole = axes;
-        whole.insert(whole.end(), row.begin(), row.end());
-        whole.resize(table.columns.size(), nullptr);
-        table.rows.push_back(std::move(whole));
-      }
+      append_rows(results_, *image.record, *image.table, table);
+      const auto column = find_column(table.columns, "attractor");
       if (!column) continue;
-      for (const Cell& cell : image.cells)
-        if (cell.attractor >= 0) table.rows[begin + cell.row][first + *column] = cell.attractor + 1;
+      for (const GridCell& cell : image.cells)
+        if (cell.attractor >= 0) table.rows[begin + cell.row][*column] = cell.attractor + 1;
     }
     return table;
   }
 
-  DerivedTable attractors() const {
-    DerivedTable table{"attractors",
-                       {"attractor", "label", "cases", "from", "to", "class", "period", "symmetric", "fraction",
-                        "fraction_low", "fraction_high", "presence", "sentence"},
-                       {}};
+  Table attractors() const {
+    Table table = attractors_head(swept_);
     std::vector<const CaseRecord*> records;
     for (const Image& image : images_) records.push_back(image.record);
     const std::vector<ChoiceAxis> axes = axes_of(results_, records);
@@ -370,9 +363,8 @@ class BasinImages {
     return table;
   }
 
-  DerivedTable fractions() const {
-    DerivedTable table = table_with_axes(results_, "basin_fractions",
-                                         {"attractor", "class", "period", "cells", "fraction", "low", "high"});
+  Table fractions() const {
+    Table table = table_of_cases(results_, basin_fractions_head());
     for (const Image& image : images_) {
       const std::size_t decided = decided_in(image);
       if (decided == 0) continue;
@@ -381,7 +373,7 @@ class BasinImages {
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
         const auto [regime, period] = class_of(a);
-        Row row = axes_row(results_, *image.record);
+        Row row = place_of(results_, *image.record);
         row.insert(row.end(), {a + 1, regime, period, count, share.value, share.low, share.high});
         table.rows.push_back(std::move(row));
       }
@@ -389,8 +381,8 @@ class BasinImages {
     return table;
   }
 
-  DerivedTable differences() const {
-    DerivedTable table{"basin_differences", {"case", "other_case", "cells", "differ", "share"}, {}};
+  Table differences() const {
+    Table table = basin_differences_head();
     for (std::size_t a = 0; a < images_.size(); ++a)
       for (std::size_t b = a + 1; b < images_.size(); ++b) {
         int both = 0, differ = 0;
@@ -401,7 +393,7 @@ class BasinImages {
           differ += one != other;
         }
         table.rows.push_back({images_[a].record->id, images_[b].record->id, both, differ,
-                              both > 0 ? Json(static_cast<double>(differ) / both) : Json(nullptr)});
+                              both > 0 ? Cell(static_cast<double>(differ) / both) : Cell()});
       }
     return table;
   }
@@ -410,8 +402,8 @@ class BasinImages {
     return image.at[place] < 0 ? -1 : image.cells[static_cast<std::size_t>(image.at[place])].attractor;
   }
 
-  DerivedTable uncertainty() const {
-    DerivedTable table = table_with_axes(results_, "basin_uncertainty", {"boundary_share", "exponent", "low", "high"});
+  Table uncertainty() const {
+    Table table = table_of_cases(results_, basin_uncertainty_head());
     for (const Image& image : images_) {
       std::vector<int> labels;
       for (std::size_t place = 0; place < image.at.size(); ++place) labels.push_back(attractor_at(image, place));
@@ -424,13 +416,13 @@ class BasinImages {
           return labels[other] >= 0 && labels[other] != labels[place];
         });
       }
-      Row row = axes_row(results_, *image.record);
-      row.push_back(known > 0 ? Json(static_cast<double>(boundary) / known) : Json(nullptr));
+      Row row = place_of(results_, *image.record);
+      row.push_back(known > 0 ? Cell(static_cast<double>(boundary) / known) : Cell());
       const auto exponent =
           labels.empty() ? std::nullopt
                          : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
       if (exponent)
-        row.insert(row.end(), {number_cell(exponent->value), number_cell(exponent->low), number_cell(exponent->high)});
+        row.insert(row.end(), {exponent->value, exponent->low, exponent->high});
       else
         row.insert(row.end(), {nullptr, nullptr, nullptr});
       table.rows.push_back(std::move(row));
@@ -439,6 +431,7 @@ class BasinImages {
   }
 
   StudyResults& results_;
+  const SweptColumns swept_ = swept_columns(results_);
   std::vector<Image> images_;
   std::vector<double> xs_, ys_;
   std::vector<std::string> kinds_;

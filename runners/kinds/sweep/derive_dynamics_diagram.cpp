@@ -5,20 +5,14 @@
 #include <set>
 #include <tuple>
 
+#include "runners/store/record_values.hpp"
+
 namespace ricochet::dynamics {
 namespace {
 
 /// Points of a cycle closer than this (in units of the spread) are one.
 constexpr double kSamePoint = 1e-3;
 constexpr std::size_t kLargestCycle = 64;
-
-std::string text_of(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : std::string();
-}
-
-std::string axis_text(const Json& value) {
-  return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
-}
 
 int index_in(std::vector<std::string>& words, const std::string& word) {
   const auto found = std::find(words.begin(), words.end(), word);
@@ -51,28 +45,27 @@ std::string kind_of(const std::string& regime, const std::string& status, std::o
 }
 
 void read_runs(Diagram& diagram, CaseRuns& owner) {
-  const DerivedTable& table = *owner.table;
-  const auto parameter = column_of(table, "parameter"), start = column_of(table, "start"),
-             regime = column_of(table, "class"), period = column_of(table, "period"),
-             symmetric = column_of(table, "symmetric"), viscosity = column_of(table, "alpha_equivalent"),
-             status = column_of(table, "status");
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    const auto value = number_of(cell_of(table, r, parameter));
+  const TableReader rows(*owner.table);
+  const std::size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
+                    period = rows.column("period"), symmetric = rows.column_if_any("symmetric"),
+                    viscosity = rows.column_if_any("alpha_equivalent"), status = rows.column_if_any("status");
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto value = rows.number(r, parameter);
     if (!value) continue;
     Run run;
     run.parameter = *value;
     run.row = r;
-    run.start = index_in(diagram.starts, text_of(cell_of(table, r, start)));
-    run.regime = text_of(cell_of(table, r, regime));
-    run.status = status ? text_of(cell_of(table, r, status)) : "done";
-    const auto repeats = number_of(cell_of(table, r, period));
+    run.start = index_in(diagram.starts, rows.text(r, start));
+    run.regime = rows.text(r, regime);
+    run.status = status == TableReader::absent ? "done" : rows.text(r, status);
+    const auto repeats = rows.number(r, period);
     if (const std::string kind = kind_of(run.regime, run.status, repeats); !kind.empty()) {
       run.kind = index_in(diagram.kinds, kind);
       owner.any_decided = true;
     }
     if (repeats && *repeats >= 1) run.period = static_cast<int>(*repeats);
-    if (const Json cell = cell_of(table, r, symmetric); cell.is_boolean()) run.symmetric = cell.get<bool>();
-    run.viscosity = number_of(cell_of(table, r, viscosity));
+    run.symmetric = rows.truth(r, symmetric);
+    run.viscosity = rows.number(r, viscosity);
     owner.runs.push_back(std::move(run));
   }
 }
@@ -118,13 +111,10 @@ int cycle_of(const Run& run) {
 
 SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key,
                            const std::string& word) {
-  for (const NumberTable& one : record.numbers)
-    if (one.name == table) table_ = &one;
+  table_ = find_table(record.numbers, table);
   const std::vector<double>*keys = column(key), *second = word.empty() ? nullptr : column(word);
   if (!keys || (!word.empty() && !second)) return;
-  const std::vector<std::string>* words = nullptr;
-  for (const auto& [name, list] : table_->words)
-    if (name == word) words = &list;
+  const std::vector<std::string>* words = table_->words_of(word);
   std::size_t first = 0;
   for (std::size_t k = 0; k <= keys->size(); ++k) {
     const bool same = k < keys->size() && (*keys)[k] == (*keys)[first] && (!second || (*second)[k] == (*second)[first]);
@@ -139,13 +129,6 @@ SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, c
     }
     first = k;
   }
-}
-
-const std::vector<double>* SectionIndex::column(const std::string& name) const {
-  if (!table_) return nullptr;
-  for (std::size_t c = 0; c < table_->names.size(); ++c)
-    if (table_->names[c] == name) return &table_->columns[c];
-  return nullptr;
 }
 
 SectionReadings SectionIndex::read(double key, const std::string& word) const {
@@ -175,12 +158,13 @@ const Run* Diagram::run(std::size_t case_index, int value, int start) const {
 Diagram read_diagram(const StudyResults& results) {
   Diagram diagram;
   diagram.results = &results;
+  diagram.swept = swept_columns(results);
   diagram.parameter = spoken(parameter_pointer(results));
   const auto section = results.study.find("section");
   diagram.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
   std::vector<const CaseRecord*> records;
   for (const CaseRecord& record : results.cases) {
-    const DerivedTable* table = table_of(record, "values");
+    const Table* table = find_table(record.tables, "values");
     if (!table) continue;
     diagram.cases.push_back({&record, table, SectionIndex(record, "points", "parameter", "start"), {}, {}});
     records.push_back(&record);
@@ -228,9 +212,9 @@ std::optional<std::size_t> reference_case(const Diagram& diagram) {
     if (!diagram.cases[c].any_decided) continue;
     const CaseRecord& record = *diagram.cases[c].record;
     // A rigid contact has no stiffness: stiffer than any.
-    const double stiffness = number_of(axis_of(record, "contact.stiffness")).value_or(INFINITY);
-    const std::tuple rank(stiffness, number_of(axis_of(record, "steps_per_period")).value_or(0),
-                          number_of(axis_of(record, "elements")).value_or(0));
+    const double stiffness = axis(record, "contact.stiffness").number().value_or(INFINITY);
+    const std::tuple rank(stiffness, axis(record, "steps_per_period").number().value_or(0),
+                          axis(record, "elements").number().value_or(0));
     if (!best || rank > best_rank) {
       best = c;
       best_rank = rank;
@@ -242,63 +226,18 @@ std::optional<std::size_t> reference_case(const Diagram& diagram) {
 std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
   const std::string path = "structure.damping.stiffness";
   if (diagram.parameter == path) return run.parameter;
-  if (const auto value = number_of(axis_of(*owner.record, path))) return value;
+  if (const auto value = axis(*owner.record, path).number()) return value;
   const Json::json_pointer pointer("/scene/structure/damping/stiffness");
   const Json& study = diagram.results->study;
-  return study.contains(pointer) ? number_of(study.at(pointer)) : std::nullopt;
-}
-
-const DerivedTable* table_of(const CaseRecord& record, const std::string& name) {
-  for (const DerivedTable& table : record.tables)
-    if (table.name == name) return &table;
-  return nullptr;
-}
-
-std::optional<std::size_t> column_of(const DerivedTable& table, const std::string& name) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-  if (found == table.columns.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - table.columns.begin());
-}
-
-Json cell_of(const DerivedTable& table, std::size_t row, std::optional<std::size_t> column) {
-  return column && *column < table.rows[row].size() ? table.rows[row][*column] : Json(nullptr);
-}
-
-std::optional<double> number_of(const Json& value) {
-  if (!value.is_number()) return std::nullopt;
-  const double number = value.get<double>();
-  return std::isfinite(number) ? std::optional(number) : std::nullopt;
-}
-
-Json number_cell(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json axis_of(const CaseRecord& record, const std::string& column) {
-  for (const auto& [name, value] : record.axes)
-    if (name == column) return value;
-  return nullptr;
-}
-
-DerivedTable table_with_axes(const StudyResults& results, const std::string& name, std::vector<std::string> columns) {
-  DerivedTable table{name, {"case"}, {}};
-  table.columns.insert(table.columns.end(), results.columns.begin(), results.columns.end());
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-  return table;
-}
-
-Row axes_row(const StudyResults& results, const CaseRecord& record) {
-  Row row = {record.id};
-  for (const std::string& column : results.columns) row.push_back(axis_of(record, column));
-  return row;
+  return study.contains(pointer) ? cell_of(study.at(pointer)).number() : std::nullopt;
 }
 
 std::vector<ChoiceAxis> axes_of(const StudyResults& results, const std::vector<const CaseRecord*>& cases) {
   std::vector<ChoiceAxis> axes;
   for (const std::string& column : results.columns) {
-    ChoiceAxis axis{column, {}};
-    for (const CaseRecord* record : cases) axis.levels.push_back(axis_text(axis_of(*record, column)));
-    axes.push_back(std::move(axis));
+    ChoiceAxis choice{column, {}};
+    for (const CaseRecord* record : cases) choice.levels.push_back(ricochet::axis(*record, column).text());
+    axes.push_back(std::move(choice));
   }
   return axes;
 }

@@ -7,14 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record.hpp"
+#include "runners/table/table_reader.hpp"
 
 /// \file
 /// What the cases of a bifurcation study left, in the shape that comparisons need: cases × values × starts.
 namespace ricochet::dynamics {
 
 using Json = nlohmann::ordered_json;
-using Row = std::vector<Json>;
 
 /// Tip and mirrored tip of one run's section, in SI units.
 struct SectionReadings {
@@ -30,7 +31,7 @@ class SectionIndex {
   SectionReadings read(double key, const std::string& word) const;
   const NumberTable* table() const { return table_; }
   /// Column of that name; null where the table has none.
-  const std::vector<double>* column(const std::string& name) const;
+  const std::vector<double>* column(const std::string& name) const { return table_ ? table_->numbers(name) : nullptr; }
 
  private:
   using Range = std::pair<std::size_t, std::size_t>;
@@ -55,7 +56,7 @@ struct Run {
 /// One case with its runs in the order of its table.
 struct CaseRuns {
   const CaseRecord* record = nullptr;
-  const DerivedTable* table = nullptr;
+  const Table* table = nullptr;
   SectionIndex sections;
   std::vector<Run> runs;
   std::vector<int> at;  ///< value × starts + start → index into runs, −1 where there is none
@@ -65,6 +66,7 @@ struct CaseRuns {
 /// The whole study.
 struct Diagram {
   const StudyResults* results = nullptr;
+  SweptColumns swept;
   std::string parameter;  ///< in the study's words: "support.amplitude"
   bool strobed = true;
   std::vector<double> values;  ///< of all cases, ascending
@@ -93,19 +95,6 @@ std::optional<std::size_t> reference_case(const Diagram& diagram);
 /// α of a run (s); nothing where the study has no such number.
 std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run);
 
-/// Cells of a table.
-const DerivedTable* table_of(const CaseRecord& record, const std::string& name);
-std::optional<std::size_t> column_of(const DerivedTable& table, const std::string& name);
-/// The cell of that column; null where the table has no such column.
-Json cell_of(const DerivedTable& table, std::size_t row, std::optional<std::size_t> column);
-std::optional<double> number_of(const Json& value);
-/// A finite number, or null.
-Json number_cell(double value);
-Json axis_of(const CaseRecord& record, const std::string& column);
-/// `case` and the axes, in front of `columns`.
-DerivedTable table_with_axes(const StudyResults& results, const std::string& name, std::vector<std::string> columns);
-/// The id and the axes of a case.
-Row axes_row(const StudyResults& results, const CaseRecord& record);
 /// The axes of the study, with a level for each of the cases.
 std::vector<ChoiceAxis> axes_of(const StudyResults& results, const std::vector<const CaseRecord*>& cases);
 

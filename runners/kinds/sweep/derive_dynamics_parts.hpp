@@ -8,7 +8,7 @@ namespace ricochet::dynamics {
 /// Fills in the attractor of every decided run: clusters over the starts of a case, followed along the parameter,
 /// matched over cases as whole branches. Returns `distances`: every run against the reference case's from the same
 /// start, made on the way (a section is prepared once).
-DerivedTable find_attractors(Diagram& diagram);
+Table find_attractors(Diagram& diagram);
 
 /// One attractor over the cases that could tell.
 struct Presence {
@@ -28,10 +28,10 @@ struct PresenceLabel {
 /// compared" with fewer than two cases.
 PresenceLabel label_presence(const Presence& presence, const std::vector<ChoiceAxis>& axes);
 
-DerivedTable attractors_table(const Diagram& diagram);
-DerivedTable verdicts_table(const Diagram& diagram);
-DerivedTable agreement_table(const Diagram& diagram);
-DerivedTable shifts_table(const Diagram& diagram);
+Table attractors_table(const Diagram& diagram);
+Table verdicts_table(const Diagram& diagram);
+Table agreement_table(const Diagram& diagram);
+Table shifts_table(const Diagram& diagram);
 
 /// Tables of kind `basins`.
 void derive_basins(StudyResults& results);

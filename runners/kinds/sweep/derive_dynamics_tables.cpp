@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -25,20 +26,17 @@ struct Change {
 
 std::vector<Change> changes_of(const CaseRecord& record) {
   std::vector<Change> out;
-  const DerivedTable* table = table_of(record, "bifurcations");
+  const Table* table = find_table(record.tables, "bifurcations");
   if (!table) return out;
-  const auto word = [&](std::size_t row, const std::string& column) {
-    const Json cell = cell_of(*table, row, column_of(*table, column));
-    return cell.is_string() ? cell.get<std::string>() : std::string();
-  };
-  const auto number = [&](std::size_t row, const std::string& column) {
-    return number_of(cell_of(*table, row, column_of(*table, column)));
-  };
-  for (std::size_t r = 0; r < table->rows.size(); ++r) {
-    const auto value = number(r, "value");
-    if (!value || open(word(r, "from")) || open(word(r, "to"))) continue;
-    out.push_back({word(r, "start"), word(r, "from"), word(r, "to"), word(r, "kind"), *value,
-                   number(r, "low").value_or(*value), number(r, "high").value_or(*value)});
+  const TableReader rows(*table);
+  const std::size_t start = rows.column("start"), from = rows.column("from"), to = rows.column("to"),
+                    kind = rows.column("kind"), value = rows.column("value"), low = rows.column("low"),
+                    high = rows.column("high");
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto at = rows.number(r, value);
+    if (!at || open(rows.text(r, from)) || open(rows.text(r, to))) continue;
+    out.push_back({rows.text(r, start), rows.text(r, from), rows.text(r, to), rows.text(r, kind), *at,
+                   rows.number(r, low).value_or(*at), rows.number(r, high).value_or(*at)});
   }
   return out;
 }
@@ -68,9 +66,8 @@ std::vector<int> nearest_changes(const std::vector<Change>& reference, const std
 
 }  // namespace
 
-DerivedTable agreement_table(const Diagram& diagram) {
-  DerivedTable table{
-      "agreement", {"case", "other_case", "compared", "same_class", "share", "same_attractor", "share_attractor"}, {}};
+Table agreement_table(const Diagram& diagram) {
+  Table table = agreement_head();
   if (diagram.cases.size() < 2) return table;
   for (const CaseRuns& one : diagram.cases)
     for (const CaseRuns& other : diagram.cases) {
@@ -84,19 +81,15 @@ DerivedTable agreement_table(const Diagram& diagram) {
         same_class += a.kind == b.kind;
         same_attractor += a.attractor == b.attractor;
       }
-      const auto share = [&](int count) {
-        return compared > 0 ? Json(static_cast<double>(count) / compared) : Json(nullptr);
-      };
+      const auto share = [&](int count) { return compared > 0 ? Cell(static_cast<double>(count) / compared) : Cell(); };
       table.rows.push_back({one.record->id, other.record->id, compared, same_class, share(same_class), same_attractor,
                             share(same_attractor)});
     }
   return table;
 }
 
-DerivedTable shifts_table(const Diagram& diagram) {
-  DerivedTable table = table_with_axes(
-      *diagram.results, "shifts",
-      {"reference_case", "start", "from", "to", "kind", "reference_value", "value", "shift", "low", "high", "found"});
+Table shifts_table(const Diagram& diagram) {
+  Table table = table_of_cases(*diagram.results, shifts_head(diagram.swept));
   const auto reference = reference_case(diagram);
   if (!reference) return table;
   const CaseRecord& standard = *diagram.cases[*reference].record;
@@ -109,10 +102,10 @@ DerivedTable shifts_table(const Diagram& diagram) {
     const std::vector<int> match = nearest_changes(expected, here, reach);
     std::vector<char> used(here.size(), 0);
     const auto add = [&](const Change& change, const Change* standing, const Change* found) {
-      Row row = axes_row(*diagram.results, *owner.record);
+      Row row = place_of(*diagram.results, *owner.record);
       row.insert(row.end(), {standard.id, change.start, change.from, change.to, change.kind});
-      row.push_back(standing ? Json(standing->value) : Json(nullptr));
-      row.push_back(found ? Json(found->value) : Json(nullptr));
+      row.push_back(standing ? Cell(standing->value) : Cell());
+      row.push_back(found ? Cell(found->value) : Cell());
       if (standing && found)
         row.insert(row.end(),
                    {found->value - standing->value, found->low - standing->high, found->high - standing->low, true});

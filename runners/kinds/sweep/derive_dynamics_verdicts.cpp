@@ -6,11 +6,12 @@
 #include <set>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
 
 namespace ricochet::dynamics {
 namespace {
 
-constexpr double kSmallViscosity = 0.01, kSpread = 0.8;
+constexpr double kSpread = 0.8;
 constexpr const char* kSeveral = "several choices";
 constexpr std::size_t kMostSets = 3, kLevelsNamed = 6;
 
@@ -79,8 +80,8 @@ class Verdicts {
  public:
   explicit Verdicts(const Diagram& diagram) : diagram_(diagram), names_(names_of(diagram)) {}
 
-  DerivedTable table() const {
-    DerivedTable out{"verdicts", {"from", "to", "verdict", "choice", "sentence"}, {}};
+  Table table() const {
+    Table out = verdicts_head(diagram_.swept);
     const std::vector<Stretch> stretches = merged();
     for (std::size_t k = 0; k < stretches.size(); ++k) {
       const double first = value(stretches[k].opinions.front()), last = value(stretches[k].opinions.back());
@@ -224,7 +225,7 @@ class Verdicts {
           const double numerical = std::abs(*run->viscosity);
           const double alpha = viscosity_of(diagram_, diagram_.cases[c], *run).value_or(0);
           // Without a viscosity of its own the beam takes any: 1e-12 s is what round-off leaves of none.
-          if (!(alpha > 0 ? numerical > kSmallViscosity * alpha : numerical > 1e-12)) continue;
+          if (!(alpha > 0 ? numerical > small_viscosity * alpha : numerical > 1e-12)) continue;
           thick.insert(c);
           if (numerical < largest) continue;
           largest = numerical;
@@ -312,7 +313,7 @@ class Verdicts {
 
 }  // namespace
 
-DerivedTable verdicts_table(const Diagram& diagram) {
+Table verdicts_table(const Diagram& diagram) {
   return Verdicts(diagram).table();
 }
 

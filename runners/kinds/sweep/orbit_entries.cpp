@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -42,11 +44,7 @@ LaneState lane_state(const std::vector<double>& all) {
 }  // namespace
 
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
-  NumberTable table;
-  table.name = "entries";
-  table.exported = false;
-  table.names = {"parameter", "start", "index", "value"};
-  table.columns.resize(entry_columns);
+  NumberTable table = entries_head();
   table.words = {{"start", starts}};
   for (const OrbitView& view : views) {
     if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
@@ -57,27 +55,23 @@ void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const 
                       most_entry_numbers));
       return;
     }
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      table.columns[0].push_back(view.value);
-      table.columns[1].push_back(static_cast<double>(view.start));
-      table.columns[2].push_back(static_cast<double>(i));
-      table.columns[3].push_back(state[i]);
-    }
+    for (std::size_t i = 0; i < state.size(); ++i)
+      table.add({view.value, static_cast<double>(view.start), static_cast<double>(i), state[i]});
   }
   record.numbers.push_back(std::move(table));
 }
 
 std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
-  for (const NumberTable& table : record.numbers) {
-    if (table.name != "entries" || table.columns.size() != entry_columns || table.words.empty()) continue;
-    const std::vector<std::string>& starts = table.words.front().second;
-    const auto word = std::find(starts.begin(), starts.end(), start);
-    const auto index = static_cast<double>(word - starts.begin());
-    std::vector<double> all;
-    for (std::size_t row = 0; row < table.rows(); ++row)
-      if (table.columns[0][row] == parameter && table.columns[1][row] == index) all.push_back(table.columns[3][row]);
-    if (all.size() >= state_counts) return lane_state(all);
-  }
+  const NumberTable* table = find_table(record.numbers, "entries");
+  const auto* starts = table ? table->words_of("start") : nullptr;
+  const auto *parameters = table ? table->numbers("parameter") : nullptr,
+             *froms = table ? table->numbers("start") : nullptr, *values = table ? table->numbers("value") : nullptr;
+  if (!starts || !parameters || !froms || !values) return std::nullopt;
+  const auto index = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
+  std::vector<double> all;
+  for (std::size_t row = 0; row < table->rows(); ++row)
+    if ((*parameters)[row] == parameter && (*froms)[row] == index) all.push_back((*values)[row]);
+  if (all.size() >= state_counts) return lane_state(all);
   return std::nullopt;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -58,13 +60,8 @@ void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::ve
                     most_portraits, complete.size()));
     return;
   }
-  NumberTable table;
-  table.name = "portraits";
-  table.exported = false;
-  table.names = {"parameter", "start", "time", "tip_displacement", "tip_velocity"};
-  table.columns.resize(table.names.size());
-  for (const NumberTable& other : record.numbers)
-    if (other.name == "points") table.words = {other.words.front()};
+  NumberTable table = portraits_head();
+  if (const NumberTable* points = find_table(record.numbers, "points")) table.words = {points->words.front()};
   std::map<std::pair<int, int>, std::vector<const OrbitView*>> batches;  // by group and periods
   for (const OrbitView* view : complete) {
     const int period = view->verdict.period > 0 ? std::min(view->verdict.period, longest) : longest;
@@ -83,13 +80,9 @@ void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::ve
           march_portraits(scenes.program(key.first, lanes), orbits, plan, key.second, samples_per_period);
       for (std::size_t i = first; i < last; ++i) {
         const Portrait& portrait = portraits[i - first];
-        for (std::size_t k = 0; k < portrait.time.size(); ++k) {
-          table.columns[0].push_back(members[i]->value);
-          table.columns[1].push_back(static_cast<double>(members[i]->start));
-          table.columns[2].push_back(portrait.time[k]);
-          table.columns[3].push_back(portrait.displacement[k]);
-          table.columns[4].push_back(portrait.velocity[k]);
-        }
+        for (std::size_t k = 0; k < portrait.time.size(); ++k)
+          table.add({members[i]->value, static_cast<double>(members[i]->start), portrait.time[k],
+                     portrait.displacement[k], portrait.velocity[k]});
       }
     }
   record.numbers.push_back(std::move(table));

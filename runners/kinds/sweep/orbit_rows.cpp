@@ -10,6 +10,7 @@
 #include <ricochet/measure/orbits/zero_one_test.hpp>
 #include <span>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
 
@@ -17,10 +18,6 @@ namespace ricochet {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 double impacts_per_period(const Orbit& orbit) {
   if (orbit.impact_counts.empty()) return 0;
@@ -34,44 +31,32 @@ std::string class_text(const OrbitView& view) {
   return text;
 }
 
-std::vector<std::string> value_columns(int exponents) {
-  std::vector<std::string> columns = {"parameter", "start", "class", "period", "impacts_per_period", "symmetric"};
-  for (int k = 1; k <= exponents; ++k)
-    for (const char* suffix : {"", "_low", "_high"}) columns.push_back(fmt::format("exponent_{}{}", k, suffix));
-  for (const char* name :
-       {"exponent_method", "exponent_twin", "marginal", "attractor", "alpha_equivalent", "recurrence", "contraction",
-        "zero_one", "transient_periods", "settled", "chatter", "sticking", "evidence", "status", "reason"})
-    columns.push_back(name);
-  return columns;
-}
-
-std::vector<Json> value_row(const OrbitView& view, const std::string& start, int exponents, const SectionPlan& plan) {
+Row value_row(const OrbitView& view, const std::string& start, int exponents, const SectionPlan& plan) {
   const bool complete = view.orbit && view.orbit->stage == Orbit::Stage::complete;
   const RegimeVerdict& verdict = view.verdict;
-  std::vector<Json> row = {view.value, start, regime_name(complete ? verdict.regime : Regime::failed)};
-  row.push_back(complete && verdict.period > 0 ? Json(verdict.period) : Json(nullptr));
-  row.push_back(complete ? Json(impacts_per_period(*view.orbit)) : Json(nullptr));
-  row.push_back(complete && view.symmetric ? Json(*view.symmetric) : Json(nullptr));
+  Row row = {view.value, start, regime_name(complete ? verdict.regime : Regime::failed)};
+  row.push_back(complete && verdict.period > 0 ? Cell(verdict.period) : Cell());
+  row.push_back(complete ? Cell(impacts_per_period(*view.orbit)) : Cell());
+  row.push_back(complete ? Cell(view.symmetric) : Cell());
   for (std::size_t k = 0; k < static_cast<std::size_t>(exponents); ++k) {
     const bool known = k < view.exponents.values.size();
     for (const double Interval::*part : {&Interval::value, &Interval::low, &Interval::high})
-      row.push_back(known ? number(view.exponents.values[k].*part) : Json(nullptr));
+      row.push_back(known ? Cell(view.exponents.values[k].*part) : Cell());
   }
   row.push_back(view.exponents.method);
-  row.push_back(view.exponents.twin ? number(view.exponents.twin->value) : Json(nullptr));
+  row.push_back(view.exponents.twin ? Cell(view.exponents.twin->value) : Cell());
   row.push_back(view.marginal);
-  row.push_back(nullptr);  // the attractor: told apart over all cases
-  row.push_back(view.viscosity ? number(view.viscosity->numerical) : Json(nullptr));
+  row.emplace_back();  // the attractor: told apart over all cases
+  row.push_back(view.viscosity ? Cell(view.viscosity->numerical) : Cell());
   if (complete) {
     const Orbit& orbit = *view.orbit;
-    row.insert(row.end(), {number(view.recurrence.distance), number(view.recurrence.contraction),
-                           view.zero_one ? number(*view.zero_one) : Json(nullptr), Json(orbit.transient_periods),
-                           Json(orbit.settled), Json(orbit.most_on_a_side >= chatter_impacts),
-                           Json(static_cast<double>(orbit.contact_steps) /
-                                (static_cast<double>(orbit.kept_periods) * plan.steps_per_period)),
-                           Json(verdict.evidence)});
+    row.insert(row.end(), {view.recurrence.distance, view.recurrence.contraction, view.zero_one,
+                           orbit.transient_periods, orbit.settled, orbit.most_on_a_side >= chatter_impacts,
+                           static_cast<double>(orbit.contact_steps) /
+                               (static_cast<double>(orbit.kept_periods) * plan.steps_per_period),
+                           verdict.evidence});
   } else {
-    row.insert(row.end(), 7, Json(nullptr));
+    row.insert(row.end(), 7, Cell());
     row.push_back("");
   }
   const auto [status, reason] = status_of(view);
@@ -91,8 +76,8 @@ std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
   return all.last(std::min(last, all.size()));
 }
 
-DerivedTable changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
-  DerivedTable table{"bifurcations", {"start", "from", "to", "kind", "value", "low", "high", "steps"}, {}};
+Table changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
+  Table table = bifurcations_head();
   const OrbitView* before = nullptr;
   for (const OrbitView& view : views) {
     if (before && before->start != view.start) before = nullptr;
@@ -199,31 +184,20 @@ void judge(OrbitView& view, const SectionPlan& plan) {
 
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
                       int exponents, const SectionPlan& plan) {
-  DerivedTable values{"values", value_columns(exponents), {}};
-  NumberTable points, impacts;
-  points.name = "points";
-  points.names = {"parameter",        "start", "index", "tip_displacement", "tip_velocity", "opposite_displacement",
-                  "opposite_velocity"};
-  points.columns.resize(points.names.size());
+  Table values = values_head(exponents);
+  NumberTable points = points_head(), impacts = impacts_head();
   points.words = {{"start", starts}};
-  impacts.name = "impacts";
-  impacts.names = {"parameter", "start", "phase", "side", "speed"};
-  impacts.columns.resize(impacts.names.size());
   impacts.words = {{"start", starts}, {"side", {"lower", "upper"}}};
-  const auto add = [](NumberTable& table, std::initializer_list<double> row) {
-    std::size_t column = 0;
-    for (const double x : row) table.columns[column++].push_back(x);
-  };
   for (const OrbitView& view : views) {
     values.rows.push_back(value_row(view, starts[view.start], exponents, plan));
     if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
     const auto start = static_cast<double>(view.start);
     const auto& section = plan.section == SectionKind::strobe ? view.orbit->strobed : view.orbit->points;
     for (std::size_t i = 0; i < section.size(); ++i)
-      add(points, {view.value, start, static_cast<double>(i), section[i].displacement, section[i].velocity,
-                   section[i].opposite_displacement, section[i].opposite_velocity});
+      points.add({view.value, start, static_cast<double>(i), section[i].displacement, section[i].velocity,
+                  section[i].opposite_displacement, section[i].opposite_velocity});
     for (const ImpactPoint& impact : impacts_shown(view))
-      add(impacts, {view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed});
+      impacts.add({view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed});
   }
   record.tables.push_back(std::move(values));
   record.tables.push_back(changes(views, starts));
@@ -251,7 +225,7 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
 }
 
 void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps) {
-  for (DerivedTable& table : record.tables)
+  for (Table& table : record.tables)
     if (table.name == "bifurcations")
       table.rows.push_back({"open orbit", opens_below ? "no contact" : "contact",
                             opens_below ? "contact" : "no contact", "grazing", value, low, high, steps});

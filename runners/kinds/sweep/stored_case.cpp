@@ -7,9 +7,9 @@
 #include <ostream>
 #include <ricochet/contract/errors.hpp>
 
-#include "runners/store/csv.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/study/stated_plan.hpp"
+#include "runners/table/csv_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -37,26 +37,14 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
                                  nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(ids, ", ")));
 }
 
-StoredRows::StoredRows(const CaseRecord& record, const std::string& name) {
-  for (const DerivedTable& table : record.tables)
-    if (table.name == name) table_ = &table;
-  if (!table_)
-    throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
-                                   record.reason.empty() ? "" : ", " + record.reason));
+const Table& stored_table(const CaseRecord& record, const std::string& name) {
+  if (const Table* table = find_table(record.tables, name)) return *table;
+  throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
+                                 record.reason.empty() ? "" : ", " + record.reason));
 }
 
-nlohmann::ordered_json StoredRows::cell(std::size_t row, const std::string& column) const {
-  const auto found = std::find(table_->columns.begin(), table_->columns.end(), column);
-  if (found == table_->columns.end()) return nullptr;
-  return table_->rows[row].at(static_cast<std::size_t>(found - table_->columns.begin()));
-}
-
-std::string StoredRows::text(std::size_t row, const std::string& column) const {
-  return csv_value(cell(row, column));
-}
-
-std::string StoredRows::regime(std::size_t row) const {
-  const std::string name = text(row, "class"), period = text(row, "period");
+std::string stored_regime(const TableReader& rows, std::size_t row) {
+  const std::string name = rows.text(row, "class"), period = rows.text(row, "period");
   return name == "periodic" && !period.empty() ? name + " " + period : name;
 }
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <nlohmann/json.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
@@ -7,27 +6,18 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/store/record.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 
 /// The one case whose id begins so. Throws PointRefused with the nearest id or all of them.
 const CaseRecord& find_case(const StudyResults& results, const std::string& id);
 
-/// The rows of one table of a case, read by column; cells of absent columns are null.
-class StoredRows {
- public:
-  /// Throws PointRefused where the case has no such table, with what became of it.
-  StoredRows(const CaseRecord& record, const std::string& table);
-  std::size_t count() const { return table_->rows.size(); }
-  nlohmann::ordered_json cell(std::size_t row, const std::string& column) const;
-  std::string text(std::size_t row, const std::string& column) const;
-  double number(std::size_t row, const std::string& column) const { return cell(row, column).get<double>(); }
-  /// "periodic 3".
-  std::string regime(std::size_t row) const;
+/// The table of this name that a case left. Throws PointRefused where it has none, with what became of it.
+const Table& stored_table(const CaseRecord& record, const std::string& name);
 
- private:
-  const DerivedTable* table_ = nullptr;
-};
+/// "periodic 3": class and period of a row of `values` or `cells`.
+std::string stored_regime(const TableReader& rows, std::size_t row);
 
 /// The study of stored results, parsed again, and the case of this id. Throws PointRefused where there is none any
 /// more.

@@ -4,6 +4,7 @@
 
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 
@@ -51,13 +52,15 @@ Kind sweep_kind(RunSweep run) {
     const int workers = std::max(1, context.jobs / static_cast<int>(context.study.cases.size()));
     CaseRunner runner;
     runner.open = [shelf](MotionShelf opened, const std::atomic<bool>&) { *shelf = std::move(opened); };
-    runner.run = [run, shelf, workers, key = context.key, &registry = context.registry](
-                     const StudyCase& study_case, const std::atomic<bool>& stop) {
+    runner.run = [run, shelf, workers, key = context.key, &registry = context.registry](const StudyCase& study_case,
+                                                                                        const std::atomic<bool>& stop) {
       return run(study_case, registry, CaseDesk{*shelf, key(study_case), workers}, stop);
     };
     return runner;
   };
   kind.tables = [](StudyResults& results) {
+    const SweptColumns swept = swept_columns(results);
+    for (CaseRecord& record : results.cases) describe_sweep(record, swept);
     collect_tables(results, derived_as_dynamics);
     derive_dynamics(results);
   };
@@ -74,7 +77,8 @@ std::vector<MeasureInfo> orbit_measures() {
       {"impacts_per_period", "1", "Impacts in one forcing period, mean over these orbits."},
       {"largest_exponent", "1/s", "Largest Lyapunov exponent among these orbits."},
       {"exponent_seconds", "s", "Processor time of the exponents.", Of::computation},
-      {"lane_steps_per_second", "1/s", "Steps of single orbits per second of processor time, exponents not counted.", Of::computation},
+      {"lane_steps_per_second", "1/s", "Steps of single orbits per second of processor time, exponents not counted.",
+       Of::computation},
   };
 }
 

@@ -31,9 +31,10 @@ ObjectForm swept_range(const char* what) {
 
 Field swept_pointer() {
   using namespace keys;
-  return of_form(Field::Form::text, "pointer", std::nullopt,
-               "JSON pointer to a number of the scene (\"/scene/support/amplitude\"; a formula in x or t is multiplied "
-               "by the value) or to a real parameter of a method (\"/methods/contact/stiffness\").");
+  return of_form(
+      Field::Form::text, "pointer", std::nullopt,
+      "JSON pointer to a number of the scene (\"/scene/support/amplitude\"; a formula in x or t is multiplied "
+      "by the value) or to a real parameter of a method (\"/methods/contact/stiffness\").");
 }
 
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
+#include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
@@ -19,8 +20,7 @@ constexpr double audit_seconds_per_step = 6e-7;
 class Sampler {
  public:
   Sampler() {
-    curve_.names = {"t",      "tip_displacement", "tip_velocity",  "kinetic",     "elastic", "contact",
-                    "energy", "scheme_energy",    "contact_force", "penetration", "active"};
+    for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
   }
   void take(const Marcher& marcher, const EnergyAudit& audit) {

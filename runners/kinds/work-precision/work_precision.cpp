@@ -37,7 +37,8 @@ Kind work_precision_kind() {
   };
   kind.outcome = errors_text;
   kind.measures = {
-      {"timed_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats.", Of::computation},
+      {"timed_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats.",
+       Of::computation},
       {"timed_low", "s", "The fastest repeat.", Of::computation},
       {"timed_high", "s", "The slowest repeat.", Of::computation},
   };

@@ -113,14 +113,14 @@ TEST_CASE("the page has every section point, but for repeats of periodic orbits"
     const auto u = numbers_of<float>(curves, record.id + "/points/u:f32");
     REQUIRE(orbit.size() == u.size());
     REQUIRE(u.size() == numbers_of<float>(curves, record.id + "/points/v:f32").size());
-    const NumberTable& points = *number_table(record, "points");
+    const NumberTable& points = *find_table(record.numbers, "points");
     std::map<size_t, std::set<float>> drawn, stored;
     for (size_t i = 0; i < u.size(); ++i) drawn[orbit[i]].insert(u[i]);
     for (size_t i = 0; i < points.rows(); ++i)
       for (size_t o = 0; o < orbits.size(); ++o)
-        if (orbits[o].parameter == points.columns[0][i] &&
-            orbits[o].start == points.words[0].second[static_cast<size_t>(points.columns[1][i])])
-          stored[o].insert(static_cast<float>(points.columns[3][i]));
+        if (orbits[o].parameter == points.values[0][i] &&
+            orbits[o].start == points.words[0].second[static_cast<size_t>(points.values[1][i])])
+          stored[o].insert(static_cast<float>(points.values[3][i]));
     for (size_t o = 0; o < orbits.size(); ++o) {
       if (!orbits[o].done()) {
         CHECK(drawn[o].empty());
@@ -227,7 +227,7 @@ TEST_CASE("colours of regimes do not depend on the order of values or cases", "[
   StudyResults forward = synthetic::dynamics(shape), backward = forward;
   std::reverse(backward.cases.begin(), backward.cases.end());
   for (CaseRecord& record : backward.cases)
-    for (DerivedTable& table : record.tables) std::reverse(table.rows.begin(), table.rows.end());
+    for (Table& table : record.tables) std::reverse(table.rows.begin(), table.rows.end());
   std::vector<std::pair<std::string, std::string>> legends[2];
   for (int k = 0; k < 2; ++k) {
     CurveData curves(1000);
@@ -287,12 +287,12 @@ TEST_CASE("what the script knows of an orbit is its row of values", "[report]") 
   CHECK(data["parameter"] == Json({"support.amplitude", "m"}));
   const CaseRecord& record = results.cases[1];
   const Json& one = data["cases"][record.id];
-  const DerivedTable& table = record.tables[0];
+  const Table& table = record.tables[0];
   for (size_t row = 0; row < table.rows.size(); ++row) {
     CHECK(one["columns"]["parameter"][row] == table.rows[row][0]);
     CHECK(one["columns"]["evidence"][row] == table.rows[row][21]);
-    CHECK(one["from"][row].get<double>() < table.rows[row][0].get<double>());
-    CHECK(one["to"][row].get<double>() > table.rows[row][0].get<double>());
+    CHECK(one["from"][row].get<double>() < table.rows[row][0].number().value());
+    CHECK(one["to"][row].get<double>() > table.rows[row][0].number().value());
   }
   // Neighbours of one start share an edge; the derived table gives the attractors.
   CHECK(one["to"][0] == one["from"][1]);
@@ -385,8 +385,8 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
 
 TEST_CASE("cells that were not marched themselves are said", "[report]") {
   StudyResults results = synthetic::basins(20);
-  DerivedTable& cells = results.derived[0];
-  cells.columns.push_back("marched");
+  Table& cells = results.derived[0];
+  cells.columns.push_back({"marched", "", ""});
   for (size_t row = 0; row < cells.rows.size(); ++row) cells.rows[row].push_back(row % 4 == 0);
   CHECK(basins_of(results).grids[0].filled == 285);  // three quarters of 20 × 19
   CurveData curves(1000);
@@ -412,10 +412,10 @@ TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") 
     record.axes[0].second = attack;
     for (auto& row : record.tables[0].rows) row[21] = row.back() = attack;
   }
-  for (DerivedTable& table : results.derived)
+  for (Table& table : results.derived)
     for (auto& row : table.rows)
       for (auto& cell : row)
-        if (cell.is_string() && cell != "robust") cell = attack;
+        if (cell.words() && cell != "robust") cell = attack;
   const std::string page = render_page(results, "/* charts */", "6");
   CHECK(page.find("<script>alert") == std::string::npos);
   CHECK(page.find("<!--") == std::string::npos);

@@ -62,7 +62,7 @@ std::vector<Figure> all_figures(const CaseView& view) {
   return out;
 }
 
-const DerivedTable& table(const StudyResults& results, const std::string& name) {
+const Table& table(const StudyResults& results, const std::string& name) {
   return *std::find_if(results.derived.begin(), results.derived.end(), [&](const auto& t) { return t.name == name; });
 }
 
@@ -214,7 +214,7 @@ TEST_CASE("work and precision: points, spreads, gutter", "[report]") {
   REQUIRE(figures.size() == 3);
   const Figure& figure = find(figures, "work-precision");
   size_t rows = 0;
-  for (const auto& row : table(results, "work_precision").rows) rows += !row[8].is_null();
+  for (const auto& row : table(results, "work_precision").rows) rows += !row[8].is_nothing();
   size_t drawn = 0, marks = 0;
   for (size_t v = 0; v < figure.views.size(); ++v) {
     drawn += points(figure, v, is_curve).size();
@@ -301,7 +301,7 @@ TEST_CASE("orders are a table with verdicts counted", "[report]") {
   CHECK(html.find(">undecided</td>") < html.find(">confirmed</td>"));
   // A row without an order.
   StudyResults none = results;
-  for (DerivedTable& t : none.derived)
+  for (Table& t : none.derived)
     if (t.name == "orders")
       for (auto& row : t.rows) row[8] = row[9] = row[10] = row[11] = nullptr;
   CHECK(contains(orders_html(CaseView(none)), "none with a declared order"));
@@ -335,7 +335,7 @@ TEST_CASE("effects are sentences and bars", "[report]") {
 
 TEST_CASE("a measure without shares says so and draws nothing", "[report]") {
   StudyResults results = synthetic::comparison();
-  for (DerivedTable& t : results.derived)
+  for (Table& t : results.derived)
     if (t.name == "effects")
       for (auto& row : t.rows) row[2] = row[3] = row[4] = 0.0;
   const CaseView view(results);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/store/record_values.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 /// \file
@@ -37,14 +38,14 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
   const std::vector<std::string> kinds = {"tip-linf", "energy", "impact-times"};
   std::mt19937 random(4);
   std::uniform_real_distribution<double> noise(1 - scatter, 1 + scatter);
-  using Row = std::vector<nlohmann::ordered_json>;
-  DerivedTable errors{"errors", out.columns, {}}, work{"work_precision", out.columns, {}},
-      orders{"orders", {out.columns.begin(), out.columns.end() - 1}, {}};
-  for (const char* column : {"error", "value", "floor"}) errors.columns.push_back(column);
-  for (const char* column : {"error", "value", "run_seconds", "low", "high", "steps", "status"})
-    work.columns.push_back(column);
-  for (const char* column : {"refined", "error", "order", "low", "high", "declared", "verdict", "reason"})
-    orders.columns.push_back(column);
+  std::vector<std::string> methods(out.columns.begin(), out.columns.end() - 1);
+  const auto head = [](const char* name, std::vector<std::string> columns, const std::vector<std::string>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+    return Table{name, "", named_columns(columns), {}};
+  };
+  Table errors = head("errors", out.columns, {"error", "value", "floor"}),
+        work = head("work_precision", out.columns, {"error", "value", "run_seconds", "low", "high", "steps", "status"}),
+        orders = head("orders", methods, {"refined", "error", "order", "low", "high", "declared", "verdict", "reason"});
   for (const Scheme& scheme : schemes())
     for (const int elements : meshes) {
       const auto axes = [&](bool with_mesh) {
@@ -59,7 +60,7 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
         Row row = axes(true);
         row.push_back(step);
         for (size_t c = 0; c < row.size(); ++c)
-          if (!row[c].is_null()) record.axes.emplace_back(out.columns[c], row[c]);
+          if (!row[c].is_nothing()) record.axes.emplace_back(out.columns[c], json_of(row[c]));
         record.id = "case" + std::to_string(out.cases.size());
         record.status = "done";
         record.steps = std::llround(0.5 / step);
@@ -84,10 +85,9 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
             errors.rows.push_back(std::move(error));
             record.measures.emplace_back("error." + kinds[k], value);
           }
-          using Json = nlohmann::ordered_json;
           const bool done = record.status == "done";
-          worked.insert(worked.end(), {kinds[k], has ? Json(value) : Json(), done ? Json(seconds) : Json(),
-                                       done ? Json(0.93 * seconds) : Json(), done ? Json(1.2 * seconds) : Json(),
+          worked.insert(worked.end(), {kinds[k], has ? Cell(value) : Cell(), done ? Cell(seconds) : Cell(),
+                                       done ? Cell(0.93 * seconds) : Cell(), done ? Cell(1.2 * seconds) : Cell(),
                                        record.steps, record.status});
           work.rows.push_back(std::move(worked));
         }
@@ -115,7 +115,7 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
         }
     }
   out.expected_cases = static_cast<int>(out.cases.size());
-  DerivedTable effects{"effects", {"measure", "factor", "share", "low", "high", "log"}, {}};
+  Table effects = head("effects", {}, {"measure", "factor", "share", "low", "high", "log"});
   const auto share = [&](const char* measure, const char* factor, double value, bool log) {
     effects.rows.push_back({measure, factor, value, 0.8 * value, std::min(1.0, 1.1 * value), log});
   };

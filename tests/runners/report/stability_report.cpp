@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/stability_rows.hpp"
+#include "runners/run/derive.hpp"
 
 using namespace ricochet;
 using namespace ricochet::report;
@@ -26,22 +28,19 @@ CaseRecord make_case(const std::string& mass, double stiffness, double open, dou
                  {"elements", 10}};
   record.id = mass + std::to_string(stiffness);
   record.status = "done";
-  DerivedTable table{"stability",
-                     {"step", "contact", "radius", "marginal", "limit_predicted", "limit_observed", "status", "reason"},
-                     {}};
-  DerivedTable observed{"stability_observed", {"step", "contact", "behaviour"}, {}};
-  const auto limit = [](double h) { return h > 0 ? nlohmann::ordered_json(h) : nlohmann::ordered_json(nullptr); };
+  Table table = stability_head();
+  Table observed{"stability_observed", "", named_columns({"step", "closed", "behaviour"}), {}};
+  const auto limit = [](double h) { return h > 0 ? Cell(h) : Cell(); };
   for (const bool touching : {false, true})
     for (int i = 0; i <= 8; ++i) {
       const double step = std::pow(10, -6 + 0.5 * i), own = touching ? closed : open, met = touching ? seen : open;
       const bool grows = own > 0 && step > own, blows = met > 0 && step > met;
-      const std::string contact = touching ? "closed" : "open";
-      table.rows.push_back({step, contact, grows ? step / own : 1.0, mass == "poor" ? "root −1 on <the kernel>" : "",
+      table.rows.push_back({step, touching, grows ? step / own : 1.0, mass == "poor" ? "root −1 on <the kernel>" : "",
                             limit(own), limit(met), grows || blows ? "unstable" : "stable",
                             grows   ? "it grows"
                             : blows ? "observed: it blew up"
                                     : ""});
-      observed.rows.push_back({step, contact, blows ? "diverged" : "stable"});
+      observed.rows.push_back({step, touching, blows ? "diverged" : "stable"});
     }
   record.tables = {table, observed};
   return record;
@@ -65,10 +64,8 @@ StudyResults results() {
   refused.id = "refused";
   refused.status = "refused";
   refused.reason = "nothing to march";
-  DerivedTable table{"stability",
-                     {"step", "contact", "radius", "marginal", "limit_predicted", "limit_observed", "status", "reason"},
-                     {}};
-  table.rows.push_back({1e-6, "open", nullptr, "", nullptr, nullptr, "refused", refused.reason});
+  Table table = stability_head();
+  table.rows.push_back({1e-6, false, nullptr, "", nullptr, nullptr, "refused", refused.reason});
   refused.tables = {table};
   out.cases.push_back(std::move(refused));
   out.expected_cases = static_cast<int>(out.cases.size());
@@ -176,7 +173,7 @@ TEST_CASE("the map has a cell per step and value, and both boundaries", "[report
 }
 
 TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
-  const StudyResults all = results();
+  const StudyResults all = with_tables(results());
   const std::string html = stability_html(CaseView(all));
   CHECK_THAT(html, Contains("root −1 on &lt;the kernel&gt;") && Contains("nothing to march") && Contains("none"));
   CHECK_THAT(html, Contains("agree to 2 %"));

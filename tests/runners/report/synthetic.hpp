@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/store/record.hpp"
 
 /// \file
@@ -96,6 +97,11 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
   return record;
 }
 
+/// The tables that the answer of a study of trajectories speaks of, from the measures that its cases have now.
+inline void derive_energies(StudyResults& out) {
+  out.derived = {energy_ends_table(out), energy_by_mass_table(out), energy_trends_table(out), choice_worth_table(out)};
+}
+
 /// Masses × time methods × steps, some refused, some diverged.
 inline StudyResults results(const Shape& shape = {}) {
   StudyResults out;
@@ -119,6 +125,7 @@ inline StudyResults results(const Shape& shape = {}) {
         for (const double step : shape.steps)
           out.cases.push_back(make_case(mass, velocity, time, beta, step, extra, shape));
   out.expected_cases = static_cast<int>(out.cases.size());
+  derive_energies(out);
   return out;
 }
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/store/record.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/store/record_values.hpp"
 
 /// \file
 /// A study of kind `bifurcation` made from formulas: the cubic map x → a x − x³, which is odd as the shaken beam is,
@@ -18,8 +19,6 @@ struct DynamicsShape {
   std::vector<std::pair<std::string, double>> methods = {{"three-level", 0.5}, {"three-level", 0.25}};
   bool exponents = true, portraits = true, refused = true;
 };
-
-using Cell = nlohmann::ordered_json;
 
 /// One orbit of the map at a ∈ [0, 3], with its exponent.
 struct MapOrbit {
@@ -54,47 +53,10 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
                  {"time.beta", beta}, {"elements", 20},     {"steps_per_period", 2000}};
   record.status = "done";
   record.steps = 1200000;
-  DerivedTable values{"values",
-                      {"parameter",
-                       "start",
-                       "class",
-                       "period",
-                       "impacts_per_period",
-                       "symmetric",
-                       "exponent_1",
-                       "exponent_1_low",
-                       "exponent_1_high",
-                       "exponent_method",
-                       "exponent_twin",
-                       "marginal",
-                       "attractor",
-                       "alpha_equivalent",
-                       "recurrence",
-                       "contraction",
-                       "zero_one",
-                       "transient_periods",
-                       "settled",
-                       "chatter",
-                       "sticking",
-                       "evidence",
-                       "status",
-                       "reason"},
-                      {}};
-  DerivedTable changes{"bifurcations", {"start", "from", "to", "kind", "value", "low", "high", "steps"}, {}};
-  NumberTable points{
-      "points",
-      {"parameter", "start", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"},
-      std::vector<std::vector<double>>(7),
-      {{"start", shape.starts}}};
-  NumberTable portraits{"portraits",
-                        {"parameter", "start", "time", "tip_displacement", "tip_velocity"},
-                        std::vector<std::vector<double>>(5),
-                        {{"start", shape.starts}},
-                        false};
-  const auto push = [](NumberTable& table, std::initializer_list<double> row) {
-    size_t c = 0;
-    for (const double value : row) table.columns[c++].push_back(value);
-  };
+  Table values = values_head(1), changes = bifurcations_head();
+  NumberTable points = points_head(), portraits = portraits_head();
+  points.words = portraits.words = {{"start", shape.starts}};
+  const auto push = [](NumberTable& table, std::initializer_list<double> row) { table.add(row); };
   for (size_t s = 0; s < shape.starts.size(); ++s) {
     std::string previous;
     double previous_value = 0;
@@ -169,37 +131,19 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
 
 /// The derived tables, as runners/kinds/sweep/derive_dynamics.hpp says them, from formulas as well.
 inline void derive_synthetic(StudyResults& out) {
-  std::vector<std::string> head = {"case"};
-  head.insert(head.end(), out.columns.begin(), out.columns.end());
-  const auto table = [&](const char* name, const std::vector<std::string>& columns, bool by_case) {
-    DerivedTable made{name, by_case ? head : std::vector<std::string>(), {}};
-    made.columns.insert(made.columns.end(), columns.begin(), columns.end());
-    return made;
-  };
   const auto row_of = [&](const CaseRecord& record, std::initializer_list<Cell> more) {
-    std::vector<Cell> row = {record.id};
-    for (const auto& [name, value] : record.axes) row.push_back(value);
+    Row row = place_of(out, record);
     row.insert(row.end(), more.begin(), more.end());
     return row;
   };
-  DerivedTable distances = table("distances",
-                                 {"reference_case", "parameter", "start", "wasserstein", "hausdorff",
-                                  "null_wasserstein", "null_hausdorff", "ratio", "same_class", "formula"},
-                                 true),
-               shifts = table("shifts",
-                              {"reference_case", "start", "from", "to", "kind", "reference_value", "value", "shift",
-                               "low", "high", "found"},
-                              true),
-               agreement =
-                   table("agreement",
-                         {"case", "other_case", "compared", "same_class", "share", "same_attractor", "share_attractor"},
-                         false),
-               values = table("values", {"parameter", "start", "attractor"}, true);
+  Table distances = table_of_cases(out, distances_head({})), shifts = table_of_cases(out, shifts_head({})),
+        agreement = agreement_head(),
+        values = table_of_cases(out, "values", "", named_columns({"parameter", "start", "attractor"}));
   const std::string& reference = out.cases.front().id;
   for (size_t c = 0; c < out.cases.size(); ++c) {
     const CaseRecord& record = out.cases[c];
     for (const auto& row : record.tables.front().rows) {
-      const double parameter = row[0].get<double>();
+      const double parameter = row[0].number().value();
       values.rows.push_back(
           row_of(record, {parameter, row[1], row[2] == "failed" ? Cell(nullptr) : Cell(1 + (parameter > 0.085))}));
       if (c == 0 || row[2] == "failed") continue;
@@ -221,22 +165,23 @@ inline void derive_synthetic(StudyResults& out) {
     }
   }
   out.derived.push_back(std::move(values));
-  out.derived.push_back({"attractors",
-                         {"attractor", "label", "cases", "from", "to", "class", "period", "symmetric", "fraction",
-                          "fraction_low", "fraction_high", "presence", "sentence"},
-                         {{1, "common to all", 2, 0.07, 0.085, "periodic", 1, true, 0.66, 0.6, 0.71, "",
-                           "Attractor 1 is met by all cases."},
-                          {2, "depends on time.beta", 1, 0.085, 0.1, "chaotic", nullptr, nullptr, 0.34, 0.29, 0.4,
-                           "time.beta 0.25: 1 of 1, 0.5: 0 of 1", "Attractor 2 is met with time.beta 0.25 <only>."}}});
+  out.derived.push_back(attractors_head({}));
+  out.derived.back().rows = {{1, "common to all", 2, 0.07, 0.085, "periodic", 1, true, 0.66, 0.6, 0.71, "",
+                              "Attractor 1 is met by all cases."},
+                             {2, "depends on time.beta", 1, 0.085, 0.1, "chaotic", nullptr, nullptr, 0.34, 0.29, 0.4,
+                              "time.beta 0.25: 1 of 1, 0.5: 0 of 1", "Attractor 2 is met with time.beta 0.25 <only>."}};
   out.derived.push_back(std::move(distances));
   out.derived.push_back(std::move(shifts));
   out.derived.push_back(std::move(agreement));
-  out.derived.push_back(
-      {"verdicts",
-       {"from", "to", "verdict", "choice", "sentence"},
-       {{0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
-        {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
-        {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}}});
+  out.derived.push_back(verdicts_head({}));
+  out.derived.back().rows = {
+      {0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
+      {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
+      {0.092, 0.1, "undecided", "", "Between 0.092 and 0.1 3 values are undecided."}};
+  Table shares_of_range = verdict_shares_table(out.derived.back(), {});
+  out.derived.push_back(std::move(shares_of_range));
+  for (Table made : {class_counts_table(out), grazing_ranges_table(out, {}), numerical_viscosity_table(out)})
+    out.derived.push_back(std::move(made));
 }
 
 /// The study with the tables that are derived of all cases.
@@ -268,14 +213,14 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
                {"scene", {{"initial", {{"displacement", "0.1*x"}, {"velocity", 0}}}}},
                {"axes", {{{"pointer", "/scene/initial/displacement"}}, {{"pointer", "/scene/initial/velocity"}}}}};
   out.columns = {"mass", "elements"};
-  DerivedTable cells{
-      "cells", {"case", "mass", "elements", "x", "y", "class", "period", "attractor", "status", "reason"}, {}};
+  const auto own_columns = named_columns({"x", "y", "class", "period", "attractor", "status", "reason"});
+  Table cells = table_of_cases(out, "cells", "", own_columns);
   for (const std::string mass : {"full", "poor"}) {
     CaseRecord record;
     record.id = mass;
     record.status = "done";
     record.axes = {{"mass", mass}, {"elements", 10}};
-    DerivedTable own{"cells", {"x", "y", "class", "period", "attractor", "status", "reason"}, {}};
+    Table own{"cells", "", own_columns, {}};
     for (int j = 0; j < count; ++j)
       for (int i = 0; i < count; ++i) {
         const double x = -1 + 2.0 * i / (count - 1), y = -2 + 4.0 * j / (count - 1);
@@ -295,13 +240,9 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
   }
   out.expected_cases = 2;
   out.derived.push_back(std::move(cells));
-  DerivedTable attractors{"attractors", {"attractor", "label", "cases", "class", "period"}, {}};
-  DerivedTable fractions{
-      "basin_fractions",
-      {"case", "mass", "elements", "attractor", "class", "period", "cells", "fraction", "low", "high"},
-      {}};
-  DerivedTable uncertainty{
-      "basin_uncertainty", {"case", "mass", "elements", "boundary_share", "exponent", "low", "high"}, {}};
+  Table attractors{"attractors", "", named_columns({"attractor", "label", "cases", "class", "period"}), {}};
+  Table fractions = table_of_cases(out, basin_fractions_head()),
+        uncertainty = table_of_cases(out, basin_uncertainty_head());
   for (const int k : {1, 2, 3}) attractors.rows.push_back({k, "common to all", 2, "periodic", k});
   for (const char* mass : {"full", "poor"}) {
     for (const int k : {1, 2, 3})
@@ -311,9 +252,8 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
   out.derived.push_back(std::move(attractors));
   out.derived.push_back(std::move(fractions));
   out.derived.push_back(std::move(uncertainty));
-  out.derived.push_back({"basin_differences",
-                         {"case", "other_case", "cells", "differ", "share"},
-                         {{"poor", "full", 1500, 150, 0.1}, {"full", "poor", 1500, 150, 0.1}}});
+  out.derived.push_back(basin_differences_head());
+  out.derived.back().rows = {{"poor", "full", 1500, 150, 0.1}, {"full", "poor", 1500, 150, 0.1}};
   return out;
 }
 

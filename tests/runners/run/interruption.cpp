@@ -11,9 +11,10 @@
 #include <cstdlib>
 #include <functional>
 
-#include "runners/store/csv.hpp"
+#include "runners/store/record_tables.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
+#include "runners/table/csv_text.hpp"
 #include "tests/runners/run/fake_study.hpp"
 
 using namespace ricochet;
@@ -127,7 +128,8 @@ std::string integrity(const std::filesystem::path& out) {
 /// Every row of every table of results, without the environment.
 std::string everything(const std::filesystem::path& out) {
   const StudyResults results = read_store(out);
-  std::string text = results.study.dump() + cases_csv(results) + left_out_csv(results) + notes_csv(results);
+  std::string text = results.study.dump() + table_csv(cases_table(results)) + table_csv(left_out_table(results)) +
+                     table_csv(notes_table(results));
   for (const CaseRecord& record : results.cases) text += record.id + curve_csv(record.curve);
   return text;
 }

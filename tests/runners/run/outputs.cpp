@@ -18,8 +18,9 @@ StudyResults results_with_points() {
   record.id = "0123456789";
   record.axes = {{"mass", "singular"}};
   record.status = "done";
-  record.numbers = {{"points", {"parameter", "start"}, {{0.07, 0.08}, {0, 1}}, {{"start", {"rest", "up"}}}},
-                    {"portraits", {"time"}, {{0.5}}, {}, false}};
+  record.numbers = {
+      {"points", named_columns({"parameter", "start"}), {{0.07, 0.08}, {0, 1}}, {{"start", {"rest", "up"}}}},
+      {"portraits", named_columns({"time"}), {{0.5}}, {}, false}};
   results.cases = {record};
   return results;
 }

@@ -28,11 +28,11 @@ inline ricochet::StudyResults sample_results() {
   done.curve.columns = {{0, 0.1, 0.2}, {1e-300, -0.0, 3.612908}};
 
   ricochet::NumberTable points{"points",
-                               {"parameter", "start", "tip_displacement"},
+                               ricochet::named_columns({"parameter", "start", "tip_displacement"}),
                                {{0.07, 0.08, 0.08}, {1, 0, 7}, {1e-300, std::numeric_limits<double>::quiet_NaN(), 0.1}},
                                {{"start", {"rest", "a, b"}}}};
-  ricochet::NumberTable portraits{"portraits", {"time"}, {{0.5}}, {}, false};
-  ricochet::NumberTable none{"impacts", {"parameter", "speed"}, {{}, {}}, {}};
+  ricochet::NumberTable portraits{"portraits", ricochet::named_columns({"time"}), {{0.5}}, {}, false};
+  ricochet::NumberTable none{"impacts", ricochet::named_columns({"parameter", "speed"}), {{}, {}}, {}};
   done.numbers = {points, portraits, none};
 
   ricochet::CaseRecord refused;

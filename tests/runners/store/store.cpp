@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "runners/store/csv.hpp"
+#include "runners/store/record_tables.hpp"
 #include "runners/store/store_error.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/store/sample_results.hpp"
@@ -55,15 +55,16 @@ void check_equal(const CaseRecord& a, const CaseRecord& b) {
   for (std::size_t t = 0; t < a.numbers.size(); ++t) {
     const NumberTable &x = a.numbers[t], &y = b.numbers[t];
     CHECK(x.name == y.name);
-    CHECK(x.names == y.names);
     CHECK(x.words == y.words);
     CHECK(x.exported == y.exported);
     REQUIRE(x.columns.size() == y.columns.size());
+    REQUIRE(x.values.size() == y.values.size());
     // NaN is a value here: bits, not equality.
-    for (std::size_t c = 0; c < x.columns.size(); ++c) {
-      REQUIRE(x.columns[c].size() == y.columns[c].size());
-      const std::size_t size = x.columns[c].size() * sizeof(double);
-      CHECK((size == 0 || std::memcmp(x.columns[c].data(), y.columns[c].data(), size) == 0));
+    for (std::size_t c = 0; c < x.values.size(); ++c) {
+      CHECK(x.columns[c].name == y.columns[c].name);
+      REQUIRE(x.values[c].size() == y.values[c].size());
+      const std::size_t size = x.values[c].size() * sizeof(double);
+      CHECK((size == 0 || std::memcmp(x.values[c].data(), y.values[c].data(), size) == 0));
     }
   }
 }
@@ -224,7 +225,7 @@ TEST_CASE("store: what a running case has so far is shown, marked, replaced, and
   StudyResults results = sample_results();
   CaseRecord early = results.cases[0];
   early.steps = 10;
-  early.numbers[0].columns = {{0.07}, {1}, {0.5}};
+  early.numbers[0].values = {{0.07}, {1}, {0.5}};
   {
     Store store(folder.path(), false);
     store.begin(results, kExpected);

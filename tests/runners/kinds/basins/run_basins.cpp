@@ -8,6 +8,8 @@
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/study/load_study.hpp"
+#include "runners/table/csv_text.hpp"
+#include "runners/table/table_reader.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;
@@ -52,21 +54,20 @@ CaseRecord run(const Json& text) {
 }
 
 /// Column of the table `cells`.
-std::vector<Json> cells(const CaseRecord& record, const std::string& column) {
-  const DerivedTable& table = record.tables.front();
-  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
-  REQUIRE(found != table.columns.end());
-  std::vector<Json> out;
-  for (const auto& row : table.rows) out.push_back(row.at(static_cast<std::size_t>(found - table.columns.begin())));
+std::vector<Cell> cells(const CaseRecord& record, const std::string& name) {
+  const TableReader rows(record.tables.front());
+  const std::size_t column = rows.column(name);
+  std::vector<Cell> out;
+  for (std::size_t row = 0; row < rows.size(); ++row) out.push_back(rows.cell(row, column));
   return out;
 }
 
 std::string bits(const CaseRecord& record) {
   std::string text = record.status + std::to_string(record.steps);
-  for (const auto& row : record.tables.front().rows)
-    for (const Json& cell : row) text += cell.dump();
-  for (const auto& column : record.numbers.front().columns)
-    text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
+  for (const Row& row : record.tables.front().rows)
+    for (const Cell& cell : row) text += csv_cell(cell);
+  for (const auto& numbers : record.numbers.front().values)
+    text.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
   return text;
 }
 
@@ -83,12 +84,12 @@ TEST_CASE("Every cell of a grid has its row and its section") {
   CHECK(y[0] == -4.0);
   CHECK(y[19] == 4.0);
   std::map<double, int> points;
-  for (const double cell : record.numbers.front().columns.front()) ++points[cell];
+  for (const double cell : record.numbers.front().values.front()) ++points[cell];
   for (std::size_t cell = 0; cell < x.size(); ++cell) {
     CHECK(status[cell] == "done");
     CHECK(marched[cell] == true);
     CHECK(source[cell] == cell);
-    CHECK(points[static_cast<double>(cell)] == (period[cell].is_null() ? 32 : period[cell].get<int>()));
+    CHECK(points[static_cast<double>(cell)] == period[cell].whole().value_or(32));
   }
   CHECK_FALSE(record.numbers.front().exported);
 }
@@ -97,15 +98,15 @@ TEST_CASE("Boundary refinement finds what the whole grid holds, for less") {
   const CaseRecord whole = run(grid_study(21, 21, false)), refined = run(grid_study(21, 21, true));
   const auto regime = cells(whole, "class"), found = cells(refined, "class"), marched = cells(refined, "marched"),
              period = cells(whole, "period"), repeats = cells(refined, "period"), source = cells(refined, "source");
-  const auto marched_count = std::count(marched.begin(), marched.end(), Json(true));
+  const auto marched_count = std::count(marched.begin(), marched.end(), Cell(true));
   CHECK(marched_count < 441 / 2);
-  CHECK(std::count(marched.begin(), marched.end(), Json(false)) == 441 - marched_count);
+  CHECK(std::count(marched.begin(), marched.end(), Cell(false)) == 441 - marched_count);
   CHECK(std::count(regime.begin(), regime.end(), regime.front()) < 441);  // there is something to find
   int wrong = 0;
   for (std::size_t cell = 0; cell < regime.size(); ++cell) {
     const bool same = regime[cell] == found[cell] && period[cell] == repeats[cell];
     if (marched[cell] == true) CHECK(same);
-    CHECK(marched[source[cell].get<std::size_t>()] == true);
+    CHECK(marched[static_cast<std::size_t>(source[cell].whole().value())] == true);
     wrong += !same;
   }
   // Tongues thinner than the coarse grid, which no coarse cell meets: one cell in a hundred.
@@ -125,8 +126,8 @@ TEST_CASE("Scenes shared by columns and rows are those of each cell alone") {
     std::vector<double> tips;
     for (std::size_t i = 0; i < record.numbers.front().rows(); ++i)
       for (std::size_t cell = 0; cell < 5; ++cell)
-        if (record.numbers.front().columns[0][i] == static_cast<double>(stride * cell))
-          tips.push_back(record.numbers.front().columns[2][i]);
+        if (record.numbers.front().values[0][i] == static_cast<double>(stride * cell))
+          tips.push_back(record.numbers.front().values[2][i]);
     return tips;
   };
   const auto wanted = first(run(alone), 1);
@@ -143,7 +144,7 @@ TEST_CASE("Cells behind a stop are refused one by one") {
   CHECK(record.status == "done");
   for (std::size_t cell = 0; cell < status.size(); ++cell) {
     CHECK(status[cell] == (cell % 4 == 3 ? "refused" : "done"));
-    if (cell % 4 == 3) CHECK_THAT(reason[cell].get<std::string>(), Contains("stop"));
+    if (cell % 4 == 3) CHECK_THAT(reason[cell].text(), Contains("stop"));
   }
 }
 
@@ -184,5 +185,5 @@ TEST_CASE("A budget that is spent leaves rows that say so") {
   CHECK(record.status == "failed");
   const auto status = cells(record, "status");
   CHECK(status.size() == 625);
-  CHECK(std::count(status.begin(), status.end(), Json("failed")) > 0);
+  CHECK(std::count(status.begin(), status.end(), Cell("failed")) > 0);
 }

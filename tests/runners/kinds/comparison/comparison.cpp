@@ -11,6 +11,7 @@
 #include "runners/run/run_study.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/table/table_reader.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -43,18 +44,15 @@ struct Run {
   StudyResults results() const { return with_tables(read_store(folder.path())); }
 };
 
-const DerivedTable& table(const StudyResults& results, const std::string& name) {
-  for (const DerivedTable& one : results.derived)
+const Table& table(const StudyResults& results, const std::string& name) {
+  for (const Table& one : results.derived)
     if (one.name == name) return one;
   FAIL("no table " << name);
   return results.derived.front();
 }
 
-Json cell(const DerivedTable& from, const std::vector<Json>& row, const std::string& column) {
-  for (std::size_t i = 0; i < from.columns.size(); ++i)
-    if (from.columns[i] == column) return row[i];
-  FAIL("no column " << column);
-  return {};
+const Cell& cell(const Table& from, const Row& row, const std::string& column) {
+  return row[TableReader(from).column(column)];
 }
 
 std::string problem_of(const Json& study) {
@@ -76,17 +74,17 @@ TEST_CASE("convergence: without contact an exact reference confirms the declared
   study["errors"] = {"tip-linf", "energy"};
   CHECK(run.go(study) == 0);
   const StudyResults results = run.results();
-  const DerivedTable& orders = table(results, "orders");
+  const Table& orders = table(results, "orders");
   REQUIRE(orders.rows.size() == 2);
   for (const auto& row : orders.rows) {
     CHECK(cell(orders, row, "refined") == "step");
-    CHECK(cell(orders, row, "order").get<double>() == Approx(2).margin(0.05));
+    CHECK(cell(orders, row, "order").number().value() == Approx(2).margin(0.05));
     CHECK(cell(orders, row, "declared") == 2);
     CHECK(cell(orders, row, "verdict") == "confirmed");
   }
-  const DerivedTable& errors = table(results, "errors");
+  const Table& errors = table(results, "errors");
   CHECK(errors.rows.size() == 10);  // five steps, two errors
-  CHECK(errors.columns.back() == "floor");
+  CHECK(errors.columns.back().name == "floor");
   CHECK(std::filesystem::exists(run.folder.path() / "errors.csv"));
   CHECK(std::filesystem::exists(run.folder.path() / "orders.csv"));
 }
@@ -130,11 +128,11 @@ TEST_CASE("work-precision: every finished case has a time with its spread, apart
   study["errors"] = {"tip-l2"};
   CHECK(run.go(study) == 0);
   const StudyResults results = run.results();
-  const DerivedTable& work = table(results, "work_precision");
+  const Table& work = table(results, "work_precision");
   CHECK(work.rows.size() == 5);
   for (const auto& row : work.rows) {
-    const double low = cell(work, row, "low").get<double>(), high = cell(work, row, "high").get<double>();
-    const double median = cell(work, row, "run_seconds").get<double>();
+    const double low = cell(work, row, "low").number().value(), high = cell(work, row, "high").number().value();
+    const double median = cell(work, row, "run_seconds").number().value();
     CHECK(low > 0);
     CHECK(low <= median);
     CHECK(median <= high);
@@ -204,7 +202,7 @@ TEST_CASE("a measure that some method never has is left out of the effects, neit
   const auto measures = [&] {
     derive_tables(results);
     std::set<std::string> found;
-    for (const auto& row : table(results, "effects").rows) found.insert(row.front().get<std::string>());
+    for (const auto& row : table(results, "effects").rows) found.insert(row.front().text());
     return found;
   };
   CHECK(measures() == std::set<std::string>{"impulse", "first_impact"});
@@ -221,10 +219,10 @@ TEST_CASE("effects stand beside the cases wherever two choices vary, and sum to 
   study["methods"]["time"] = {{{"name", "moreau-jean"}, {"theta", {0.5, 1}}, {"restitution", 0.5}}};
   CHECK(run.go(study) == 0);
   const StudyResults results = run.results();
-  const DerivedTable& effects = table(results, "effects");
+  const Table& effects = table(results, "effects");
   std::map<std::string, double> sums;
   for (const auto& row : effects.rows)
-    sums[cell(effects, row, "measure").get<std::string>()] += cell(effects, row, "share").get<double>();
+    sums[cell(effects, row, "measure").text()] += cell(effects, row, "share").number().value();
   REQUIRE(sums.count("tip_displacement_end") == 1);
   CHECK(sums["tip_displacement_end"] == Approx(1).epsilon(1e-9));
 }

@@ -7,14 +7,14 @@
 #include <set>
 
 #include "runners/study/load_study.hpp"
+#include "runners/table/csv_text.hpp"
+#include "runners/table/table_reader.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 namespace {
-
-using Cell = nlohmann::ordered_json;
 
 Json study_text(const Json& mass, const Json& contact, const Json& time, double from, double to, int count) {
   Json study = Json::parse(R"({
@@ -36,8 +36,8 @@ struct Result {
   Study study;
   CaseRecord record;
 
-  const DerivedTable& table(const std::string& name) const {
-    for (const DerivedTable& one : record.tables)
+  const Table& table(const std::string& name) const {
+    for (const Table& one : record.tables)
       if (one.name == name) return one;
     FAIL("no table " << name);
     return record.tables.front();
@@ -48,14 +48,11 @@ struct Result {
   /// A column of the rows of one contact state.
   std::vector<Cell> column(const std::string& name, const std::string& contact,
                            const std::string& of = "stability") const {
-    const DerivedTable& from = table(of);
-    const auto index = [&](const std::string& wanted) {
-      return static_cast<std::size_t>(std::find(from.columns.begin(), from.columns.end(), wanted) -
-                                      from.columns.begin());
-    };
+    const TableReader rows(table(of));
+    const std::size_t closed = rows.column("closed"), wanted = rows.column(name);
     std::vector<Cell> out;
-    for (const auto& row : from.rows)
-      if (row.at(index("contact")) == contact) out.push_back(row.at(index(name)));
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      if (rows.truth(row, closed) == (contact == "closed")) out.push_back(rows.cell(row, wanted));
     return out;
   }
   std::optional<double> measure(const std::string& name) const {
@@ -98,20 +95,20 @@ TEST_CASE("central differences: the predicted limit, the observed one within 2 %
   const Result result = run(study_text("consistent", "signorini", dumont_paoli(0), 1e-4, 1e-2, 9));
   CHECK(result.record.status == "done");
   CHECK(result.record.reason.empty());
-  const DerivedTable& table = result.table("stability");
-  CHECK(table.columns == std::vector<std::string>{"step", "contact", "radius", "marginal", "limit_predicted",
-                                                  "limit_observed", "status", "reason"});
+  const Table& table = result.table("stability");
+  CHECK(table_csv({"", "", table.columns, {}}) ==
+        "step,closed,radius,marginal,limit_predicted,limit_observed,status,reason\n");
   REQUIRE(table.rows.size() == 18);
   for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
   const auto steps = result.column("step", "open");
   CHECK(steps.front() == 1e-4);
   CHECK(steps.back() == 1e-2);
-  CHECK(steps[4].get<double>() == Approx(1e-3).epsilon(1e-12));
+  CHECK(steps[4].number().value() == Approx(1e-3).epsilon(1e-12));
 
   // Five elements miss the constant of a long beam by a little.
-  CHECK(result.column("limit_predicted", "open").front().get<double>() == Approx(central_limit).epsilon(2e-3));
-  const double predicted = result.column("limit_predicted", "open").front(),
-               observed = result.column("limit_observed", "open").front();
+  CHECK(result.column("limit_predicted", "open").front().number().value() == Approx(central_limit).epsilon(2e-3));
+  const double predicted = result.column("limit_predicted", "open").front().number().value(),
+               observed = result.column("limit_observed", "open").front().number().value();
   CHECK(observed == Approx(predicted).epsilon(0.02));
   CHECK(*result.measure("agreement") == Approx(1).epsilon(0.02));
   CHECK(*result.measure("limit_predicted") <= predicted);
@@ -119,17 +116,16 @@ TEST_CASE("central differences: the predicted limit, the observed one within 2 %
   const auto radius = result.column("radius", "open"), status = result.column("status", "open"),
              reason = result.column("reason", "open");
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const bool beyond = steps[i].get<double>() > predicted;
-    CHECK((radius[i].get<double>() > 1 + 1e-6) == beyond);
+    const bool beyond = steps[i].number().value() > predicted;
+    CHECK((radius[i].number().value() > 1 + 1e-6) == beyond);
     CHECK(status[i] == (beyond ? "unstable" : "stable"));
-    CHECK(reason[i].get<std::string>().empty() != beyond);
+    CHECK(reason[i].text().empty() != beyond);
   }
-  CHECK_THAT(reason.back().get<std::string>(), Contains("mode 10 of 10") && Contains("observed: step"));
+  CHECK_THAT(reason.back().text(), Contains("mode 10 of 10") && Contains("observed: step"));
   // Nothing in any row is not a number.
-  for (const DerivedTable& one : result.record.tables)
+  for (const Table& one : result.record.tables)
     for (const auto& row : one.rows)
-      for (const Cell& cell : row)
-        if (cell.is_number()) CHECK(std::isfinite(cell.get<double>()));
+      for (const Cell& cell : row) CHECK(std::isfinite(cell.number().value_or(0)));
   CHECK(result.record.steps > 9 * 3000 / 2);
   CHECK(result.noted("3.5e-4 per step"));
   CHECK(result.noted("open: stable up to h ="));
@@ -142,7 +138,7 @@ TEST_CASE("marginal cells are named, refused ones say why") {
   for (const Cell& marginal : quarter.column("marginal", "open"))
     CHECK(marginal == "double root −1 on the kernel of the mass (5 times): grows linearly");
   for (const Cell& seen : quarter.column("behaviour", "open", "stability_observed")) CHECK(seen == "marginal");
-  for (const Cell& limit : quarter.column("limit_predicted", "open")) CHECK(limit.is_null());
+  for (const Cell& limit : quarter.column("limit_predicted", "open")) CHECK(limit.is_nothing());
   CHECK_FALSE(quarter.measure("limit_predicted"));
 
   const Result refused = run(study_text(singular, "signorini", dumont_paoli(0), 1e-4, 1e-2, 3));
@@ -160,7 +156,7 @@ TEST_CASE("without observation nothing is marched") {
   const Result result = run(text);
   CHECK(result.record.steps == 0);
   CHECK_FALSE(result.has("stability_observed"));
-  for (const Cell& limit : result.column("limit_observed", "open")) CHECK(limit.is_null());
+  for (const Cell& limit : result.column("limit_observed", "open")) CHECK(limit.is_nothing());
   CHECK(*result.measure("limit_predicted") == Approx(central_limit).epsilon(2e-3));
   CHECK_FALSE(result.measure("limit_observed"));
   CHECK_FALSE(result.measure("agreement"));
@@ -181,16 +177,16 @@ TEST_CASE("an explicit spring limits the step of the closed cells, and the scene
   const Result result = run(study_text("consistent", spring, dumont_paoli(0.25), 1e-4, 1e-1, 13));
   const Cell predicted = result.column("limit_predicted", "closed").front(),
              observed = result.column("limit_observed", "closed").front();
-  REQUIRE(predicted.is_number());
-  REQUIRE(observed.is_number());
-  CHECK(result.column("limit_predicted", "open").front().is_null());
+  REQUIRE(predicted.number());
+  REQUIRE(observed.number());
+  CHECK(result.column("limit_predicted", "open").front().is_nothing());
   // A contact of a few steps is no lasting one: impacts make energy somewhat below the limit, and growth needs a
   // little more than the limit to show before the contact opens.
-  CHECK(observed.get<double>() > predicted.get<double>() / 2);
-  CHECK(observed.get<double>() < predicted.get<double>() * 2);
+  CHECK(observed.number().value() > predicted.number().value() / 2);
+  CHECK(observed.number().value() < predicted.number().value() * 2);
   CHECK(result.column("status", "closed").back() == "unstable");
-  CHECK_THAT(result.column("reason", "closed").back().get<std::string>(), Contains("observed:"));
-  for (const Cell& impacts : result.column("impacts", "closed", "stability_observed")) CHECK(impacts.is_number());
+  CHECK_THAT(result.column("reason", "closed").back().text(), Contains("observed:"));
+  for (const Cell& impacts : result.column("impacts", "closed", "stability_observed")) CHECK(impacts.number());
 }
 
 TEST_CASE("where marches and spectrum disagree the row says so") {
@@ -204,10 +200,10 @@ TEST_CASE("where marches and spectrum disagree the row says so") {
   const auto radius = result.column("radius", "closed");
   bool seen = false;
   for (std::size_t i = 0; i < status.size(); ++i) {
-    CHECK(radius[i].get<double>() <= 1 + 1e-6);
+    CHECK(radius[i].number().value() <= 1 + 1e-6);
     if (status[i] != "unstable") continue;
     seen = true;
-    CHECK_THAT(reason[i].get<std::string>(), Contains("energy that nothing gave") && Contains("spectrum does not see"));
+    CHECK_THAT(reason[i].text(), Contains("energy that nothing gave") && Contains("spectrum does not see"));
   }
   CHECK(seen);
 }
@@ -305,8 +301,8 @@ TEST_CASE("a case stops when asked to, and at its budget") {
   CHECK(result.record.status == "done");
   CHECK(result.noted("budget of 0.05 s"));
   CHECK(result.table("stability").rows.size() == 60);
-  CHECK_THAT(result.column("reason", "closed").back().get<std::string>(), Contains("budget"));
-  for (const Cell& status : result.column("status", "closed")) CHECK_FALSE(status.get<std::string>().empty());
+  CHECK_THAT(result.column("reason", "closed").back().text(), Contains("budget"));
+  for (const Cell& status : result.column("status", "closed")) CHECK_FALSE(status.text().empty());
 }
 
 TEST_CASE("a plan of a stability case counts its marches") {

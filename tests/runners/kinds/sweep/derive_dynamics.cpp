@@ -7,7 +7,9 @@
 #include <memory>
 #include <set>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/run/derive.hpp"
+#include "runners/table/table_reader.hpp"
 
 using namespace ricochet;
 
@@ -58,30 +60,25 @@ CaseRecord make_case(const Method& method, const std::vector<double>& values, co
   record.id = id_of(method);
   record.axes = method.axes;
   record.status = "done";
-  DerivedTable table{"values",
-                     {"parameter", "start", "class", "period", "impacts_per_period", "symmetric", "exponent_method",
-                      "attractor", "alpha_equivalent", "status", "reason"},
-                     {}};
-  NumberTable points{
-      "points",
-      {"parameter", "start", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"},
-      std::vector<std::vector<double>>(7),
-      {{"start", starts}}};
+  Table table{"values",
+              "",
+              named_columns({"parameter", "start", "class", "period", "impacts_per_period", "symmetric",
+                             "exponent_method", "attractor", "alpha_equivalent", "status", "reason"}),
+              {}};
+  NumberTable points = points_head();
+  points.words = {{"start", starts}};
   for (std::size_t s = 0; s < starts.size(); ++s)
     for (const double value : values) {
       const Found found = method.finds(value, starts[s]);
       const bool done = found.status == "done";
       table.rows.push_back({value, starts[s], done ? found.regime : "failed",
-                            found.period > 0 ? Json(found.period) : Json(nullptr), 2.0, nullptr, "", nullptr,
-                            found.viscosity, found.status, done ? "" : "it diverged"});
+                            found.period > 0 ? Cell(found.period) : Cell(), 2.0, nullptr, "", nullptr, found.viscosity,
+                            found.status, done ? "" : "it diverged"});
       for (int k = 0; done && found.point && k < keep; ++k) {
         // The orbits here are no images of themselves: half a period later they are 0.06 and 0.5 lower.
         std::array<double, 2> here = found.point(k), opposite = {0.06 - here[0], 0.5 - here[1]};
         if (found.mirrored) std::swap(here, opposite);
-        std::size_t c = 0;
-        for (const double x :
-             {value, static_cast<double>(s), static_cast<double>(k), here[0], here[1], opposite[0], opposite[1]})
-          points.columns[c++].push_back(x);
+        points.add({value, static_cast<double>(s), static_cast<double>(k), here[0], here[1], opposite[0], opposite[1]});
       }
     }
   record.tables.push_back(std::move(table));
@@ -103,28 +100,25 @@ StudyResults study(const std::vector<Method>& methods, const std::vector<double>
 }
 
 /// A derived table, read by column.
-class Table {
+class Derived {
  public:
-  Table(const StudyResults& results, const std::string& name) {
-    for (const DerivedTable& table : results.derived)
-      if (table.name == name) table_ = &table;
+  Derived(const StudyResults& results, const std::string& name) : table_(find_table(results.derived, name)) {
     REQUIRE(table_ != nullptr);
   }
   std::size_t size() const { return table_->rows.size(); }
-  const Json& at(std::size_t row, const std::string& column) const {
-    const auto found = std::find(table_->columns.begin(), table_->columns.end(), column);
-    REQUIRE(found != table_->columns.end());
-    return table_->rows[row][static_cast<std::size_t>(found - table_->columns.begin())];
+  const Cell& at(std::size_t row, const std::string& column) const {
+    const TableReader rows(*table_);
+    return rows.cell(row, rows.column(column));
   }
-  std::vector<Json> column(const std::string& name) const {
-    std::vector<Json> out;
+  std::vector<Cell> column(const std::string& name) const {
+    std::vector<Cell> out;
     for (std::size_t k = 0; k < size(); ++k) out.push_back(at(k, name));
     return out;
   }
-  std::string text(std::size_t row, const std::string& column) const { return at(row, column).get<std::string>(); }
-  double number(std::size_t row, const std::string& column) const { return at(row, column).get<double>(); }
+  std::string text(std::size_t row, const std::string& column) const { return at(row, column).text(); }
+  double number(std::size_t row, const std::string& column) const { return at(row, column).number().value(); }
   /// Rows that hold `value` in a column.
-  std::vector<std::size_t> where(const std::string& name, const Json& value) const {
+  std::vector<std::size_t> where(const std::string& name, const Cell& value) const {
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < size(); ++k)
       if (at(k, name) == value) out.push_back(k);
@@ -132,7 +126,7 @@ class Table {
   }
 
  private:
-  const DerivedTable* table_ = nullptr;
+  const Table* table_ = nullptr;
 };
 
 std::vector<double> range(double from, double to, int count) {
@@ -150,9 +144,9 @@ Method method(double beta, int steps, int elements, std::function<Found(double, 
           std::move(finds)};
 }
 
-std::set<Json> identities(const Table& values) {
-  std::set<Json> out;
-  for (const Json& attractor : values.column("attractor")) out.insert(attractor);
+std::set<std::string> identities(const Derived& values) {
+  std::set<std::string> out;
+  for (const Cell& attractor : values.column("attractor")) out.insert(attractor.text());
   return out;
 }
 
@@ -165,12 +159,12 @@ TEST_CASE("methods that agree have one attractor, common to all, and a robust ve
   for (const double beta : {0.25, 0.5})
     for (const int steps : {2000, 8000}) methods.push_back(method(beta, steps, 20, moving));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 11)));
-  const Table values(results, "values"), attractors(results, "attractors"), verdicts(results, "verdicts"),
+  const Derived values(results, "values"), attractors(results, "attractors"), verdicts(results, "verdicts"),
       agreement(results, "agreement"), distances(results, "distances");
   CHECK(values.size() == 4 * 2 * 11);
   CHECK(values.text(0, "case") == id_of(methods[0]));
   CHECK(values.number(0, "time.beta") == 0.25);
-  CHECK(identities(values) == std::set<Json>{1});
+  CHECK(identities(values) == std::set<std::string>{"1"});
   REQUIRE(attractors.size() == 1);
   CHECK(attractors.text(0, "label") == "common to all");
   CHECK(attractors.at(0, "cases") == 4);
@@ -193,7 +187,7 @@ TEST_CASE("methods that agree have one attractor, common to all, and a robust ve
   CHECK(distances.text(0, "reference_case") == id_of(methods[1]));
   for (std::size_t k = 0; k < distances.size(); ++k) {
     CHECK(distances.number(k, "wasserstein") == 0);
-    CHECK(distances.at(k, "ratio").is_null());  // an orbit that repeats exactly has no distance from itself
+    CHECK(distances.at(k, "ratio").is_nothing());  // an orbit that repeats exactly has no distance from itself
     CHECK(distances.text(k, "formula") == "exact");
   }
 }
@@ -211,7 +205,7 @@ TEST_CASE("an attractor that some methods lack depends on the choice that they s
         return found;
       }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 21)));
-  const Table attractors(results, "attractors"), verdicts(results, "verdicts");
+  const Derived attractors(results, "attractors"), verdicts(results, "verdicts");
   REQUIRE(attractors.size() == 2);
   CHECK(attractors.text(0, "label") == "common to all");
   CHECK(attractors.text(1, "label") == "depends on time.beta");
@@ -221,7 +215,7 @@ TEST_CASE("an attractor that some methods lack depends on the choice that they s
   CHECK(attractors.number(1, "fraction") == 0.5);
   CHECK(attractors.text(1, "presence") == "time.beta 0.25: 0 of 3, 0.3: 0 of 3, 0.5: 3 of 3");
   REQUIRE(verdicts.size() == 3);
-  CHECK(verdicts.column("verdict") == std::vector<Json>{"robust", "depends", "robust"});
+  CHECK(verdicts.column("verdict") == std::vector<Cell>{"robust", "depends", "robust"});
   CHECK(verdicts.text(1, "choice") == "time.beta");
   // Half way between two values.
   CHECK(verdicts.number(1, "from") == Approx(0.0735));
@@ -244,8 +238,8 @@ TEST_CASE("an orbit and its mirror image are one attractor") {
       return found;
     }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 5)));
-  CHECK(Table(results, "attractors").size() == 1);
-  const Table distances(results, "distances");
+  CHECK(Derived(results, "attractors").size() == 1);
+  const Derived distances(results, "distances");
   for (std::size_t k = 0; k < distances.size(); ++k) CHECK(distances.number(k, "wasserstein") == 0);
 }
 
@@ -263,18 +257,18 @@ TEST_CASE("chaos of one method where the others repeat is told by that method") 
                            }});
       }
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 11)));
-  const Table attractors(results, "attractors"), verdicts(results, "verdicts"), distances(results, "distances"),
+  const Derived attractors(results, "attractors"), verdicts(results, "verdicts"), distances(results, "distances"),
       agreement(results, "agreement");
   REQUIRE(attractors.size() == 2);
   CHECK(attractors.text(1, "class") == "chaotic");
-  CHECK(attractors.at(1, "period").is_null());
+  CHECK(attractors.at(1, "period").is_nothing());
   CHECK(attractors.text(1, "label") == "depends on contact");
   REQUIRE(verdicts.size() == 2);
   CHECK(verdicts.text(1, "verdict") == "depends");
   CHECK(verdicts.text(1, "choice") == "contact");
   CHECK(verdicts.text(1, "sentence").find("soft gives chaotic (attractor 2)") != std::string::npos);
   for (std::size_t k = 0; k < distances.size(); ++k)
-    CHECK(distances.at(k, "same_class").get<bool>() ==
+    CHECK(distances.at(k, "same_class").truth().value() ==
           (distances.text(k, "contact") == "rigid" || distances.number(k, "parameter") < 0.081));
   // Rigid against soft: the classes agree at 6 of 11 values.
   const auto rows = agreement.where("case", id_of(methods[0]));
@@ -295,8 +289,8 @@ TEST_CASE("runs of one chaotic attractor are no further apart than their null sa
     }));
   }
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 21), {"rest", "up", "state"}, 300));
-  CHECK(Table(results, "attractors").size() == 1);
-  const Table distances(results, "distances"), verdicts(results, "verdicts");
+  CHECK(Derived(results, "attractors").size() == 1);
+  const Derived distances(results, "distances"), verdicts(results, "verdicts");
   CHECK(verdicts.size() == 1);
   int beyond = 0;
   for (std::size_t k = 0; k < distances.size(); ++k) {
@@ -308,7 +302,7 @@ TEST_CASE("runs of one chaotic attractor are no further apart than their null sa
   // Moved by a tenth of the gap, it is seen.
   methods[2].finds = [](double a, const std::string& start) { return chaos(3 + a * 130 + start.size(), 0.05); };
   const StudyResults moved = with_tables(study(methods, range(0.07, 0.09, 21), {"rest", "up", "state"}, 300));
-  const Table further(moved, "distances");
+  const Derived further(moved, "distances");
   for (const std::size_t row : further.where("time.beta", 0.5)) CHECK(further.number(row, "ratio") > 1);
 }
 
@@ -322,7 +316,7 @@ TEST_CASE("what only coarse steps or meshes show vanishes under refinement") {
           return moving(a, start);
         }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 6)));
-  const Table attractors(results, "attractors"), verdicts(results, "verdicts");
+  const Derived attractors(results, "attractors"), verdicts(results, "verdicts");
   REQUIRE(attractors.size() == 2);
   const auto coarse = attractors.where("class", "periodic");
   const auto third = attractors.where("period", 3);
@@ -340,7 +334,7 @@ TEST_CASE("sections that converge with the step are at distances that converge")
       return orbit(0.02 + 0.5 * (a - 0.07) + (steps < 64000 ? 1.0 / steps : 0), 0.3);
     }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 5), {"rest"}));
-  const Table distances(results, "distances");
+  const Derived distances(results, "distances");
   const auto at = [&](int steps) {
     return distances.number(distances.where("steps_per_period", steps)[0], "wasserstein");
   };
@@ -365,7 +359,7 @@ TEST_CASE("shifts of located changes carry the intervals of both") {
                                       {"up", "no contact", "periodic 1", "grazing", 0.0792, 0.0791, 0.0793, 8},
                                       {"down", "chaotic", "periodic 3", "change", 0.088, 0.0879, 0.0881, 8}}});
   derive_tables(results);
-  const Table shifts(results, "shifts"), changes(results, "bifurcations");
+  const Derived shifts(results, "shifts"), changes(results, "bifurcations");
   CHECK(changes.size() == 6);
   CHECK(changes.text(3, "case") == id_of(methods[1]));
   REQUIRE(shifts.size() == 5);
@@ -376,11 +370,11 @@ TEST_CASE("shifts of located changes carry the intervals of both") {
   CHECK(shifts.at(0, "found") == true);
   // The grazing and the downward change have none here; two of this method's own are left over.
   for (const std::size_t row : {1, 2}) {
-    CHECK(shifts.at(row, "value").is_null());
-    CHECK(shifts.at(row, "shift").is_null());
+    CHECK(shifts.at(row, "value").is_nothing());
+    CHECK(shifts.at(row, "shift").is_nothing());
     CHECK(shifts.at(row, "found") == false);
   }
-  for (const std::size_t row : {3, 4}) CHECK(shifts.at(row, "reference_value").is_null());
+  for (const std::size_t row : {3, 4}) CHECK(shifts.at(row, "reference_value").is_nothing());
 }
 
 TEST_CASE("what failed makes no attractor, and leaves its values open") {
@@ -395,14 +389,14 @@ TEST_CASE("what failed makes no attractor, and leaves its values open") {
   StudyResults results = study(methods, range(0.07, 0.09, 5));
   results.cases[0].numbers.clear();
   derive_tables(results);
-  const Table values(results, "values"), verdicts(results, "verdicts"), attractors(results, "attractors");
-  for (const std::size_t row : values.where("class", "failed")) CHECK(values.at(row, "attractor").is_null());
-  for (const std::size_t row : values.where("class", "undecided")) CHECK(values.at(row, "attractor").is_null());
+  const Derived values(results, "values"), verdicts(results, "verdicts"), attractors(results, "attractors");
+  for (const std::size_t row : values.where("class", "failed")) CHECK(values.at(row, "attractor").is_nothing());
+  for (const std::size_t row : values.where("class", "undecided")) CHECK(values.at(row, "attractor").is_nothing());
   REQUIRE(attractors.size() == 1);
   CHECK(attractors.at(0, "cases") == 2);
   CHECK(attractors.text(0, "label") == "common to all");
   REQUIRE(verdicts.size() == 2);
-  CHECK(verdicts.column("verdict") == std::vector<Json>{"robust", "undecided"});
+  CHECK(verdicts.column("verdict") == std::vector<Cell>{"robust", "undecided"});
   CHECK(verdicts.text(0, "sentence").find("1 case without any decided value") != std::string::npos);
   CHECK(verdicts.text(1, "sentence").find("1 case left open (") != std::string::npos);
 }
@@ -412,16 +406,16 @@ TEST_CASE("without points, or with one case, tables are smaller and nothing is i
   StudyResults bare = study(methods, range(0.07, 0.09, 5));
   for (CaseRecord& record : bare.cases) record.numbers.clear();
   derive_tables(bare);
-  CHECK(Table(bare, "attractors").size() == 1);
-  const Table distances(bare, "distances");
+  CHECK(Derived(bare, "attractors").size() == 1);
+  const Derived distances(bare, "distances");
   for (std::size_t k = 0; k < distances.size(); ++k) {
-    CHECK(distances.at(k, "wasserstein").is_null());
+    CHECK(distances.at(k, "wasserstein").is_nothing());
     CHECK(distances.at(k, "same_class") == true);
   }
   const StudyResults one = with_tables(study({methods[0]}, range(0.07, 0.09, 5)));
-  CHECK(Table(one, "attractors").text(0, "label") == "not compared");
-  CHECK(Table(one, "verdicts").size() == 0);
-  CHECK(Table(one, "distances").size() == 0);
+  CHECK(Derived(one, "attractors").text(0, "label") == "not compared");
+  CHECK(Derived(one, "verdicts").size() == 0);
+  CHECK(Derived(one, "distances").size() == 0);
   StudyResults none;
   none.kind = "bifurcation";
   CHECK_NOTHROW(derive_tables(none));
@@ -435,11 +429,11 @@ TEST_CASE("every row is as long as its columns, and no cell is NaN") {
     }));
   const StudyResults results = with_tables(study(methods, range(0.07, 0.09, 5)));
   std::set<std::string> names;
-  for (const DerivedTable& table : results.derived) {
+  for (const Table& table : results.derived) {
     CHECK(names.insert(table.name).second);
     for (const auto& row : table.rows) {
       CHECK(row.size() == table.columns.size());
-      for (const Json& cell : row) CHECK((!cell.is_number() || std::isfinite(cell.get<double>())));
+      for (const Cell& cell : row) CHECK(std::isfinite(cell.number().value_or(0)));
     }
   }
   for (const char* name : {"values", "bifurcations", "attractors", "distances", "verdicts", "agreement", "shifts"})
@@ -454,26 +448,19 @@ CaseRecord basin_case(const std::string& mass, double slope, int count, bool int
   record.id = mass;
   record.axes = {{"mass", mass}, {"elements", 10}};
   record.status = "done";
-  DerivedTable cells{"cells", {"x", "y", "class", "period", "attractor", "status", "reason"}, {}};
-  NumberTable points{
-      "cell_points",
-      {"cell", "index", "tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"},
-      std::vector<std::vector<double>>(6),
-      {},
-      false};
+  Table cells{"cells", "", named_columns({"x", "y", "class", "period", "attractor", "status", "reason"}), {}};
+  NumberTable points = cell_points_head();
   for (int j = 0; j < count; ++j)
     for (int i = 0; i < count; ++i) {
       const double x = -1 + 2.0 * i / (count - 1), y = -1 + 2.0 * j / (count - 1);
       const bool failed = x * x + y * y > 1.9, above = y > slope * x + 0.1;
       const auto row = static_cast<double>(cells.rows.size());
-      cells.rows.push_back({x, y, failed ? "failed" : "periodic", failed ? Json(nullptr) : Json(1), nullptr,
-                            failed ? "diverged" : "done", ""});
+      cells.rows.push_back(
+          {x, y, failed ? "failed" : "periodic", failed ? Cell() : Cell(1), nullptr, failed ? "diverged" : "done", ""});
       if (failed || (interior_unmarched && std::abs(y - slope * x - 0.1) > 0.5)) continue;
       for (int k = 0; k < 20; ++k) {
         const double d = above ? 0.05 : -0.03, v = above ? 0.4 : 0.9;
-        std::size_t c = 0;
-        for (const double value : {row, static_cast<double>(k), d, v, 0.06 - d, 0.5 - v})
-          points.columns[c++].push_back(value);
+        points.add({row, static_cast<double>(k), d, v, 0.06 - d, 0.5 - v});
       }
     }
   record.tables.push_back(std::move(cells));
@@ -501,19 +488,19 @@ TEST_CASE("basins of two attractors: shares, differences and a smooth boundary")
       const StudyResults results =
           with_tables(basins({basin_case("full", 0, count, inside), basin_case("poor", 0.5, count, inside)}, pointer,
                              "/scene/initial/velocity"));
-      const Table cells(results, "cells"), attractors(results, "attractors"), fractions(results, "basin_fractions"),
+      const Derived cells(results, "cells"), attractors(results, "attractors"), fractions(results, "basin_fractions"),
           differences(results, "basin_differences"), uncertainty(results, "basin_uncertainty");
       REQUIRE(attractors.size() == 2);
       CHECK(attractors.text(0, "label") == "common to all");
-      CHECK(attractors.at(0, "from").is_null());
+      CHECK(attractors.at(0, "from").is_nothing());
       REQUIRE(fractions.size() == 4);
       // Every decided cell has the attractor of its side, in both cases.
       std::array<int, 2> decided{}, above{};
-      const Json upper = cells.at(40 * 41 + 20, "attractor");
+      const Cell upper = cells.at(40 * 41 + 20, "attractor");
       for (std::size_t k = 0; k < cells.size(); ++k) {
         const bool poor = cells.text(k, "case") == "poor";
         if (cells.text(k, "class") == "failed") {
-          CHECK(cells.at(k, "attractor").is_null());
+          CHECK(cells.at(k, "attractor").is_nothing());
           continue;
         }
         ++decided[poor];
@@ -544,10 +531,7 @@ TEST_CASE("every one of many chaotic sections belongs to an attractor") {
     }));
   StudyResults results = study(methods, range(0.07, 0.09, 100), {"rest", "up", "state"}, 300);
   derive_tables(results);
-  const auto values = std::find_if(results.derived.begin(), results.derived.end(),
-                                   [](const DerivedTable& table) { return table.name == "values"; });
-  REQUIRE(values != results.derived.end());
-  CHECK(values->rows.size() == 2400);
-  const auto column = std::find(values->columns.begin(), values->columns.end(), "attractor") - values->columns.begin();
-  for (const auto& row : values->rows) CHECK(row[static_cast<std::size_t>(column)].is_number());
+  const Derived values(results, "values");
+  CHECK(values.size() == 2400);
+  for (const Cell& attractor : values.column("attractor")) CHECK(attractor.whole());
 }

@@ -48,7 +48,7 @@ TEST_CASE("A point is marched with the bits of its diagram") {
       REQUIRE(entry);
       std::vector<std::size_t> rows;
       for (std::size_t i = 0; i < points.rows(); ++i)
-        if (points.columns[0][i] == value && points.columns[1][i] == static_cast<double>(s)) rows.push_back(i);
+        if (points.values[0][i] == value && points.values[1][i] == static_cast<double>(s)) rows.push_back(i);
       REQUIRE(rows.size() == 16);
       long long strobes = 0, samples = 0;
       march_point(one, registry, {value, starts[s], *entry, {16, 7}}, [&](const PointSample& sample) {
@@ -56,8 +56,8 @@ TEST_CASE("A point is marched with the bits of its diagram") {
         if (sample.strobe < 0) return;
         CHECK(sample.strobe == strobes);
         const std::size_t row = rows[static_cast<std::size_t>(strobes++)];
-        CHECK(sample.displacement == points.columns[3][row]);
-        CHECK(sample.velocity == points.columns[4][row]);
+        CHECK(sample.displacement == points.values[3][row]);
+        CHECK(sample.velocity == points.values[4][row]);
       });
       CHECK(strobes == 16);
       CHECK(samples == 16 * 7);

@@ -7,12 +7,12 @@
 
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/study/load_study.hpp"
+#include "runners/table/csv_text.hpp"
+#include "runners/table/table_reader.hpp"
 
 /// \file
 /// Small studies of kind `bifurcation`, from their text to what a case of them leaves.
 namespace ricochet::testing {
-
-using Cell = nlohmann::ordered_json;
 
 /// The shaken beam of the working set on a coarse mesh, its amplitude the parameter; tests change it.
 inline Json beam_sweep(const std::vector<double>& values, const Json& start = "rest") {
@@ -74,8 +74,8 @@ inline OpenedSweep opened_sweep(const Json& text) {
   return opened;
 }
 
-inline const DerivedTable& table_of(const CaseRecord& record, const std::string& name) {
-  for (const DerivedTable& one : record.tables)
+inline const Table& table_of(const CaseRecord& record, const std::string& name) {
+  for (const Table& one : record.tables)
     if (one.name == name) return one;
   throw std::runtime_error("no table " + name);
 }
@@ -86,18 +86,18 @@ inline const NumberTable& numbers_of(const CaseRecord& record, const std::string
   throw std::runtime_error("no numbers " + name);
 }
 
-inline std::vector<Cell> column_of(const DerivedTable& table, const std::string& name) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-  if (found == table.columns.end()) throw std::runtime_error("no column " + name);
+inline std::vector<Cell> column_of(const Table& table, const std::string& name) {
+  const TableReader rows(table);
+  const std::size_t column = rows.column(name);
   std::vector<Cell> out;
-  for (const auto& row : table.rows) out.push_back(row.at(static_cast<std::size_t>(found - table.columns.begin())));
+  for (std::size_t row = 0; row < rows.size(); ++row) out.push_back(rows.cell(row, column));
   return out;
 }
 
 inline const std::vector<double>& column_of(const NumberTable& table, const std::string& name) {
-  const auto found = std::find(table.names.begin(), table.names.end(), name);
-  if (found == table.names.end()) throw std::runtime_error("no column " + name);
-  return table.columns.at(static_cast<std::size_t>(found - table.names.begin()));
+  const std::vector<double>* numbers = table.numbers(name);
+  if (!numbers) throw std::runtime_error("no column " + name);
+  return *numbers;
 }
 
 /// A column of the table `values`.
@@ -108,11 +108,11 @@ inline std::vector<Cell> of_values(const CaseRecord& record, const std::string& 
 /// Every table and number of a record as text that tells any two bits apart.
 inline std::string bits_of(const CaseRecord& record) {
   std::string text = record.status + record.reason + std::to_string(record.steps);
-  for (const DerivedTable& table : record.tables)
+  for (const Table& table : record.tables)
     for (const auto& row : table.rows)
-      for (const Cell& cell : row) text += cell.dump() + "\n";
+      for (const Cell& cell : row) text += csv_cell(cell) + "\n";
   for (const NumberTable& table : record.numbers)
-    for (const auto& column : table.columns)
+    for (const auto& column : table.values)
       text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
   return text;
 }

@@ -1,4 +1,4 @@
-#include "runners/store/csv.hpp"
+#include "runners/store/record_tables.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "runners/store/record_values.hpp"
+#include "runners/table/csv_text.hpp"
 #include "tests/runners/store/sample_results.hpp"
 
 using namespace ricochet;
@@ -41,44 +43,23 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("csv: a number reads back as the same double") {
-  for (const double value : {0.1, 1.0 / 3.0, 1e-300, 5e-324, 6.02214076e23, -0.0, 14.0, 1e22, 2.5e-7}) {
-    const std::string text = csv_number(value);
-    CHECK(std::strtod(text.c_str(), nullptr) == value);
-  }
-  CHECK(csv_number(14) == "14");
-  CHECK(csv_number(0.25) == "0.25");
+TEST_CASE("records: a value of an axis is a cell") {
+  CHECK(cell_of("P1") == "P1");
+  CHECK(csv_cell(cell_of("0.1,x")) == "\"0.1,x\"");
+  CHECK(csv_cell(cell_of(1e-05)) == "1e-05");
+  CHECK(csv_cell(cell_of(50)) == "50");
+  CHECK(csv_cell(cell_of(true)) == "true");
+  CHECK(cell_of(nullptr).is_nothing());
+  CHECK(csv_cell(cell_of({0.5, 1.0})) == "\"[0.5,1.0]\"");
+  for (const nlohmann::ordered_json& value : std::vector<nlohmann::ordered_json>{nullptr, true, 7, 1.5, "a \"b\""})
+    CHECK(json_of(cell_of(value)) == value);
 }
 
-TEST_CASE("csv: what is not finite is an empty field") {
-  CHECK(csv_number(std::numeric_limits<double>::quiet_NaN()).empty());
-  CHECK(csv_number(std::numeric_limits<double>::infinity()).empty());
-  CHECK(csv_number(-std::numeric_limits<double>::infinity()).empty());
-}
-
-TEST_CASE("csv: quoting after RFC 4180") {
-  CHECK(csv_field("plain text") == "plain text");
-  CHECK(csv_field("a,b") == "\"a,b\"");
-  CHECK(csv_field("say \"x\"") == "\"say \"\"x\"\"\"");
-  CHECK(csv_field("two\nlines") == "\"two\nlines\"");
-  CHECK(csv_field("") == "");
-}
-
-TEST_CASE("csv: axis values") {
-  CHECK(csv_value("P1") == "P1");
-  CHECK(csv_value("0.1,x") == "\"0.1,x\"");
-  CHECK(csv_value(1e-05) == "1e-05");
-  CHECK(csv_value(50) == "50");
-  CHECK(csv_value(true) == "true");
-  CHECK(csv_value(nullptr) == "");
-  CHECK(csv_value({0.5, 1.0}) == "\"[0.5,1.0]\"");
-}
-
-TEST_CASE("csv: cases have id, axes, status, reason, steps, times, then every measure") {
-  const auto lines = parse_csv(cases_csv(sample_results()));
+TEST_CASE("records: cases have case, axes, status, reason, steps, times, then every measure") {
+  const auto lines = parse_csv(table_csv(cases_table(sample_results())));
   REQUIRE(lines.size() == 3);
   const std::vector<std::string> first(lines[0].begin(), lines[0].begin() + 10);
-  CHECK(first == std::vector<std::string>{"id", "mass", "mass.velocity", "step", "status", "reason", "steps",
+  CHECK(first == std::vector<std::string>{"case", "mass", "mass.velocity", "step", "status", "reason", "steps",
                                           "setup_seconds", "run_seconds", "scheme_energy_start"});
   CHECK(lines[0].size() == 9 + standing_measures("trajectory").size());
   CHECK(lines[1].size() == lines[0].size());
@@ -90,34 +71,37 @@ TEST_CASE("csv: cases have id, axes, status, reason, steps, times, then every me
     if (lines[0][i] == "energy_start") CHECK(std::strtod(lines[1][i].c_str(), nullptr) == 1.0 / 3.0);
 }
 
-TEST_CASE("csv: a measure that the list does not know gets a column too") {
+TEST_CASE("records: a measure that the list does not know gets a column too") {
   StudyResults results = sample_results();
   results.cases[1].measures = {{"error_tip", 2.0}};
-  const auto lines = parse_csv(cases_csv(results));
+  const auto lines = parse_csv(table_csv(cases_table(results)));
   CHECK(lines[0].back() == "error_tip");
   CHECK(lines[1].back() == "");
   CHECK(lines[2].back() == "2");
 }
 
-TEST_CASE("csv: a case that is still running is not called done") {
+TEST_CASE("records: a case that is still running is not called done") {
   StudyResults results = sample_results();
   results.cases[0].partial = true;
-  const auto lines = parse_csv(cases_csv(results));
+  const auto lines = parse_csv(table_csv(cases_table(results)));
   CHECK(lines[0][4] == "status");
   CHECK(lines[1][4] == "partial");
 }
 
-TEST_CASE("csv: the numbers of all cases stand behind case and axes, in columns by name") {
+TEST_CASE("records: the numbers of all cases stand behind case and axes, in columns by name") {
   StudyResults results = sample_results();
   // A case with other columns, and a second one of the same.
   CaseRecord other;
   other.id = "00000000ff";
   other.axes = {{"mass", "lumped"}, {"step", 0.5}};
-  other.numbers = {{"points", {"index", "parameter"}, {{3, 4}, {0.25, -0.0}}, {}}};
+  other.numbers = {{"points", named_columns({"index", "parameter"}), {{3, 4}, {0.25, -0.0}}, {}}};
   results.cases.push_back(other);
-  CHECK(exported_tables(results) == std::vector<std::string>{"points", "impacts"});
+  const std::vector<Table> heads = number_heads(results);
+  REQUIRE(heads.size() == 2);
+  CHECK(heads[0].name == "points");
+  CHECK(heads[1].name == "impacts");
   std::string text;
-  write_numbers_csv(results, "points", [&](std::string_view piece) { text += piece; });
+  write_numbers_csv(results, heads[0], [&](std::string_view piece) { text += piece; });
   CHECK(text ==
         "case,mass,mass.velocity,step,parameter,start,tip_displacement,index\n"
         "0123456789,singular,P1,1e-05,0.07,\"a, b\",1e-300,\n"
@@ -126,11 +110,11 @@ TEST_CASE("csv: the numbers of all cases stand behind case and axes, in columns 
         "00000000ff,lumped,,0.5,0.25,,,3\n"
         "00000000ff,lumped,,0.5,-0,,,4\n");
   text.clear();
-  write_numbers_csv(results, "impacts", [&](std::string_view piece) { text += piece; });
+  write_numbers_csv(results, heads[1], [&](std::string_view piece) { text += piece; });
   CHECK(text == "case,mass,mass.velocity,step,parameter,speed\n");
 }
 
-TEST_CASE("csv: a large table goes out in pieces, whole lines each, nothing lost") {
+TEST_CASE("records: a large table goes out in pieces, whole lines each, nothing lost") {
   StudyResults results = sample_results();
   constexpr int rows = 100000;
   std::vector<double> index(rows), value(rows);
@@ -138,10 +122,10 @@ TEST_CASE("csv: a large table goes out in pieces, whole lines each, nothing lost
     index[static_cast<std::size_t>(i)] = i;
     value[static_cast<std::size_t>(i)] = std::sin(i);
   }
-  results.cases[0].numbers = {{"points", {"index", "tip_displacement"}, {index, value}, {}}};
+  results.cases[0].numbers = {{"points", named_columns({"index", "tip_displacement"}), {index, value}, {}}};
   std::size_t largest = 0, pieces = 0;
   std::string text;
-  write_numbers_csv(results, "points", [&](std::string_view piece) {
+  write_numbers_csv(results, number_heads(results).front(), [&](std::string_view piece) {
     largest = std::max(largest, piece.size());
     ++pieces;
     CHECK(piece.back() == '\n');
@@ -158,7 +142,7 @@ TEST_CASE("csv: a large table goes out in pieces, whole lines each, nothing lost
   }
 }
 
-TEST_CASE("csv: a curve is its columns, and a value that is not finite is empty") {
+TEST_CASE("records: a curve is its columns, and a value that is not finite is empty") {
   Curve curve;
   curve.names = {"t", "energy"};
   curve.columns = {{0, 0.5}, {1, std::numeric_limits<double>::quiet_NaN()}};

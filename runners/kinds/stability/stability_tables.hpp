@@ -1,0 +1,16 @@
+#pragma once
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// `stability`, without rows: one per step and contact state, what the plan predicts there and what became of it.
+Table stability_head();
+
+/// `stability_observed`, without rows: one per step and contact state that was marched.
+Table stability_observed_head();
+
+/// Gives the tables that a case of a stability study left their units and meanings, and today's column names: stores
+/// that are older say the contact state in the words of a column `contact`.
+void describe_stability(CaseRecord& record);
+
+}  // namespace ricochet

@@ -1,0 +1,224 @@
+#include "runners/kinds/stability/step_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ricochet/measure/stability/stability.hpp>
+
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+/// One step of a range.
+struct StepCell {
+  double step = 0;
+  std::optional<double> radius;  ///< of the contact state itself
+  std::optional<double> worst;   ///< the larger of the radii that the marched cell meets
+  std::string marginal, status, reason;
+  std::string behaviour;  ///< "" where not observed
+  bool predicted_unstable() const { return worst && *worst > 1 + growth_tolerance; }
+  bool observed_unstable() const { return behaviour == "unstable" || behaviour == "diverged" || behaviour == "failed"; }
+  bool disagrees() const { return worst && !behaviour.empty() && predicted_unstable() != observed_unstable(); }
+};
+
+/// One contact state of one case, along the step.
+struct StepRange {
+  std::vector<StepCell> cells;  ///< steps increase
+  std::optional<double> predicted, observed, expected;
+};
+
+std::map<double, std::string> behaviours_of(const CaseRecord& record, bool closed) {
+  std::map<double, std::string> out;
+  const Table* observed = find_table(record.tables, "stability_observed");
+  if (!observed) return out;
+  const TableReader rows(*observed);
+  const std::size_t step = rows.column("step"), state = rows.column("closed"), behaviour = rows.column("behaviour");
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (const auto h = rows.number(row, step); h && rows.truth(row, state) == closed)
+      out[*h] = rows.text(row, behaviour);
+  return out;
+}
+
+// The range as the case left it; nothing where it has none.
+std::optional<StepRange> own_range(const CaseRecord& record, bool closed) {
+  const Table* table = find_table(record.tables, "stability");
+  if (!table) return std::nullopt;
+  const TableReader rows(*table);
+  const std::size_t step = rows.column("step"), state = rows.column("closed"), radius = rows.column("radius"),
+                    marginal = rows.column("marginal"), status = rows.column("status"), reason = rows.column("reason"),
+                    predicted = rows.column("limit_predicted"), observed = rows.column("limit_observed");
+  const std::map<double, std::string> behaviours = behaviours_of(record, closed);
+  StepRange out;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const auto h = rows.number(row, step);
+    if (rows.truth(row, state) != closed || !h) continue;
+    const auto seen = behaviours.find(*h);
+    out.cells.push_back({*h, rows.number(row, radius), rows.number(row, radius), rows.text(row, marginal),
+                         rows.text(row, status), rows.text(row, reason),
+                         seen == behaviours.end() ? std::string() : seen->second});
+    out.predicted = rows.number(row, predicted);
+    out.observed = rows.number(row, observed);
+  }
+  if (out.cells.empty()) return std::nullopt;
+  out.expected = out.predicted;
+  std::stable_sort(out.cells.begin(), out.cells.end(),
+                   [](const StepCell& a, const StepCell& b) { return a.step < b.step; });
+  return out;
+}
+
+std::optional<StepRange> range_of(const CaseRecord& record, bool closed) {
+  std::optional<StepRange> out = own_range(record, closed);
+  const std::optional<StepRange> open = out && closed ? own_range(record, false) : std::nullopt;
+  if (!open) return out;
+  if (open->predicted) out->expected = std::min(*open->predicted, out->predicted.value_or(*open->predicted));
+  for (StepCell& one : out->cells)
+    for (const StepCell& apart : open->cells)
+      if (apart.step == one.step && apart.radius && one.radius) one.worst = std::max(*one.radius, *apart.radius);
+  return out;
+}
+
+// Whether the range has a limit, and which way it has none.
+std::string where(const std::optional<double>& limit, bool any, bool bad) {
+  if (limit) return "limit";
+  return !any ? "" : bad ? "below the range" : "none";
+}
+
+std::string prediction(const StepRange& range) {
+  const auto known = [](const StepCell& cell) { return cell.radius.has_value(); };
+  const auto bad = [](const StepCell& cell) { return cell.predicted_unstable(); };
+  return where(range.predicted, std::any_of(range.cells.begin(), range.cells.end(), known),
+               std::any_of(range.cells.begin(), range.cells.end(), bad));
+}
+
+std::string observation(const StepRange& range) {
+  const auto known = [](const StepCell& cell) { return !cell.behaviour.empty(); };
+  const auto bad = [](const StepCell& cell) { return cell.observed_unstable(); };
+  return where(range.observed, std::any_of(range.cells.begin(), range.cells.end(), known),
+               std::any_of(range.cells.begin(), range.cells.end(), bad));
+}
+
+std::string marginal(const StepRange& range) {
+  std::vector<std::string> said;
+  for (const StepCell& cell : range.cells)
+    if (!cell.marginal.empty() && std::find(said.begin(), said.end(), cell.marginal) == said.end())
+      said.push_back(cell.marginal);
+  if (said.size() > 2) {
+    const std::size_t more = said.size() - 2;
+    said.resize(2);
+    said.push_back(fmt::format("and {} more", more));
+  }
+  return fmt::format("{}", fmt::join(said, "; "));
+}
+
+// The smallest step that is not stable, and what grows there: the first sentence of its reason, the others say what was
+// seen.
+const StepCell* first_unstable(const StepRange& range) {
+  const auto found = std::find_if(range.cells.begin(), range.cells.end(), [](const StepCell& cell) {
+    return cell.status == "unstable" || cell.status == "failed" || cell.status == "refused";
+  });
+  return found == range.cells.end() ? nullptr : &*found;
+}
+
+bool is_contact(const std::string& column) {
+  return column == "contact" || column.starts_with("contact.");
+}
+
+// Of the cases that differ in the contact law alone: the first that was done, or the first.
+std::vector<const CaseRecord*> counted_open(const StudyResults& results) {
+  std::vector<std::string> others;
+  for (const std::string& column : results.columns)
+    if (!is_contact(column)) others.push_back(column);
+  std::map<std::string, std::size_t> known;
+  std::vector<const CaseRecord*> out;
+  for (const CaseRecord& record : results.cases) {
+    if (!own_range(record, false)) continue;
+    std::string key;
+    for (const Cell& cell : axes_of(record, others)) key += cell.text() + '\x1f';
+    const auto [found, fresh] = known.emplace(key, out.size());
+    if (fresh)
+      out.push_back(&record);
+    else if (out[found->second]->status != "done" && record.status == "done")
+      out[found->second] = &record;
+  }
+  return out;
+}
+
+}  // namespace
+
+Table step_limits_table(const StudyResults& results) {
+  Table table = table_of_cases(
+      results, "step_limits", "One case with its contact open or closed: the step limits that its cells come to.",
+      {{"closed", "",
+        "Whether contact is closed: predicted with points held on both sides, observed in the scene itself. Otherwise "
+        "the structure alone."},
+       {"counted", "",
+        "Whether the row counts in step_limit_agreement.csv: the open structure of cases that differ in the contact "
+        "law alone counts once."},
+       {"prediction", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
+       {"predicted", "s", "Largest stable step, from the plan alone."},
+       {"observation", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
+       {"observed", "s", "Largest stable step, from marches and bisection."},
+       {"expected", "s", "The smallest predicted limit that the marched cell meets: a scene is open as well."},
+       {"ratio", "1", "observed over expected."},
+       {"agrees", "", "Whether the ratio is one to 2 %; empty where a limit is missing."},
+       {"disagreeing_steps", "1", "Steps of the range at which the march does not do what the spectra say."},
+       {"marginal", "", "Which roots on the unit circle are the scheme's own, over the range."},
+       {"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
+       {"grows", "", "What grows there, or why it is refused."},
+       {"refused", "", "Whether that step is refused."}});
+  const std::vector<const CaseRecord*> counted = counted_open(results);
+  for (const bool closed : {false, true})
+    for (const CaseRecord& record : results.cases) {
+      const std::optional<StepRange> range = range_of(record, closed);
+      if (!range) continue;
+      const bool counts = closed || std::find(counted.begin(), counted.end(), &record) != counted.end();
+      std::optional<double> ratio;
+      if (range->expected && range->observed) ratio = *range->observed / *range->expected;
+      const StepCell* grows = first_unstable(*range);
+      Row row = place_of(results, record);
+      row.insert(row.end(), {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
+                             range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
+                             std::count_if(range->cells.begin(), range->cells.end(),
+                                           [](const StepCell& cell) { return cell.disagrees(); }),
+                             marginal(*range), grows ? Cell(grows->step) : Cell(),
+                             grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
+                             grows ? Cell(grows->status == "refused") : Cell()});
+      table.rows.push_back(std::move(row));
+    }
+  return table;
+}
+
+Table step_limit_agreement_table(const Table& step_limits) {
+  Table table{"step_limit_agreement",
+              "Over all cases: how often observed step limits are those that are expected.",
+              {{"contact", "", "open, closed, or both together."},
+               {"ranges", "1", "Ranges of steps: a method with its contact open or closed."},
+               {"limits", "1", "Ranges whose limit is both predicted and observed."},
+               {"agree", "1", "Those whose limits agree within the tolerance."},
+               {"tolerance", "1", "Difference, relative to the expected limit, up to which limits agree."},
+               {"disagree", "1", "Ranges with a step at which the march does not do what the spectra say."}},
+              {}};
+  const TableReader rows(step_limits);
+  const std::size_t closed = rows.column("closed"), counted = rows.column("counted"), agrees = rows.column("agrees"),
+                    disagreeing = rows.column("disagreeing_steps");
+  for (const char* contact : {"open", "closed", "both"}) {
+    int ranges = 0, limits = 0, agree = 0, disagree = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const bool touching = rows.truth(row, closed).value_or(false);
+      const bool asked = contact == std::string("both") || touching == (contact == std::string("closed"));
+      if (!asked || rows.truth(row, counted) != true) continue;
+      ++ranges;
+      limits += rows.truth(row, agrees).has_value();
+      agree += rows.truth(row, agrees) == true;
+      disagree += rows.number(row, disagreeing).value_or(0) > 0;
+    }
+    table.rows.push_back({contact, ranges, limits, agree, limit_tolerance, disagree});
+  }
+  return table;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,195 @@
+#include "runners/kinds/sweep/sweep_summaries.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* damping_column = "structure.damping.stiffness";
+
+/// α of the scene of a case (s), where it is not what is swept.
+std::optional<double> physical_viscosity(const StudyResults& results, const CaseRecord& record) {
+  if (const auto value = axis(record, damping_column).number()) return value;
+  const nlohmann::ordered_json::json_pointer pointer("/scene/structure/damping/stiffness");
+  if (!results.study.is_object() || !results.study.contains(pointer)) return std::nullopt;
+  return cell_of(results.study.at(pointer)).number();
+}
+
+bool sweeps_viscosity(const StudyResults& results) {
+  const nlohmann::ordered_json::json_pointer pointer("/parameter/pointer");
+  return results.study.contains(pointer) && results.study.at(pointer) == "/scene/structure/damping/stiffness";
+}
+
+/// Smallest and largest of what was met.
+struct Bounds {
+  std::optional<double> low, high;
+  void include(double value) {
+    low = std::min(value, low.value_or(value));
+    high = std::max(value, high.value_or(value));
+  }
+};
+
+struct VerdictShare {
+  int intervals = 0;
+  double width = 0;
+};
+
+int rank_of(const std::string& verdict) {
+  return verdict == "robust" ? 0 : verdict == "undecided" ? 2 : 1;
+}
+
+}  // namespace
+
+Table verdict_shares_table(const Table& verdicts, const SweptColumns& swept) {
+  const std::string& unit = swept.parameter.unit;
+  Table table{"verdict_shares",
+              "Over all cases: the part of the parameter's range with one verdict.",
+              {{"verdict", "", "robust, depends or undecided; see verdicts.csv."},
+               {"choice", "", "The axis that decides, or several choices; empty where none does."},
+               {"intervals", "1", "Intervals of verdicts.csv with this verdict and choice."},
+               {"width", unit, "Their widths together."},
+               {"share", "1", "That width over the width of all intervals."},
+               {"from", unit, "Smallest value of the parameter that is compared, the same in every row."},
+               {"to", unit, "Largest such value."}},
+              {}};
+  const TableReader rows(verdicts);
+  const std::size_t from = rows.column("from"), to = rows.column("to"), verdict = rows.column("verdict"),
+                    choice = rows.column("choice");
+  std::map<std::tuple<int, std::string, std::string>, VerdictShare> shares;
+  Bounds range;
+  double total = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::string word = rows.text(row, verdict);
+    VerdictShare& share = shares[{rank_of(word), word, rows.text(row, choice)}];
+    ++share.intervals;
+    const auto low = rows.number(row, from), high = rows.number(row, to);
+    if (!low || !high) continue;
+    range.include(*low);
+    range.include(*high);
+    share.width += *high - *low;
+    total += *high - *low;
+  }
+  for (const auto& [key, share] : shares)
+    table.rows.push_back({std::get<1>(key), std::get<2>(key), share.intervals, share.width,
+                          total > 0 ? Cell(share.width / total) : Cell(), range.low, range.high});
+  return table;
+}
+
+Table class_counts_table(const StudyResults& results) {
+  Table table =
+      table_of_cases(results, "class_counts", "One class of motion in one case: how many of its orbits have it.",
+                     {{"class", "", "Class of the orbits; failed where they were refused or stopped."},
+                      {"period", "1", "Forcing periods after which a periodic orbit repeats."},
+                      {"orbits", "1", "Orbits (values and starts) with this class."},
+                      {"share", "1", "Their share of the orbits of the case."}});
+  for (const CaseRecord& record : results.cases) {
+    const Table* values = find_table(record.tables, "values");
+    if (!values || values->rows.empty()) continue;
+    const TableReader rows(*values);
+    const std::size_t name = rows.column("class"), period = rows.column("period"),
+                      status = rows.column_if_any("status");
+    std::vector<std::pair<Row, int>> counts;  // class and period, in the order met
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const std::string state = rows.text(row, status);
+      const bool done = state.empty() || state == "done";
+      const Row key = {done ? rows.text(row, name) : "failed", done ? rows.cell(row, period) : Cell()};
+      auto found = std::find_if(counts.begin(), counts.end(), [&](const auto& one) { return one.first == key; });
+      if (found == counts.end()) found = counts.insert(counts.end(), {key, 0});
+      ++found->second;
+    }
+    for (const auto& [key, count] : counts) {
+      Row row = place_of(results, record);
+      row.insert(row.end(),
+                 {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swept) {
+  const std::string& unit = swept.parameter.unit;
+  Table table{"grazing_ranges",
+              "Over all cases: where contact begins or ends, from one start.",
+              {{"start", "", "Where the orbits begin, as in values.csv."},
+               {"changes", "1", "Changes of kind grazing, over the cases."},
+               {"low", unit, "The smallest value of the parameter at which one is located."},
+               {"high", unit, "The largest such value."},
+               {"bracket", unit, "Width of the widest interval that a change is located to."}},
+              {}};
+  struct Grazing {
+    std::string start;
+    int changes = 0;
+    Bounds values;
+    double bracket = 0;
+  };
+  std::vector<Grazing> found;
+  for (const CaseRecord& record : results.cases) {
+    const Table* changes = find_table(record.tables, "bifurcations");
+    if (!changes) continue;
+    const TableReader rows(*changes);
+    const std::size_t start = rows.column("start"), kind = rows.column("kind"), value = rows.column("value"),
+                      low = rows.column("low"), high = rows.column("high");
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const auto at = rows.number(row, value);
+      if (!at || rows.text(row, kind) != "grazing") continue;
+      const std::string from = rows.text(row, start);
+      auto place = std::find_if(found.begin(), found.end(), [&](const Grazing& one) { return one.start == from; });
+      if (place == found.end()) place = found.insert(found.end(), Grazing{from, 0, {}, 0});
+      ++place->changes;
+      place->values.include(*at);
+      if (rows.number(row, low) && rows.number(row, high))
+        place->bracket = std::max(place->bracket, *rows.number(row, high) - *rows.number(row, low));
+    }
+  }
+  for (const Grazing& one : found)
+    table.rows.push_back({one.start, one.changes, one.values.low, one.values.high, one.bracket});
+  return table;
+}
+
+Table numerical_viscosity_table(const StudyResults& results) {
+  Table table = table_of_cases(
+      results, "numerical_viscosity", "One case: the stiffness viscosity that its scheme adds to that of the scene.",
+      {{"low", "s", "Smallest equivalent viscosity over values and starts; negative where the scheme feeds energy."},
+       {"high", "s", "Largest equivalent viscosity."},
+       {"physical_low", "s", "Smallest α of C = αK in the scene, over the same; empty where it is not known."},
+       {"physical_high", "s", "Largest such α."},
+       {"share", "1", "Largest modulus of the equivalent viscosity over α; empty where there is no α to compare with."},
+       {"small", "", "Whether that share is at most 1 %."}});
+  const bool swept = sweeps_viscosity(results);
+  for (const CaseRecord& record : results.cases) {
+    const Table* values = find_table(record.tables, "values");
+    if (!values) continue;
+    const TableReader rows(*values);
+    const std::size_t viscosity = rows.column_if_any("alpha_equivalent"), parameter = rows.column("parameter");
+    Bounds numerical, physical;
+    double share = 0;
+    bool undamped = false;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const auto added = rows.number(row, viscosity);
+      if (!added) continue;
+      numerical.include(*added);
+      const auto alpha = swept ? rows.number(row, parameter) : physical_viscosity(results, record);
+      if (!alpha) continue;
+      physical.include(*alpha);
+      if (*alpha > 0)
+        share = std::max(share, std::abs(*added) / *alpha);
+      else
+        undamped = true;
+    }
+    if (!numerical.low) continue;
+    const bool compared = physical.low && !undamped;
+    Row row = place_of(results, record);
+    row.insert(row.end(), {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
+                           compared ? Cell(share <= small_viscosity) : Cell()});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,311 @@
+#include "runners/kinds/sweep/sweep_tables.hpp"
+
+#include <algorithm>
+
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+
+namespace ricochet {
+namespace {
+
+const Column start_column{"start", "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
+const Column class_column{
+    "class", "",
+    "no contact, periodic, quasi-periodic, chaotic, undecided, or failed: what the orbit is in the long run."};
+const Column period_column{"period", "1", "Forcing periods after which a periodic orbit repeats."};
+const Column attractor_column{
+    "attractor", "", "Number of the attractor, the same for every case and start of the study; empty where undecided."};
+const Column status_column{"status", "", "done, refused, diverged or failed."};
+const Column reason_column{"reason", "", "Why the orbit was refused or stopped."};
+const std::vector<Column> section_columns = {
+    {"index", "1", "Number of the point in its section, from 0, in the order of time."},
+    {"tip_displacement", "m", "Absolute displacement of the tip at the section."},
+    {"tip_velocity", "m/s", "Velocity of the tip at the section."},
+    {"opposite_displacement", "m", "The same of the mirror image of the orbit, x → −x half a forcing period later."},
+    {"opposite_velocity", "m/s", "Velocity of the tip of that mirror image."}};
+
+// "/scene/support/amplitude" as the column of an axis.
+std::string column_name(std::string pointer) {
+  for (const std::string prefix : {"/scene/", "/methods/"})
+    if (pointer.starts_with(prefix)) {
+      pointer.erase(0, prefix.size());
+      break;
+    }
+  std::replace(pointer.begin(), pointer.end(), '/', '.');
+  return pointer;
+}
+
+// What a pointer of the study goes through, in the column `name`.
+Column swept_column(const StudyResults& results, const Column& plain, const nlohmann::ordered_json& where) {
+  if (!where.is_object() || !where.contains("pointer") || !where.at("pointer").is_string()) return plain;
+  const auto pointer = where.at("pointer").get<std::string>();
+  const Column axis = axis_columns(results, {column_name(pointer)}).front();
+  try {
+    const nlohmann::ordered_json::json_pointer place(pointer);
+    // A formula is multiplied by the value.
+    if (pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string())
+      return {plain.name, "1", plain.text + " It multiplies " + axis.name + ": " + axis.text};
+  } catch (const nlohmann::ordered_json::exception&) {
+    return plain;
+  }
+  return {plain.name, axis.unit, plain.text + " It is " + axis.name + ": " + axis.text};
+}
+
+Column in_units_of(const Column& parameter, const char* name, const char* text) {
+  return {name, parameter.unit, text};
+}
+
+}  // namespace
+
+SweptColumns swept_columns(const StudyResults& results) {
+  SweptColumns out;
+  if (results.study.contains("parameter"))
+    out.parameter = swept_column(results, out.parameter, results.study.at("parameter"));
+  const auto axes = results.study.find("axes");
+  if (axes == results.study.end() || !axes->is_array() || axes->size() != 2) return out;
+  out.x = swept_column(results, out.x, axes->at(0));
+  out.y = swept_column(results, out.y, axes->at(1));
+  return out;
+}
+
+Table values_head(int exponents, const SweptColumns& swept) {
+  Table table{"values",
+              "One orbit of one case: a value of the parameter and a start.",
+              {swept.parameter,
+               start_column,
+               class_column,
+               period_column,
+               {"impacts_per_period", "1", "Impacts in one forcing period, mean over the kept ones."},
+               {"symmetric", "", "Whether the orbit is its own image under x → −x half a forcing period later."}},
+              {}};
+  for (int k = 1; k <= exponents; ++k) {
+    const std::string name = "exponent_" + std::to_string(k);
+    table.columns.push_back({name, "1/s", "Lyapunov exponent number " + std::to_string(k) + ", largest first."});
+    table.columns.push_back({name + "_low", "1/s", "Lower end of its 95 % interval (stationary block bootstrap)."});
+    table.columns.push_back({name + "_high", "1/s", "Upper end of that interval."});
+  }
+  table.columns = joined(
+      std::move(table.columns),
+      {{"exponent_method", "", "How the exponents were found: tangent, tangent+jump, or twin with its offset."},
+       {"exponent_twin", "1/s", "The largest exponent by a second trajectory beside the first, as a check."},
+       {"marginal", "", "Roots of modulus one that are the scheme's own and not the motion's."},
+       attractor_column,
+       {"alpha_equivalent", "s",
+        "Stiffness viscosity that the scheme itself adds: what α of C = αK would damp the first modes as much."},
+       {"recurrence", "1", "Largest distance between readings one period apart, relative to the gap."},
+       {"contraction", "1", "Factor by which that distance falls per forcing period; 1 where nothing tells it from 1."},
+       {"zero_one", "1", "K of the 0–1 test of the strobed displacement: near 0 regular, near 1 chaotic."},
+       {"transient_periods", "1", "Forcing periods that were left out before the first reading."},
+       {"settled", "", "Whether the orbit had settled before the transient was cut at its cap."},
+       {"chatter", "", "Whether there were ten or more impacts on one side within one forcing period."},
+       {"sticking", "1", "Share of the kept steps with contact closed."},
+       {"evidence", "", "What the class rests on, one sentence with its numbers."},
+       status_column,
+       reason_column});
+  return table;
+}
+
+Table bifurcations_head(const SweptColumns& swept) {
+  const Column& of = swept.parameter;
+  return {"bifurcations",
+          "One change of the motion of one case along the parameter.",
+          {start_column,
+           {"from", "", "Class below the change."},
+           {"to", "", "Class above it."},
+           {"kind", "", "grazing (contact begins or ends) or change (any other)."},
+           in_units_of(of, "value", "Value of the parameter at which the change is located."),
+           in_units_of(of, "low", "Largest value known to lie below the change."),
+           in_units_of(of, "high", "Smallest value known to lie above it."),
+           {"steps", "1", "Steps of the search, where the change was located apart from the sweep."}},
+          {}};
+}
+
+Table cells_head(const SweptColumns& swept) {
+  return {"cells",
+          "One cell of the grid of one case: a start, or a scene, and where it leads.",
+          {swept.x,
+           swept.y,
+           class_column,
+           period_column,
+           attractor_column,
+           {"marched", "", "Whether the cell was marched; otherwise it takes the end of a marched one of its basin."},
+           {"source", "1", "Row of the marched cell whose end this one has, from 0 within the case."},
+           status_column,
+           reason_column},
+          {}};
+}
+
+NumberTable points_head(const SweptColumns& swept) {
+  NumberTable table = number_table("points", joined({swept.parameter, start_column}, section_columns));
+  table.text = "One point of the section of one orbit.";
+  return table;
+}
+
+NumberTable impacts_head(const SweptColumns& swept) {
+  NumberTable table = number_table("impacts", {swept.parameter,
+                                               start_column,
+                                               {"phase", "rad", "Phase of the forcing at the impact."},
+                                               {"side", "", "The stop that is hit: lower or upper."},
+                                               {"speed", "m/s", "Speed at which the contact point closes."}});
+  table.text = "One impact of one orbit: of one period of what repeats, else of every kept period.";
+  return table;
+}
+
+NumberTable portraits_head(const SweptColumns& swept) {
+  NumberTable table = number_table("portraits", {swept.parameter,
+                                                 start_column,
+                                                 {"time", "s", "Time from the strobe that the portrait begins at."},
+                                                 {"tip_displacement", "m", "Absolute displacement of the tip."},
+                                                 {"tip_velocity", "m/s", "Velocity of the tip."}});
+  table.exported = false;
+  return table;
+}
+
+NumberTable entries_head(const SweptColumns& swept) {
+  NumberTable table =
+      number_table("entries", {swept.parameter,
+                               start_column,
+                               {"index", "1", "Place of the number in the state."},
+                               {"value", "", "One number of the state that the kept periods begin with."}});
+  table.exported = false;
+  return table;
+}
+
+NumberTable cell_points_head() {
+  NumberTable table =
+      number_table("cell_points", joined({{"cell", "1", "Row of the cell in `cells`, from 0."}}, section_columns));
+  table.exported = false;
+  return table;
+}
+
+Table attractors_head(const SweptColumns& swept) {
+  return {
+      "attractors",
+      "Over all cases: one attractor.",
+      {{"attractor", "", "Number of the attractor, as in values.csv or cells.csv."},
+       {"label", "",
+        "common to all, depends on AXIS, depends on several choices, vanishes under refinement, or not compared."},
+       {"cases", "1", "Cases that have it."},
+       in_units_of(swept.parameter, "from", "Smallest value of the parameter at which some case has it."),
+       in_units_of(swept.parameter, "to", "Largest such value."),
+       class_column,
+       period_column,
+       {"symmetric", "", "Whether its orbits are their own mirror images; empty where they differ or are not told."},
+       {"fraction", "1", "Share of the starts, or of the cells, that lead there, where a case shows it."},
+       {"fraction_low", "1", "Lower end of the 95 % interval of that share (Wilson)."},
+       {"fraction_high", "1", "Upper end of that interval."},
+       {"presence", "", "For each level of the deciding axis, how many of its cases show it."},
+       {"sentence", "", "The same in words."}},
+      {}};
+}
+
+Table agreement_head() {
+  return {"agreement",
+          "One ordered pair of cases: how often they agree, a case with itself included.",
+          {{"case", "", "One case."},
+           {"other_case", "", "The case it is compared with."},
+           {"compared", "1", "Values and starts at which both are decided."},
+           {"same_class", "1", "How many of these have the same class."},
+           {"share", "1", "same_class over compared."},
+           {"same_attractor", "1", "How many of these are on the same attractor."},
+           {"share_attractor", "1", "same_attractor over compared."}},
+          {}};
+}
+
+Table verdicts_head(const SweptColumns& swept) {
+  return {"verdicts",
+          "Over all cases: one interval of the parameter, and whether its motion depends on a numerical choice.",
+          {in_units_of(swept.parameter, "from", "Where the interval begins: half way to the value before."),
+           in_units_of(swept.parameter, "to", "Where it ends: half way to the value behind."),
+           {"verdict", "", "robust (same classes and branches in every case), depends, or undecided."},
+           {"choice", "", "The axis that decides, or several choices; empty where none does."},
+           {"sentence", "", "The same in words, with what each choice leads to."}},
+          {}};
+}
+
+Table distances_head(const SweptColumns& swept) {
+  return {"distances",
+          "One orbit of one case against that of the reference case at the same value and from the same start.",
+          {{"reference_case", "", "The case compared with: a rigid contact, the most steps, the most elements."},
+           swept.parameter,
+           start_column,
+           {"wasserstein", "1",
+            "Wasserstein-1 distance of the sections, displacements and velocities over their spread in the study."},
+           {"hausdorff", "1", "Hausdorff distance of the same."},
+           {"null_wasserstein", "1", "Wasserstein-1 distance between two halves of the reference orbit itself."},
+           {"null_hausdorff", "1", "Hausdorff distance between these halves."},
+           {"ratio", "1", "wasserstein over null_wasserstein; empty where an orbit repeats exactly."},
+           {"same_class", "", "Whether both have the same class; empty where one is undecided."},
+           {"formula", "", "exact, or sliced where the sections are too large for the exact distance."}},
+          {}};
+}
+
+Table shifts_head(const SweptColumns& swept) {
+  const Column& of = swept.parameter;
+  return {"shifts",
+          "One change of the motion of one case against the same change in the reference case.",
+          {{"reference_case", "", "The case compared with, as in distances.csv."},
+           start_column,
+           {"from", "", "Class below the change."},
+           {"to", "", "Class above it."},
+           {"kind", "", "grazing (contact begins or ends) or change (any other)."},
+           in_units_of(of, "reference_value", "Where the reference case has the change; empty where it has none."),
+           in_units_of(of, "value", "Where this case has it; empty where it has none."),
+           in_units_of(of, "shift", "value less reference_value."),
+           in_units_of(of, "low", "Least shift that the two brackets allow."),
+           in_units_of(of, "high", "Largest shift that they allow."),
+           {"found", "", "Whether both have the change within a tenth of the range of values."}},
+          {}};
+}
+
+Table basin_fractions_head() {
+  return {"basin_fractions",
+          "One attractor in one case: its share of the grid.",
+          {{"attractor", "", "Number of the attractor, as in cells.csv."},
+           class_column,
+           period_column,
+           {"cells", "1", "Cells that lead there."},
+           {"fraction", "1", "Their share of the decided cells."},
+           {"low", "1", "Lower end of the 95 % interval of that share (Wilson)."},
+           {"high", "1", "Upper end of that interval."}},
+          {}};
+}
+
+Table basin_differences_head() {
+  return {"basin_differences",
+          "One pair of cases: how many cells lead elsewhere.",
+          {{"case", "", "One case."},
+           {"other_case", "", "The case it is compared with."},
+           {"cells", "1", "Cells that both decide."},
+           {"differ", "1", "Those that lead to different attractors."},
+           {"share", "1", "differ over cells."}},
+          {}};
+}
+
+Table basin_uncertainty_head() {
+  return {"basin_uncertainty",
+          "One case: how rough the boundary of its basins is.",
+          {{"boundary_share", "1", "Share of the decided cells that have a neighbour of another basin."},
+           {"exponent", "1",
+            "Uncertainty exponent: f(ε) ~ ε^exponent for the share f of cells whose end an error ε may change."},
+           {"low", "1", "Lower end of its 95 % interval."},
+           {"high", "1", "Upper end of that interval."}},
+          {}};
+}
+
+void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
+  for (Table& table : record.tables) {
+    const int columns = static_cast<int>(table.columns.size());
+    for (const Table& head : {values_head(columns, swept), bifurcations_head(swept), cells_head(swept)})
+      if (head.name == table.name) describe(table, head);
+  }
+  for (NumberTable& table : record.numbers)
+    for (const NumberTable& head :
+         {points_head(swept), impacts_head(swept), portraits_head(swept), entries_head(swept), cell_points_head()})
+      if (head.name == table.name) {
+        table.text = head.text;
+        describe(table.columns, head.columns);
+      }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,123 @@
+#include "runners/study/axis_meaning.hpp"
+
+#include <algorithm>
+#include <ricochet/contract/errors.hpp>
+
+#include "runners/study/check_object.hpp"
+#include "runners/study/field.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+namespace {
+
+const std::vector<std::string> method_roles = {"mass", "contact", "time"};
+
+std::vector<std::string> split(const std::string& column) {
+  std::vector<std::string> parts = {""};
+  for (const char c : column)
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+// The declaration of the key at the end of `path`; nothing where the format has none.
+std::optional<ParameterSpec> spec_at(const ObjectForm& form, const Json& value, const std::vector<std::string>& path,
+                                     std::size_t depth = 0) {
+  if (depth == path.size() || !value.is_object()) return std::nullopt;
+  for (const Field* field : fields_of(form, value, "")) {
+    if (field->key() != path[depth]) continue;
+    if (depth + 1 == path.size()) return field->spec;
+    const auto found = value.find(field->key());
+    if (field->form == Field::Form::object && found != value.end())
+      return spec_at(field->nested.front(), *found, path, depth + 1);
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<ParameterSpec> spec_of(const std::vector<std::string>& path, const Json& resolved) {
+  std::vector<std::string> whole = path;
+  if (path.front() == "elements")
+    whole.insert(whole.begin(), "mesh");
+  else if (path.size() == 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end())
+    whole.insert(whole.begin(), "methods");
+  else if (path.front() != "step" && path.front() != "steps_per_period")
+    whole.insert(whole.begin(), "scene");
+  try {
+    return spec_at(study_form(), resolved, whole);
+  } catch (const InputError&) {
+    // No study of this format: nothing is known of its axes.
+    return std::nullopt;
+  }
+}
+
+// Words and truth values have none.
+std::string unit_of(const ParameterSpec& spec) {
+  const bool number = spec.type == ParameterSpec::Type::real || spec.type == ParameterSpec::Type::integer;
+  return !number ? "" : spec.unit.empty() ? "1" : spec.unit;
+}
+
+// What the plugins of a role say of one of their parameters, each by its name where they say different things.
+Column parameter_meaning(const std::string& column, const std::string& role, const std::string& key, const Study& study,
+                         const Registry& registry) {
+  std::vector<std::pair<std::string, const ParameterSpec*>> said;
+  for (const StudyCase& one : study.cases) {
+    const MethodChoice& method = role == "mass" ? one.mass : role == "contact" ? one.contact : one.time;
+    const bool known =
+        std::any_of(said.begin(), said.end(), [&](const auto& other) { return other.first == method.name; });
+    if (known || method.plan) continue;
+    const Role of = role == "mass" ? Role::mass : role == "contact" ? Role::contact : Role::time;
+    const PluginManual* manual = registry.manual(of, method.name);
+    if (!manual) continue;
+    for (const ParameterSpec& spec : manual->parameters)
+      if (spec.key == key) said.emplace_back(method.name, &spec);
+  }
+  Column out = axis_meaning(column, study.resolved);
+  if (said.empty()) return out;
+  out.unit = unit_of(*said.front().second);
+  out.text = said.front().second->text;
+  const bool same = std::all_of(said.begin(), said.end(), [&](const auto& one) {
+    return one.second->text == out.text && unit_of(*one.second) == out.unit;
+  });
+  if (same) return out;
+  out.text.clear();
+  for (const auto& [name, spec] : said)
+    out.text += (out.text.empty() ? "" : " ") + name + (unit_of(*spec) == out.unit ? "" : " (" + unit_of(*spec) + ")") +
+                ": " + spec->text;
+  return out;
+}
+
+}  // namespace
+
+std::string axis_role(const std::string& column) {
+  const std::string first = split(column).front();
+  return std::find(method_roles.begin(), method_roles.end(), first) == method_roles.end() ? column : first;
+}
+
+Column axis_meaning(const std::string& column, const Json& resolved) {
+  const std::vector<std::string> path = split(column);
+  if (const auto spec = spec_of(path, resolved))
+    return {column, spec->type == ParameterSpec::Type::real ? spec->unit : unit_of(*spec), spec->text};
+  if (axis_role(column) != column)
+    return {column, "",
+            "Parameter " + column.substr(path.front().size() + 1) + " of the method in the column " + path.front() +
+                "; \"ricochet describe\" says what it is."};
+  return {column, "", "A value of the scene that differs between the cases."};
+}
+
+std::vector<Column> axis_meanings(const Study& study, const Registry& registry) {
+  std::vector<Column> columns;
+  for (const std::string& column : study.columns) {
+    const std::vector<std::string> path = split(column);
+    const bool method =
+        path.size() > 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end();
+    columns.push_back(
+        method ? parameter_meaning(column, path.front(), column.substr(path.front().size() + 1), study, registry)
+               : axis_meaning(column, study.resolved));
+  }
+  return columns;
+}
+
+}  // namespace ricochet

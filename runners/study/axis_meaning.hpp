@@ -1,0 +1,23 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <ricochet/contract/registry.hpp>
+#include <string>
+
+#include "runners/table/table.hpp"
+
+namespace ricochet {
+
+struct Study;
+
+/// What an axis of a study means, as the study format declares it: unit and sentence of the key that the column names
+/// (`step`, `elements`, `support.amplitude`, …) in the study `resolved`. Of a method's parameter the format knows only
+/// whose it is; its unit is then "".
+Column axis_meaning(const std::string& column, const nlohmann::ordered_json& resolved);
+
+/// The role of a method's axis, "mass" of "mass.velocity" and of "mass"; the column itself where it is no method's.
+std::string axis_role(const std::string& column);
+
+/// Every axis of a study that is about to run; parameters of methods as their plugins declare them.
+std::vector<Column> axis_meanings(const Study& study, const Registry& registry);
+
+}  // namespace ricochet

@@ -1,0 +1,66 @@
+#include "runners/table/table.hpp"
+
+#include <algorithm>
+
+#include "runners/table/csv_text.hpp"
+
+namespace ricochet {
+
+std::optional<bool> Cell::truth() const {
+  const bool* truth = std::get_if<bool>(&content_);
+  return truth ? std::optional(*truth) : std::nullopt;
+}
+
+std::optional<double> Cell::number() const {
+  if (const double* number = std::get_if<double>(&content_)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&content_)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> Cell::whole() const {
+  const auto* whole = std::get_if<std::int64_t>(&content_);
+  return whole ? std::optional(*whole) : std::nullopt;
+}
+
+std::string Cell::text() const {
+  if (const std::string* text = words()) return *text;
+  if (const double* number = std::get_if<double>(&content_)) return csv_number(*number);
+  if (const auto* whole = std::get_if<std::int64_t>(&content_)) return std::to_string(*whole);
+  if (const bool* truth = std::get_if<bool>(&content_)) return *truth ? "true" : "false";
+  return "";
+}
+
+bool operator==(const Cell& a, const Cell& b) {
+  if (a.content_.index() == b.content_.index()) return a.content_ == b.content_;
+  const std::optional<double> one = a.number(), other = b.number();
+  return one && other && *one == *other;
+}
+
+std::vector<Column> named_columns(const std::vector<std::string>& names) {
+  std::vector<Column> columns;
+  for (const std::string& name : names) columns.push_back({name, "", ""});
+  return columns;
+}
+
+std::vector<Column> joined(std::vector<Column> first, const std::vector<Column>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+std::optional<std::size_t> find_column(const std::vector<Column>& columns, std::string_view name) {
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& one) { return one.name == name; });
+  if (found == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+void describe(std::vector<Column>& columns, const std::vector<Column>& declared) {
+  for (Column& column : columns)
+    if (const auto known = find_column(declared, column.name)) column = declared[*known];
+}
+
+void describe(Table& table, const Table& declared) {
+  table.text = declared.text;
+  describe(table.columns, declared.columns);
+}
+
+}  // namespace ricochet

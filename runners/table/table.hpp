@@ -1,0 +1,97 @@
+#pragma once
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// \file
+/// What every result is before it is shown: rows of typed cells under columns that say their unit and their meaning.
+namespace ricochet {
+
+/// One entry of a table: nothing, a truth value, a whole number, a number or a text. Made from any of these without
+/// being named, so that a row is written as it reads: {0.1, "closed", true, nullptr}. A number that is not finite is
+/// nothing: no NaN reaches a row.
+class Cell {
+ public:
+  Cell() = default;
+  Cell(std::nullptr_t) {}
+  Cell(std::same_as<bool> auto truth) : content_(truth) {}
+  template <std::integral Whole>
+  requires(!std::same_as<Whole, bool> && !std::same_as<Whole, char>) Cell(Whole whole)
+      : content_(static_cast<std::int64_t>(whole)) {}
+  Cell(std::floating_point auto number) {
+    if (std::isfinite(number)) content_ = static_cast<double>(number);
+  }
+  Cell(std::string text) : content_(std::move(text)) {}
+  Cell(const char* text) : content_(std::string(text)) {}
+  Cell(std::string_view text) : content_(std::string(text)) {}
+  /// What is absent is nothing.
+  template <class Value>
+  Cell(const std::optional<Value>& value) {
+    if (value) *this = Cell(*value);
+  }
+
+  bool is_nothing() const { return content_.index() == 0; }
+  std::optional<bool> truth() const;
+  /// Nothing for what is no number at all.
+  std::optional<double> number() const;
+  /// Nothing for what is no whole number.
+  std::optional<std::int64_t> whole() const;
+  /// The words of a text; null for every other cell.
+  const std::string* words() const { return std::get_if<std::string>(&content_); }
+  /// As it stands in a field, not quoted: words as they are, numbers in the shortest digits that read back as the same
+  /// number, "true" or "false"; "" for nothing.
+  std::string text() const;
+
+  /// The same kind and value; a whole number equals the same number.
+  friend bool operator==(const Cell& a, const Cell& b);
+
+  /// Calls `see` with what the cell holds: std::monostate, bool, std::int64_t, double or std::string.
+  template <class See>
+  decltype(auto) visit(See&& see) const {
+    return std::visit(std::forward<See>(see), content_);
+  }
+
+ private:
+  std::variant<std::monostate, bool, std::int64_t, double, std::string> content_;
+};
+
+using Row = std::vector<Cell>;
+
+/// What a column holds.
+struct Column {
+  std::string name;
+  std::string unit;  ///< SI; "1" for ratios and counts, "" for words and truth values
+  std::string text;  ///< what the cells mean, one sentence
+};
+
+/// Columns of these names that say nothing more of themselves: what was read back and is still to be described.
+std::vector<Column> named_columns(const std::vector<std::string>& names);
+
+/// The columns of `first`, then those of `then`.
+std::vector<Column> joined(std::vector<Column> first, const std::vector<Column>& then);
+
+/// Rows under columns; as a file, NAME.csv.
+struct Table {
+  std::string name;
+  std::string text;  ///< what a row stands for, one sentence
+  std::vector<Column> columns;
+  std::vector<Row> rows;  ///< each as long as `columns`
+};
+
+/// Where the column of this name stands; nothing where the table has none.
+std::optional<std::size_t> find_column(const std::vector<Column>& columns, std::string_view name);
+
+/// Takes unit and meaning of each column from those that are declared; a column that is not stays as it is.
+void describe(std::vector<Column>& columns, const std::vector<Column>& declared);
+/// The same for a whole table, with what its rows stand for.
+void describe(Table& table, const Table& declared);
+
+}  // namespace ricochet
