@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/kinds/stability/step_limits.hpp"
 #include "runners/kinds/sweep/derive_dynamics.hpp"
@@ -49,8 +50,12 @@ void derive_tables(StudyResults& results) {
   if (compares(results)) {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
+    results.derived.push_back(order_verdicts_table(results.derived.back()));
   }
-  if (results.kind == "work-precision") results.derived.push_back(work_precision_table(results));
+  if (results.kind == "work-precision") {
+    results.derived.push_back(work_precision_table(results));
+    results.derived.push_back(precision_targets_table(results));
+  }
   collect(results);
   if (results.kind == "stability") {
     results.derived.push_back(step_limits_table(results));
