@@ -65,26 +65,28 @@ class BoxSolver {
   bool read(const double* free, const double* lower, const double* upper, int points, int stride);
   void choose_first_set(const double* previous, int stride);
 
+  // box_set.cpp
   void try_set(const Operator& A);
   void factorise(const Operator& A);
   void substitute();
   void evaluate(const Operator& A);
+  Side beyond(int i) const;
+  double residual() const;
+  double tolerance() const;
 
+  // box_descent.cpp
   void descend(const Operator& A, LaneOutcome& outcome);
   bool slide(int entering);
   int first_to_leave(double& step) const;
   int deepest() const;
   void keep_best();
 
-  double bound(int i) const;
-  bool active(int i) const;
-  bool pulls(int i) const;
-  Side beyond(int i) const;
+  double bound(int i) const { return side_[i] == Side::lower ? lower_[i] : upper_[i]; }
+  bool active(int i) const { return side_[i] == Side::lower || side_[i] == Side::upper; }
+  bool pulls(int i) const { return side_[i] == Side::lower ? effort_[i] < 0 : effort_[i] > 0; }
   bool all_right() const;
   void move_all();
   bool seen_before();
-  double residual() const;
-  double tolerance() const;
 
   int set_limit_ = -1;
   int points_ = 0;    // m

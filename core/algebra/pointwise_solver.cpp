@@ -2,12 +2,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/algebra/pointwise_solver.hpp>
 
 namespace ricochet {
 namespace {
-
-constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 // Round-off of a number that a few operations made, relative to its terms.
 constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
@@ -100,7 +99,7 @@ double PointwiseSolver::solve_point(const Lane& lane, int i, double others, doub
   const Answer still = lane.answer(i, others);
   if (still.force == 0 || mobility == 0 || std::isnan(still.force)) return still.force;
   const double side = still.force > 0 ? 1 : -1;
-  double low = 0, high = std::abs(still.force), last = unbounded;
+  double low = 0, high = std::abs(still.force), last = infinity;
   double p = side * guess;
   if (!(p > low && p < high)) p = high / (1 + lane.weight(still) * mobility);
   if (!std::isfinite(p)) p = 1;
@@ -113,11 +112,11 @@ double PointwiseSolver::solve_point(const Lane& lane, int i, double others, doub
     double next = p - wrong / (1 + lane.weight(now) * mobility);
     // Newton falls by more than half where it works at all.
     const bool slow = !(std::abs(wrong) < 0.5 * last);
-    if (high == unbounded)
+    if (high == infinity)
       next = 4 * p;
     else if (slow || !(next > low && next < high))
       next = low + 0.5 * (high - low);
-    last = slow ? unbounded : std::abs(wrong);
+    last = slow ? infinity : std::abs(wrong);
     if (next == p || next == low || next == high) return side * high;
     p = next;
   }
@@ -271,7 +270,7 @@ LaneOutcome PointwiseSolver::finish(const Lane& lane, bool converged, int iterat
       apart = answer.stiffness > 0 && !bridged ? apart / answer.stiffness : 0.0;
     outcome.residual = std::max(outcome.residual, apart);
   }
-  if (!std::isfinite(outcome.residual)) outcome = {false, iterations, unbounded};
+  if (!std::isfinite(outcome.residual)) outcome = {false, iterations, infinity};
   for (int i = 0; i < problem.points; ++i) problem.effort[lane.at(i)] = outcome.converged ? effort_[i] : 0.0;
   return outcome;
 }
@@ -318,7 +317,7 @@ LaneOutcome PointwiseSolver::solve(const PointwiseLaw& law, ReducedProblem& prob
   }
   if (!finite) {
     for (int i = 0; i < m; ++i) problem.effort[lane.at(i)] = 0;
-    return {false, 0, unbounded};
+    return {false, 0, infinity};
   }
   if (!pushed || (problem.reach == 0 && problem.rate_reach == 0)) return solve_known(lane);
   return m == 1 ? solve_alone(lane) : solve_coupled(lane);

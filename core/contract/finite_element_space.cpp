@@ -9,12 +9,6 @@ std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, double lengt
   return {eta * eta * (1 + 2 * xi), length * xi * eta * eta, xi * xi * (3 - 2 * xi), -length * xi * xi * eta};
 }
 
-std::array<double, 4> shape_slopes(FiniteElementSpace::Basis basis, double length, double xi) {
-  if (basis == FiniteElementSpace::Basis::linear) return {-1 / length, 1 / length, 0, 0};
-  const double bump = 6 * xi * (1 - xi) / length;
-  return {-bump, (1 - xi) * (1 - 3 * xi), bump, xi * (3 * xi - 2)};
-}
-
 std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, double length, double xi) {
   if (basis == FiniteElementSpace::Basis::linear) return {-1 / length, 1 / length, 0, 0};
   const double curvature = (12 * xi - 6) / (length * length);

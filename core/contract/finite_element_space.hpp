@@ -35,8 +35,6 @@ struct FiniteElementSpace {
 std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, double length, double xi);
 /// Second (hermite) or first (linear) derivatives in x: what the elastic energy integrates.
 std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, double length, double xi);
-/// First derivatives in x.
-std::array<double, 4> shape_slopes(FiniteElementSpace::Basis basis, double length, double xi);
 
 /// Gauss–Legendre on [0,1] with 4 points: exact for polynomials of degree 7, hence for every product integrated here.
 struct GaussPoint {

@@ -55,7 +55,7 @@ struct StageProgram {
   bool reads_contact = false;
   double measure_z = 0;                ///< η
   std::vector<double> effort = {1.0};  ///< π
-  std::vector<double> work_effort;     ///< p̄ of the work form over p, p₋₁, …: its weights and those of the equations
+  std::vector<double> work_effort;  ///< p̄ of the work form over p, p₋₁, …: its weights and those of the equations
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase;

@@ -1,7 +1,40 @@
-#include <cmath>
-#include <ricochet/engine/marcher_state.hpp>
+#include <algorithm>
+#include <ricochet/engine/energy_bounds.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
 
 namespace ricochet {
+
+// What a lane's spec says of its surroundings: clamp and stops, and the energies to expect.
+void Marcher::place_lane(int lane) {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  energy_bounds_->place(lane, spec);
+  clamp_.place(lane, spec.amplitude, spec.phase);
+}
+
+// The law acts from its layer on.
+void Marcher::place_stops(int lane) {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const double layer = program_.law->layer(lane);
+  for (int i = 0; i < lower_.rows(); ++i) {
+    lower_.at(i, lane) = spec.lower[i] + layer;
+    upper_.at(i, lane) = spec.upper[i] - layer;
+  }
+}
+
+// The law's parameters, one set per lane of the block.
+void Marcher::prepare_law() {
+  if (!program_.contact) return;
+  std::vector<Parameters> parameters;
+  for (int lane = 0; lane < program_.width; ++lane)
+    parameters.push_back(program_.lanes[static_cast<std::size_t>(std::min(lane, lanes() - 1))].law);
+  const int points = program_.problem->points();
+  program_.law->prepare(points, parameters);
+  const int kept = program_.law->memory_per_point();
+  if (kept > 0 && memory_.rows() == 0) memory_ = Block(points * kept, program_.width);
+  for (int lane = 0; lane < lanes(); ++lane)
+    if (status_[static_cast<std::size_t>(lane)].running) place_stops(lane);
+}
 
 LaneState Marcher::state_at(int column) const {
   LaneState state;

@@ -1,14 +1,8 @@
-#include <Eigen/Eigenvalues>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/engine/march_model.hpp>
 
 namespace ricochet {
 namespace {
-
-Eigen::MatrixXd dense_mass(const Inertia& inertia) {
-  if (!inertia.factored()) return Eigen::MatrixXd(inertia.mass);
-  const Eigen::MatrixXd B(inertia.coupling), Cv(inertia.velocity_mass);
-  return B.transpose() * Cv.ldlt().solve(B);
-}
 
 SparseMatrix diagonal(const Eigen::VectorXd& entries) {
   SparseMatrix matrix(entries.size(), entries.size());
@@ -54,9 +48,9 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
     return;
   }
   const Eigen::MatrixXd K(p.stiffness), M = dense_mass(p.inertia);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M, K);
-  modes_ = eigen.eigenvectors();
-  Eigen::VectorXd mu = eigen.eigenvalues();
+  const SymmetricModes modes = symmetric_modes(M, K);
+  modes_ = modes.vectors;
+  Eigen::VectorXd mu = modes.values;
   for (int i = 0; i < p.inertia.kernel_dimension; ++i) mu[i] = 0;
   stiffness_ = diagonal(Eigen::VectorXd::Ones(rows_));
   inertia_.mass = diagonal(mu);

@@ -1,64 +1,25 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/lane_state.hpp>
+#include <ricochet/engine/step_observer.hpp>
+#include <ricochet/engine/clamp_motion.hpp>
 #include <string>
 #include <vector>
 
 namespace ricochet {
 
-class EnergyScale;
-
-/// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
-struct LaneStatus {
-  bool running = true;
-  long long step = 0;  ///< when it stopped
-  double time = 0;
-  std::string cause;
-};
-
-/// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
-struct LaneState {
-  std::vector<double> slots;    ///< slot by slot
-  std::vector<double> efforts;  ///< per stage its p, and those of steps before where the plan weights them
-  std::vector<double> fastest;  ///< per stage with a gate: the largest speed seen at its stops, m/s
-  std::vector<double> memory;   ///< of the law, per point
-};
-
-/// What an observer sees while a step is made. Blocks are rows × T or points × T.
-struct StageView {
-  int stage = 0;
-  const Stage* plan = nullptr;
-  const StageProgram* program = nullptr;  ///< what was derived of the stage
-  bool starting = false;                  ///< a stage of the start rule
-  double time = 0;                        ///< when the step begins, s
-  double from = 0, to = 0;                ///< when the position stands before and after the stage, s
-  const double* const* slots = nullptr;   ///< before the stage
-  const double* z = nullptr;              ///< the stage's unknown, efforts included
-  const double* const* effort = nullptr;  ///< p, p₋₁, … as far as the plan weights them; null: no contact
-  int efforts = 0;                        ///< how many; each may be null: a stage that reads no contact
-  const LaneOutcome* outcome = nullptr;   ///< per lane, of the law; of lanes that were looked at
-  std::uint32_t touched_lanes = 0;        ///< lanes that the law looked at
-  const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
-  std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
-};
-
-class Marcher;
-
-/// Looks at every step of a block; a march without an observer pays nothing for it.
-class StepObserver {
- public:
-  virtual ~StepObserver() = default;
-  /// The stage has found z and p; the slots are not yet updated.
-  virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
-  /// The step is complete.
-  virtual void step_done(Marcher& marcher) = 0;
-};
+class EnergyBounds;
+class LoadWindow;
+struct StageState;
 
 /// The one time loop. Allocates in its constructor only.
 class Marcher {
  public:
+  /// Steps between two looks at lanes, where nobody observes them.
+  static constexpr long long check_interval = 16;
+
   explicit Marcher(Program program);
   ~Marcher();
   Marcher(Marcher&&) noexcept;
@@ -127,29 +88,44 @@ class Marcher {
   bool beyond_bound(int lane, double energy);
 
  private:
-  class StageDelassus;
-  struct StageState;
-  struct LoadWindow;
-  struct ActiveSystem;
-  void place_lane(int lane);
-  void prepare_law();
-  void place_stops(int lane);
-  LaneState state_at(int column) const;
-  void set_state_at(int column, const LaneState& state);
+  // marcher.cpp: the loop.
+  std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
+  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
+  void combine_for(const StageProgram& program);
+  void show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
+            StepObserver& observer) const;
+
+  // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
+  void contact(StageProgram& program, StageState& state, double* z);
+  void remember_efforts(const StageProgram& program, StageState& state, double* z);
+  void correct(StageState& state, const double* effort, double* z);
+  void choose_touched(StageState& state, std::uint32_t mask);
+  void solve_law(const StageProgram& program, StageState& state);
+  void keep_contact(StageState& state);
+  // contact_measure.cpp: what the law reads before any effort.
+  std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
+  void open_gates(StageProgram& program, StageState& state);
+
+  // effort_history.cpp: efforts of stages and steps before.
+  void connect_efforts();
+  void keep_start_efforts();
+
+  // tangent_contact.cpp: the same derivative for tangent columns.
   void remove_load(StageProgram& program, const double* load);
   void tangent_contact(StageProgram& program, StageState& state);
   void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
-  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
-  void connect_efforts();
-  void keep_start_efforts();
-  void contact(StageProgram& program, StageState& state, double* z);
-  std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
-  void open_gates(StageProgram& program, StageState& state);
+
+  // lane_checks.cpp: lanes that diverge.
   void check_lanes();
   void clear_lane(int lane);
-  void combine_for(const StageProgram& program);
-  bool finite_measure(const StageState& state, int lane) const;
-  void support_offsets(const PhaseWeights& phase, double* out, bool rate) const;
+  void clear_efforts(int column);
+
+  // lane_state.cpp: lanes that come and go.
+  void place_lane(int lane);
+  void place_stops(int lane);
+  void prepare_law();
+  LaneState state_at(int column) const;
+  void set_state_at(int column, const LaneState& state);
 
   Program program_;
   const LaneKernels& kernels_;
@@ -159,9 +135,9 @@ class Marcher {
   Block combination_;  // Σ β^K_j x_j of the stage to come
   const StageProgram* combined_for_ = nullptr;
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
-  Block scale_, offset_, lower_, upper_, amplitude_, cos_phase_, sin_phase_;
+  ClampMotion clamp_;
+  Block scale_, offset_, lower_, upper_;
   Block memory_;  // of the law, points × T for each number that it keeps
-  bool phases_ = false;
   std::vector<int> touched_;
   std::vector<LaneOutcome> outcome_;
   std::vector<LaneStatus> status_;
@@ -174,10 +150,7 @@ class Marcher {
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
   long long step_ = 0;
-  std::unique_ptr<EnergyScale> energy_scale_;
-  std::vector<double> lane_bounds_;
-  double load_bound_ = 0, load_known_until_ = 0;
-  double sine_ = 0, cosine_ = 1;
+  std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 
 }  // namespace ricochet

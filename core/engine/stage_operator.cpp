@@ -287,9 +287,6 @@ const char* operator_name(OperatorKind kind) {
 bool FoldedStage::uses_mass() const {
   return any(mass_history);
 }
-bool FoldedStage::uses_stiffness() const {
-  return any(stiffness_history);
-}
 
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
   FoldedStage folded;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/marcher_state.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
 
 namespace ricochet {
 namespace {
@@ -9,32 +10,6 @@ namespace {
 constexpr double least_answer = 1e-17;
 
 }  // namespace
-
-void Marcher::ActiveSystem::factorise() {
-  // A pivot this small against its diagonal belongs to a point that depends on those before it.
-  constexpr double dependent = 1e-13;
-  const std::size_t size = points.size();
-  for (std::size_t i = 0; i < size; ++i) {
-    const double diagonal = at(i, i);
-    for (std::size_t j = 0; j < i; ++j) {
-      double sum = at(i, j);
-      for (std::size_t l = 0; l < j; ++l) sum -= at(i, l) * at(j, l) * at(l, l);
-      at(i, j) = at(j, j) != 0 ? sum / at(j, j) : 0.0;
-      at(i, i) -= at(i, j) * at(i, j) * at(j, j);
-    }
-    if (!(at(i, i) > dependent * diagonal)) at(i, i) = 0;
-  }
-}
-
-void Marcher::ActiveSystem::solve() {
-  const std::size_t size = points.size();
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t l = 0; l < i; ++l) right[i] -= at(i, l) * right[l];
-  for (std::size_t i = size; i-- > 0;) {
-    right[i] = at(i, i) != 0 ? right[i] / at(i, i) : 0.0;
-    for (std::size_t l = i + 1; l < size; ++l) right[i] -= at(l, i) * right[l];
-  }
-}
 
 void Marcher::hold_tangents(const std::vector<bool>& points, int steps) {
   held_points_ = points;

@@ -2,24 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/require_positive.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 namespace ricochet {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void require(bool holds, const std::string& pointer, const std::string& message) {
   if (!holds) throw InputError(pointer, message);
 }
 
 void check_structure(const BeamSpec& beam) {
-  require(std::isfinite(beam.length) && beam.length > 0, "/scene/structure/length",
-          fmt::format("the length is {:.6g} m; expected a finite number above 0", beam.length));
+  require_positive(beam.length, "length", "the length", "m");
   section_properties(beam.section, beam.young, beam.density);
   require(
       std::isfinite(beam.damping.stiffness) && beam.damping.stiffness >= 0, "/scene/structure/damping/stiffness",
@@ -28,13 +26,8 @@ void check_structure(const BeamSpec& beam) {
           fmt::format("the mass damping η is {:.6g} 1/s; expected a finite number, 0 or above", beam.damping.mass));
 }
 
-void positive(double value, const char* key, const char* what, const char* unit) {
-  require(std::isfinite(value) && value > 0, std::string("/scene/structure/") + key,
-          fmt::format("the {} is {:.6g} {}; expected a finite number above 0", what, value, unit));
-}
-
 void check_structure(const OscillatorSpec& oscillator) {
-  positive(oscillator.mass, "mass", "mass", "kg");
+  require_positive(oscillator.mass, "mass", "the mass", "kg");
   const auto not_negative = [](double value, const char* key, const char* what, const char* unit) {
     require(std::isfinite(value) && value >= 0, std::string("/scene/structure/") + key,
             fmt::format("the {} is {:.6g} {}; expected a finite number, 0 or above", what, value, unit));
@@ -49,9 +42,9 @@ void check_structure(const OscillatorSpec& oscillator) {
 }
 
 void check_structure(const BarSpec& bar) {
-  positive(bar.length, "length", "length", "m");
-  positive(bar.EA, "EA", "stiffness EA", "N");
-  positive(bar.rhoA, "rhoA", "mass per length ρA", "kg/m");
+  require_positive(bar.length, "length", "the length", "m");
+  require_positive(bar.EA, "EA", "the stiffness EA", "N");
+  require_positive(bar.rhoA, "rhoA", "the mass per length ρA", "kg/m");
   for (const double value : {bar.damping.stiffness, bar.damping.mass})
     require(std::isfinite(value) && value >= 0, "/scene/structure/damping",
             "the damping of the bar is not a finite number, 0 or above");

@@ -18,7 +18,7 @@ void representable(double value, const std::string& pointer, const char* what, c
 }
 
 // As representable(), and not zero: a product of positive numbers that has none left is no number of the scene's.
-void positive(double value, const std::string& pointer, const char* what, const char* unit) {
+void not_zero(double value, const std::string& pointer, const char* what, const char* unit) {
   if (value == 0)
     throw InputError(pointer, fmt::format("{} comes out as 0 {}; expected a size between {:g} and {:g}", what, unit,
                                           smallest, largest));
@@ -34,18 +34,18 @@ void check_damping(const Damping& damping, double stiffness, double mass) {
 // An element's stiffness and mass, and the pulsation of the one on the other.
 void check_element(const Damping& damping, double stiffness, double mass) {
   const std::string length = "/scene/structure/length";
-  positive(stiffness, length, "the stiffness of an element", "N/m");
-  positive(mass, length, "the mass of an element", "kg");
-  positive(stiffness / mass, length, "the squared pulsation of an element", "1/s²");
+  not_zero(stiffness, length, "the stiffness of an element", "N/m");
+  not_zero(mass, length, "the mass of an element", "kg");
+  not_zero(stiffness / mass, length, "the squared pulsation of an element", "1/s²");
   check_damping(damping, stiffness, mass);
 }
 
 void check(const BeamSpec& beam, double length) {
   const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
-  positive(section.EI, "/scene/structure/section", "the bending stiffness EI", "N m²");
-  positive(section.rhoS, "/scene/structure/section", "the line density ρS", "kg/m");
-  positive(section.EI / length, "/scene/structure/length", "the rotational stiffness of an element", "N m");
-  positive(section.rhoS * length * length * length, "/scene/structure/length", "the rotational inertia of an element",
+  not_zero(section.EI, "/scene/structure/section", "the bending stiffness EI", "N m²");
+  not_zero(section.rhoS, "/scene/structure/section", "the line density ρS", "kg/m");
+  not_zero(section.EI / length, "/scene/structure/length", "the rotational stiffness of an element", "N m");
+  not_zero(section.rhoS * length * length * length, "/scene/structure/length", "the rotational inertia of an element",
            "kg m²");
   check_element(beam.damping, section.EI / length / length / length, section.rhoS * length);
 }
@@ -55,7 +55,7 @@ void check(const BarSpec& bar, double length) {
 }
 
 void check(const OscillatorSpec& oscillator, double) {
-  positive(oscillator.mass, "/scene/structure/mass", "the mass", "kg");
+  not_zero(oscillator.mass, "/scene/structure/mass", "the mass", "kg");
   representable(oscillator.stiffness, "/scene/structure/stiffness", "the stiffness", "N/m");
   representable(oscillator.stiffness / oscillator.mass, "/scene/structure/stiffness", "the squared pulsation k/m",
                 "1/s²");

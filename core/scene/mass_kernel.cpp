@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseQR>
 #include <cmath>
@@ -40,6 +41,12 @@ Eigen::MatrixXd mass_kernel(const Inertia& inertia) {
   basis.bottomRows(kernel).setIdentity();
   basis = qr.matrixQ() * basis;
   return scales.asDiagonal() * basis;
+}
+
+Eigen::MatrixXd dense_mass(const Inertia& inertia) {
+  if (!inertia.factored()) return Eigen::MatrixXd(inertia.mass);
+  const Eigen::MatrixXd B(inertia.coupling), Cv(inertia.velocity_mass);
+  return B.transpose() * Cv.ldlt().solve(B);
 }
 
 Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x) {

@@ -3,18 +3,13 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/require_positive.hpp>
 #include <ricochet/scene/scene.hpp>
 
 namespace ricochet {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-void require_positive(double value, const char* key, const char* what, const char* unit) {
-  if (std::isfinite(value) && value > 0) return;
-  throw InputError(fmt::format("/scene/structure/{}", key),
-                   fmt::format("{} is {:.6g} {}; expected a finite number above 0", what, value, unit));
-}
 
 /// Second moment of area I (m⁴) and area S (m²).
 struct Moments {

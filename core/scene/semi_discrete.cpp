@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/initial.hpp>
@@ -9,8 +9,6 @@
 
 namespace ricochet {
 namespace {
-
-constexpr double no_stop = std::numeric_limits<double>::infinity();
 
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
   problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
@@ -64,8 +62,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
 
   problem.contact_x = contact_positions(scene, elements);
   problem.contact = displacement_rows(problem.space, problem.contact_x);
-  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -no_stop);
-  problem.upper = stop_values(scene.stops.upper, problem.contact_x, no_stop);
+  problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
+  problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
   problem.tip = displacement_rows(problem.space, {tip_position(scene)});
 
   interpolate_initial(scene, problem);

@@ -74,6 +74,9 @@ void check_scene(const SceneSpec& scene, int elements);
 /// Orthonormal-in-nothing basis Z (n × N) of Ker M (only for kernel_dimension > 0).
 Eigen::MatrixXd mass_kernel(const Inertia& inertia);
 
+/// M as a dense matrix, BᵀCv⁻¹B where it is kept in factors. For set-up.
+Eigen::MatrixXd dense_mass(const Inertia& inertia);
+
 /// M x, through the factors where M is not formed. For set-up, not for the marching loop.
 Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x);
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/contract/plugin_call.hpp>
 
 namespace ricochet::checking {
@@ -108,8 +108,7 @@ ProblemPointer discretised(const SceneSpec& scene, int elements) {
 
 Pulsations pulsations(const SemiDiscrete& problem) {
   const Eigen::MatrixXd K = problem.stiffness, M = problem.inertia.mass;
-  const Eigen::VectorXd mu =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(M, K, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd mu = symmetric_modes(M, K, EigenVectors::none).values;
   const double largest = mu[mu.size() - 1];
   double smallest = largest;
   for (const double x : mu)

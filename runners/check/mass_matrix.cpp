@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 #include "runners/check/mass_checks.hpp"
 
@@ -82,8 +82,7 @@ Verdict matrix_is_symmetric(const Mass& mass) {
 
 Verdict matrix_is_semidefinite(const Mass& mass) {
   return everywhere(mass, [](const Inertia&, const Eigen::MatrixXd& M, std::string&) -> std::string {
-    const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (M + M.transpose()), Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::VectorXd values = symmetric_modes(0.5 * (M + M.transpose()), EigenVectors::none).values;
     const double largest = values[values.size() - 1];
     if (!(largest > 0)) return "no motion has a kinetic energy";
     if (values[0] >= -1e-12 * largest) return {};
@@ -94,7 +93,7 @@ Verdict matrix_is_semidefinite(const Mass& mass) {
 
 Verdict kernel_as_declared(const Mass& mass) {
   return everywhere(mass, [](const Inertia& inertia, const Eigen::MatrixXd& M, std::string& found) -> std::string {
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(M).singularValues();
+    const Eigen::VectorXd values = singular_values(M);
     const auto kernel = static_cast<int>((values.array() <= 1e-11 * values[0]).count());
     found = inertia.kernel_dimension > 0 ? "singular, as declared" : "regular, as declared";
     if (kernel == inertia.kernel_dimension) return {};

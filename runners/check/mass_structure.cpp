@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ricochet/algebra/eigenvalues.hpp>
 
 #include "runners/check/mass_checks.hpp"
 
@@ -39,9 +39,7 @@ Eigen::MatrixXd mirrored(const Eigen::MatrixXd& M, bool beam) {
 // The first three pulsations, by compliances so that kernels do no harm.
 std::array<double, 3> pulsations_of(const Mass& mass, const SpaceBench& bench) {
   const Eigen::MatrixXd M = matrix(mass, bench), K = unit_stiffness(unit_space(bench));
-  const Eigen::VectorXd mu =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (M + M.transpose()), K, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd mu = symmetric_modes(0.5 * (M + M.transpose()), K, EigenVectors::none).values;
   std::array<double, 3> found{};
   for (std::size_t k = 0; k < 3; ++k) found[k] = 1 / std::sqrt(mu[mu.size() - 1 - static_cast<Eigen::Index>(k)]);
   return found;

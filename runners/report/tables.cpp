@@ -40,7 +40,7 @@ std::vector<std::string> measures_present(const CaseView& view) {
     return std::any_of(view.results().cases.begin(), view.results().cases.end(),
                        [&](const CaseRecord& r) { return CaseView::measure(r, name).has_value(); });
   };
-  for (const MeasureInfo& info : trajectory_measures())
+  for (const MeasureInfo& info : all_measures())
     if (present(info.name)) out.emplace_back(info.name);
   for (const CaseRecord& record : view.results().cases)
     for (const auto& [name, value] : record.measures)

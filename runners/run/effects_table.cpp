@@ -9,13 +9,10 @@
 namespace ricochet {
 namespace {
 
-// Measures whose spread says nothing of the motion.
+// A measure that no kind declares is taken for one of the motion.
 bool of_the_motion(const std::string& measure) {
-  static const std::set<std::string> others = {
-      "microseconds_per_step", "timed_seconds", "timed_low",         "timed_high",
-      "declared_order",        "horizon",       "reference_of_mesh", "exponent_seconds",
-      "lane_steps_per_second", "orbits",        "contradictions"};
-  return others.count(measure) == 0 && !measure.starts_with("floor.");
+  const MeasureInfo* info = measure_info(measure);
+  return !info || info->of == MeasureInfo::Of::motion;
 }
 
 // Whether the cases of some level that were run to their end never have this measure while those of another do: then
@@ -64,7 +61,7 @@ Table effects_table(const StudyResults& results) {
     for (const CaseRecord& record : results.cases)
       values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
     if (absent_by_level(results, factors, values)) continue;
-    const Effects effects = effects_of(name, factors, values);
+    const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)
       table.rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
   }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
-#include "runners/run/minimal_study.hpp"
+#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/table/csv_text.hpp"
@@ -91,51 +92,19 @@ void write_results(TableFolder& tables, const StudyResults& results) {
   tables.write_numbers(results);
 }
 
-bool has_axis(const CaseRecord& record, const char* name) {
-  return std::any_of(record.axes.begin(), record.axes.end(), [&](const auto& axis) { return axis.first == name; });
-}
-
-/// The study of one case of a sweep alone: its own methods, mesh and steps per period, the study's parameter and keys.
-nlohmann::ordered_json single_sweep(const StudyResults& results, const CaseRecord& record) {
-  nlohmann::ordered_json study = minimal_study(results, record);
-  study["kind"] = results.kind;
-  study.erase("step");
-  for (const auto& [name, value] : record.axes) {
-    const std::string role = name.substr(0, name.find('.'));
-    if (name == "steps_per_period") {
-      study["steps_per_period"] = value;
-    } else if (name != "elements" && !study["methods"].contains(role)) {
-      // An axis of the scene stays one: the case keeps its id.
-      std::string place = "/" + name;
-      std::replace(place.begin(), place.end(), '.', '/');
-      study["scene"][nlohmann::ordered_json::json_pointer(place)] = nlohmann::ordered_json::array({value});
-    } else if (value == "swept") {
-      // The parameter is one of the method's: the study has a number there, which it replaces.
-      const std::string key = name.substr(role.size() + 1);
-      for (const auto& method : results.study.at("methods").at(role))
-        if (method.at("name") == study["methods"][role].at("name") && method.contains(key))
-          study["methods"][role][key] = method[key];
-    }
-  }
-  study["scene"].erase("steps_per_period");
-  for (const auto& [key, value] : results.study.items())
-    if (!study.contains(key) && key != "exclude") study[key] = value;
-  return study;
-}
-
 /// failures/ID.json, one study per case that went wrong; files of cases that do no longer are removed.
 void write_failures(const std::filesystem::path& folder, const StudyResults& results) {
   constexpr int indent = 2;
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   std::set<std::string> wanted;
-  if (!results.study.contains("scene")) return;  // nothing to make a study of
+  const Kind* kind = find_kind(results.kind);
+  if (!kind || !kind->alone || !results.study.contains("scene")) return;  // nothing to make a study of
   for (const CaseRecord& record : results.cases) {
-    // A case that goes through a range of steps (stability) is no run that could be repeated.
-    const bool sweep = has_axis(record, "steps_per_period");
-    if (!went_wrong(record) || !(sweep || has_axis(record, "step"))) continue;
+    if (!went_wrong(record)) continue;
+    const auto study = kind->alone(results, record);
+    if (study.is_null()) continue;
     if (wanted.empty()) make_folder(folder);
     wanted.insert(record.id);
-    const auto study = sweep ? single_sweep(results, record) : minimal_study(results, record);
     write_file(folder / (record.id + ".json"), study.dump(indent, ' ', false, replace) + '\n');
   }
   std::vector<std::filesystem::path> stale;

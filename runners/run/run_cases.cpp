@@ -104,7 +104,7 @@ CaseRecord run_guarded(const StudyRunner& runner, const StudyCase& study_case, c
     record.reason = std::move(reason);
   };
   try {
-    record = runner.run(study_case, stop);
+    record = runner.cases.run(study_case, stop);
   } catch (const Interrupted&) {
     throw;
   } catch (const InputError& error) {

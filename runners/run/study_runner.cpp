@@ -10,11 +10,11 @@
 #include <mutex>
 #include <thread>
 
+#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/march/crash_record.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/run/minimal_study.hpp"
 #include "runners/run/progress.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/stop_signal.hpp"
@@ -110,10 +110,10 @@ class FolderRun {
     kept_ = settled_ = store_.begin(header(study_), expected);
     take_over();
     announce();
-    if (runner_.open) open();
+    if (runner_.cases.open) open();
     if (stop_) return interrupted();
     if (!run_missing()) return interrupted();
-    if (runner_.time && !time()) return interrupted();
+    if (runner_.cases.time && !time()) return interrupted();
     store_.nothing_under_way();
     return finish();
   }
@@ -231,7 +231,7 @@ class FolderRun {
   }
 
   void open() {
-    on_one_thread([this] { runner_.open(shelf(), stop_); });
+    on_one_thread([this] { runner_.cases.open(shelf(), stop_); });
   }
 
   void say_waiting(const std::vector<LongCall>& calls) {

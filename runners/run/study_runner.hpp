@@ -5,8 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "runners/kinds/comparison/references.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/march/watched_threads.hpp"
 #include "runners/run/outputs.hpp"
 #include "runners/run/run_study.hpp"
@@ -16,15 +15,11 @@ namespace ricochet {
 /// What a run of a study asks of the rest of the program; run_study() gives the real ones.
 struct StudyRunner {
   std::function<CasePlan(const StudyCase&)> plan;
-  std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
+  CaseRunner cases;
   std::function<std::vector<std::filesystem::path>(const StudyCase&)>
       libraries;  ///< of its three methods; "" when in-process
   std::function<Environment()> environment;
   RenderReport render;
-  /// Called once, when the store is open and before any case runs; throws InputError for what only shows then.
-  std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
-  /// Processor seconds of one case's marching, alone; none: cases of this kind are not timed apart.
-  std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
   std::FILE* out = stdout;       ///< the summary
   std::FILE* messages = stderr;  ///< progress and errors
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
@@ -26,40 +27,11 @@ std::string signed_percent(double ratio) {
   return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
 }
 
-// Marched at some steps, and stable at none of them.
-bool never_stable(const CaseRecord& record) {
-  const Table* table = find_table(record.tables, "stability_observed");
-  if (!table || table->rows.empty()) return false;
-  const std::size_t behaviour = TableReader(*table).column("behaviour");
-  return std::none_of(table->rows.begin(), table->rows.end(),
-                      [&](const Row& row) { return row.at(behaviour) == "stable" || row.at(behaviour) == "marginal"; });
-}
-
 bool contradicts_itself(const CaseRecord& record) {
   return measure(record, "contradictions").value_or(0) > 0;
 }
 
-// What a comparing or a stability case has to say: its first errors, its step limits.
-std::string kind_text(const CaseRecord& record) {
-  std::vector<std::string> parts;
-  constexpr std::size_t shown_errors = 3;
-  for (const auto& [name, value] : record.measures)
-    if (name.starts_with("error.") && parts.size() < shown_errors)
-      parts.push_back(fmt::format("{} {:.2e}", name.substr(std::string("error.").size()), value));
-  const auto predicted = measure(record, "limit_predicted"), observed = measure(record, "limit_observed");
-  if (predicted) parts.push_back(fmt::format("step limit predicted {:.4g} s", *predicted));
-  if (observed) parts.push_back(fmt::format("observed {:.4g} s", *observed));
-  if (const auto radius = measure(record, "largest_radius"); radius && !predicted)
-    parts.push_back(fmt::format("largest spectral radius {:.6g}", *radius));
-  if (never_stable(record)) parts.emplace_back("unstable at every step marched");
-  if (const auto steps = measure(record, "contradictions"))
-    parts.push_back(fmt::format("spectrum and march disagree without contact at {:.0f} step{}: an error of the method",
-                                *steps, *steps == 1 ? "" : "s"));
-  return parts.empty() ? "" : fmt::format("done: {}", fmt::join(parts, ", "));
-}
-
 std::string done_text(const CaseRecord& record) {
-  if (std::string text = kind_text(record); !text.empty()) return text;
   std::vector<std::string> parts;
   auto start = measure(record, "energy_start");
   auto end = measure(record, "energy_end");
@@ -82,9 +54,13 @@ int count(const StudyResults& results, const char* status) {
 
 }  // namespace
 
-std::string outcome_text(const CaseRecord& record) {
+std::string outcome_text(const CaseRecord& record, const std::string& kind) {
   if (record.partial) return record.reason;
-  if (record.status == "done") return done_text(record);
+  if (record.status == "done") {
+    const Kind* known = find_kind(kind);
+    const std::string own = known && known->outcome ? known->outcome(record) : "";
+    return own.empty() ? done_text(record) : "done: " + own;
+  }
   return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
 }
 
@@ -104,7 +80,7 @@ std::string case_table(const StudyResults& results) {
     std::vector<std::string> line;
     for (const std::string& name : axes) line.push_back(cell(record, name));
     if (axes.empty()) line.push_back(record.id);
-    line.push_back(outcome_text(record));
+    line.push_back(outcome_text(record, results.kind));
     table.add(std::move(line));
   }
   return table.text();

@@ -7,8 +7,8 @@
 namespace ricochet {
 
 /// The outcome of one case in words: "done: energy 12.3 J → 11.9 J (−3.2 %), 14 impacts, 0.42 µs/step", or the status
-/// and its reason.
-std::string outcome_text(const CaseRecord& record);
+/// and its reason. A kind of study may have more to say of a finished case (Kind::outcome).
+std::string outcome_text(const CaseRecord& record, const std::string& kind);
 
 /// One line per case: the axes that vary in aligned columns under their names, then the outcome.
 std::string case_table(const StudyResults& results);

@@ -42,7 +42,7 @@ std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study
       const StudyCase& one = *cases.at(records[i].id);
       const CaseScope scope(ticket(one));
       try {
-        if (const auto time = runner.time(one, stop)) seconds[i].push_back(*time);
+        if (const auto time = runner.cases.time(one, stop)) seconds[i].push_back(*time);
       } catch (const Interrupted&) {
         return {};
       } catch (...) {

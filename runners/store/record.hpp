@@ -51,15 +51,22 @@ struct StudyResults {
   std::vector<Table> derived;  ///< worked out of the cases when they are read, not stored
 };
 
-/// The measures of kind `trajectory`, in the order of cases.csv, with what they mean (also the report's tooltips).
+/// What a measure of a case means, as the kinds of study declare theirs (also the report's tooltips).
 struct MeasureInfo {
+  /// A measure of the computation (its time, its reference) says nothing of the motion: no effect of a choice is sought
+  /// in it.
+  enum class Of { motion, computation };
   const char* name;
   const char* unit;
   const char* text;
+  Of of = Of::motion;
+  bool aside = false;  ///< a first look at the table of cases leaves it out
 };
-const std::vector<MeasureInfo>& trajectory_measures();
-/// The measures that only other kinds have.
-const std::vector<MeasureInfo>& further_measures();
+
+/// The measures of all kinds, in order. Given by the registry of kinds.
+const std::vector<MeasureInfo>& all_measures();
+/// Those that stand in cases.csv of a study of this kind even where no case has one. Given by the registry of kinds.
+std::vector<std::string> standing_measures(const std::string& kind);
 /// What a measure means; null for one that nothing is known of.
 const MeasureInfo* measure_info(const std::string& name);
 

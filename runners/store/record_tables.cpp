@@ -10,17 +10,12 @@ namespace {
 
 Column measure_column(const std::string& name) {
   if (const MeasureInfo* info = measure_info(name)) return {name, info->unit, info->text};
-  const std::string floor = "floor.";
-  if (const MeasureInfo* info = name.starts_with(floor) ? measure_info("error." + name.substr(floor.size())) : nullptr)
-    return {name, info->unit, std::string("What the reference of ") + info->name + " may itself be wrong by."};
   return {name, "", "A measure of the case that the program does not describe."};
 }
 
 std::vector<Column> measure_columns(const StudyResults& results) {
   std::vector<Column> columns;
-  // The measures of a trajectory stand in every trajectory's table; other kinds show what they have.
-  if (results.kind == "trajectory")
-    for (const MeasureInfo& measure : trajectory_measures()) columns.push_back(measure_column(measure.name));
+  for (const std::string& name : standing_measures(results.kind)) columns.push_back(measure_column(name));
   for (const CaseRecord& record : results.cases)
     for (const auto& [name, value] : record.measures)
       if (!find_column(columns, name)) columns.push_back(measure_column(name));
@@ -139,8 +134,7 @@ Table measures_table() {
                {"unit", "", "Its unit; 1 for ratios and counts."},
                {"text", "", "What it means."}},
               {}};
-  for (const auto* list : {&trajectory_measures(), &further_measures()})
-    for (const MeasureInfo& measure : *list) table.rows.push_back({measure.name, measure.unit, measure.text});
+  for (const MeasureInfo& measure : all_measures()) table.rows.push_back({measure.name, measure.unit, measure.text});
   return table;
 }
 

@@ -60,17 +60,11 @@ struct Variant {
   ObjectForm keys;                 ///< keys in addition to the enclosing object's
 };
 
-/// The keys of a whole study; its variants are the kinds. A new kind is one more variant, with its own keys.
+/// The keys of a whole study; its variants are the kinds, each with its own keys (study_kind.hpp).
 const ObjectForm& study_form();
 
 /// The reference that no plugin provides: the method itself, marched on finer steps and meshes.
 inline constexpr const char* marched_reference = "self";
-
-/// The errors that a comparing study may ask for, in the order of its tables.
-const std::vector<std::string>& error_names();
-
-/// The kinds of study that exist.
-std::vector<std::string> study_kinds();
 
 /// The keys of one method as a study writes it: "name" and the plugin's parameters, each of which may be a list.
 ObjectForm method_form(const PluginManual& manual);

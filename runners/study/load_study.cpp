@@ -18,7 +18,7 @@
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"
-#include "runners/study/sweep.hpp"
+#include "runners/study/study_kind.hpp"
 
 namespace ricochet {
 namespace {
@@ -83,33 +83,6 @@ void require_mesh(const Json& study) {
   const Json::json_pointer type("/scene/structure/type");
   if (!study.is_object() || study.contains("mesh") || !study.contains(type)) return;
   if (study.at(type) == "beam" || study.at(type) == "bar") throw InputError("/mesh", "missing; this key is required");
-}
-
-void check_kind(const Json& study) {
-  if (const auto horizon = study.find("horizon"); horizon != study.end() && !horizon->is_null())
-    if (horizon->get<double>() > study["duration"].get<double>())
-      throw InputError("/horizon", fmt::format("a horizon of {} s lies beyond the duration of {} s",
-                                               horizon->get<double>(), study["duration"].get<double>()));
-  if (const auto steps = study.find("steps"); steps != study.end()) {
-    // The square of a step and of its inverse are numbers of a plan.
-    constexpr double least = 1e-100, most = 1e100;
-    for (const char* end : {"from", "to"})
-      if (const double h = (*steps)[end].get<double>(); h < least || h > most)
-        throw InputError(std::string("/steps/") + end,
-                         fmt::format("a step of {} s; expected one between {:g} and {:g} s", h, least, most));
-    if ((*steps)["from"].get<double>() > (*steps)["to"].get<double>())
-      throw InputError("/steps/from", fmt::format("the range begins at {} s and ends at {} s; expected from ≤ to",
-                                                  (*steps)["from"].get<double>(), (*steps)["to"].get<double>()));
-  }
-}
-
-// What a kind adds to a case; null where nothing differs from a plain trajectory, whose ids then stay what they were.
-Json kind_settings(const Json& study) {
-  if (is_sweep(study)) return sweep_settings(study);
-  Json settings = Json::object();
-  for (const char* key : {"reference", "errors", "horizon", "repeats", "steps", "observe", "budget"})
-    if (const auto found = study.find(key); found != study.end() && !found->is_null()) settings[key] = *found;
-  return settings.empty() ? Json(nullptr) : settings;
 }
 
 // References: plugins, or the method itself marched finer.
@@ -211,16 +184,16 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   check_name(study.name);
   // A kind without a step of its own goes through a range of them within each case (stability), or counts steps per
   // forcing period.
-  const bool stepped = resolved.contains("step");
-  const bool sweep = is_sweep(resolved);
+  const StudyKind& kind = *find_study_kind(study.kind);
+  const bool stepped = resolved.contains("step"), by_period = resolved.contains("steps_per_period");
   const auto given_duration = resolved.find("duration");
   const auto duration =
       given_duration == resolved.end() || given_duration->is_null() ? 0.0 : given_duration->get<double>();
   const auto samples = resolved.value("samples", 0);
   if (stepped) check_steps(resolved["step"], duration);
   const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
-  const std::vector<int> per_period = sweep ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
-  check_kind(resolved);
+  const std::vector<int> per_period = by_period ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
+  if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
   std::vector<MethodOptions> methods;
@@ -233,7 +206,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   std::vector<MethodChoice> references;
   if (resolved.contains("reference"))
     references = read_references(resolved["reference"], "/reference", catalogue, registry);
-  const Json settings = kind_settings(resolved);
+  const Json settings = kind.settings(resolved);
   const auto& masses = methods[0].options;
   const auto& contacts = methods[1].options;
   const auto& times = methods[2].options;
@@ -250,17 +223,17 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 
   const int finest = *std::max_element(meshes.begin(), meshes.end());
   const std::vector<SceneOption> scenes = expand_scenes(resolved["scene"], axes, finest);
-  if (sweep) {
+  if (kind.check_methods) {
     const int coarsest = *std::min_element(meshes.begin(), meshes.end());
-    check_sweep(resolved, settings, registry, everything.count(),
-                make_space(scenes.front().scene.structure, coarsest).dofs);
+    kind.check_methods(resolved, settings, registry, everything.count(),
+                       make_space(scenes.front().scene.structure, coarsest).dofs);
   }
 
   for (const MethodOptions& role : methods)
     for (const MethodOption& option : role.options) add_columns(option.axes, study.columns);
   add_columns({{"elements", nullptr}}, study.columns);
   if (stepped) add_columns({{"step", nullptr}}, study.columns);
-  if (sweep) add_columns({{"steps_per_period", nullptr}}, study.columns);
+  if (by_period) add_columns({{"steps_per_period", nullptr}}, study.columns);
   add_columns(scenes.front().axes, study.columns);
 
   CaseIds ids;
@@ -283,18 +256,18 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     one.axes.emplace_back("elements", one.elements);
     if (stepped) one.axes.emplace_back("step", one.step);
     one.steps_per_period = per_period[product[6]];
-    if (sweep) one.axes.emplace_back("steps_per_period", one.steps_per_period);
+    if (by_period) one.axes.emplace_back("steps_per_period", one.steps_per_period);
     one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
     one.duration = duration;
     one.samples = samples;
     one.references = references;
     one.settings = settings;
-    if (sweep) mark_sweep(settings, registry, one);
+    if (kind.complete) kind.complete(settings, registry, one);
     one.id = ids.next(one, study.kind);
     study.cases.push_back(std::move(one));
   }
   apply_excludes(resolved["exclude"], study);
-  if (sweep) check_values(study);
+  if (kind.check_cases) kind.check_cases(study);
   study.axes = axis_meanings(study, registry);
   return study;
 }

@@ -33,10 +33,18 @@ bool flushes_operands() {
   return times(tiny, 0x1p200) == 0;
 }
 
+// Only a processor that is not known may do without.
+bool can_flush() {
+#if defined(__x86_64__) || defined(__aarch64__)
+  REQUIRE(flushing_bits() != 0);
+#endif
+  return flushing_bits() != 0;
+}
+
 }  // namespace
 
 TEST_CASE("denormal operands and results are zero inside of the scope only") {
-  if (flushing_bits() == 0) return;  // a processor that is not known
+  if (!can_flush()) return;
   const KeepFloatControl test;
   set_float_control(float_control() & ~flushing_bits());
   REQUIRE_FALSE(flushes_results());
@@ -88,7 +96,7 @@ TEST_CASE("the control word is afterwards what it was before, whatever was done 
 }
 
 TEST_CASE("one thread's denormal numbers are no other's") {
-  if (flushing_bits() == 0) return;
+  if (!can_flush()) return;
   const KeepFloatControl test;
   set_float_control(float_control() & ~flushing_bits());
   bool before = true, inside = false;
@@ -103,7 +111,7 @@ TEST_CASE("one thread's denormal numbers are no other's") {
 }
 
 TEST_CASE("flushed, a lane's bits do not depend on its company or the instruction set's width") {
-  if (flushing_bits() == 0) return;
+  if (!can_flush()) return;
   const FlushDenormals flush;
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -73,12 +73,6 @@ inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const Mass
   return std::get<SemiDiscrete>(result);
 }
 
-inline Eigen::MatrixXd dense_mass(const Inertia& inertia) {
-  if (!inertia.factored()) return inertia.mass;
-  const Eigen::MatrixXd coupling = inertia.coupling, velocity = inertia.velocity_mass;
-  return coupling.transpose() * velocity.llt().solve(coupling);
-}
-
 /// μ of M x = μ K x, ascending: 1/ω² of the structure, zeros where M has a kernel.
 inline Eigen::VectorXd compliances(const SparseMatrix& stiffness, const Inertia& inertia) {
   const Eigen::MatrixXd K = stiffness, M = dense_mass(inertia);

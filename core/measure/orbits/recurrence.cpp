@@ -255,30 +255,6 @@ void Settling::clear() {
   periods = 0;
 }
 
-std::vector<double> Settling::save() const {
-  std::vector<double> out = {static_cast<double>(scale.size()), tolerance, static_cast<double>(longest),
-                             static_cast<double>(periods)};
-  out.insert(out.end(), scale.begin(), scale.end());
-  out.insert(out.end(), ring.begin(), ring.end());
-  out.insert(out.end(), repeats.begin(), repeats.end());
-  return out;
-}
-
-Settling Settling::load(const std::vector<double>& saved) {
-  const auto refuse = [] { throw std::invalid_argument("these numbers are no saved settling"); };
-  if (saved.size() < 4 || !(saved[0] >= 0) || !(saved[2] >= 0) || saved[0] > 1e6 || saved[2] > 1e6) refuse();
-  const auto width = static_cast<std::size_t>(saved[0]), lags = static_cast<std::size_t>(saved[2]);
-  if (saved.size() != 4 + width + width * lags + lags + 1) refuse();
-  const double* at = saved.data() + 4;
-  Settling out(std::vector<double>(at, at + width), saved[1], static_cast<int>(lags));
-  at += width;
-  std::copy(at, at + width * lags, out.ring.begin());
-  at += width * lags;
-  std::transform(at, at + lags + 1, out.repeats.begin(), [](double n) { return static_cast<int>(n); });
-  out.periods = static_cast<long long>(saved[3]);
-  return out;
-}
-
 bool same_cloud(const std::vector<std::array<double, 2>>& a, const std::vector<std::array<double, 2>>& b,
                 const std::array<double, 2>& scale, double tolerance) {
   for (const auto* cloud : {&a, &b})

@@ -56,11 +56,6 @@ struct Settling {
   int period() const;
   /// Forgets the rows, keeps scale and tolerance.
   void clear();
-
-  /// All of it as numbers, and back: a march that resumes goes on as if it had not stopped. Throws
-  /// std::invalid_argument on numbers that save() did not write.
-  std::vector<double> save() const;
-  static Settling load(const std::vector<double>& saved);
 };
 
 /// Whether two clouds of section points are the same: every point of either has one of the other within

@@ -3,6 +3,8 @@
 #include <numbers>
 #include <random>
 #include <ricochet/measure/orbits/zero_one_test.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
@@ -60,8 +62,7 @@ std::optional<double> zero_one_test(std::span<const double> series, std::uint64_
     }
     k = correlation(D);
   }
-  std::sort(K.begin(), K.end());
-  return 0.5 * (K[frequencies / 2 - 1] + K[frequencies / 2]);
+  return median(std::move(K));
 }
 
 }  // namespace ricochet

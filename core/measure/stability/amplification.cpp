@@ -30,28 +30,12 @@ Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k
   return whole;
 }
 
-namespace {
-
-// Roots in like units, each as often as it is one: roots that coincide are lost in slots whose sizes differ by 1/h².
-std::vector<Root> roots_of(const StepPlan& plan, const Eigen::MatrixXd& step) {
-  const double h = step_of(plan);
-  return step_roots(h > 0 ? in_metres(step, plan, h, 1) : step, false);
-}
-
-}  // namespace
-
-Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, double k) {
-  const Eigen::MatrixXd step = amplification(plan, m, c, k);
-  Eigen::VectorXcd all = Eigen::VectorXcd::Constant(step.rows(), std::numeric_limits<double>::infinity());
-  Eigen::Index at = 0;
-  for (const Root& root : roots_of(plan, step))
-    for (int copy = 0; copy < root.multiplicity; ++copy) all[at++] = root.value;
-  return all;
-}
-
 std::optional<double> root_at_infinity(const StepPlan& plan) {
-  // Largest first; none where the step is not finite.
-  const std::vector<Root> roots = roots_of(plan, amplification(plan, 0, 0, 1));
+  const double h = step_of(plan);
+  const Eigen::MatrixXd step = amplification(plan, 0, 0, 1);
+  // In like units: roots that coincide are lost in slots whose sizes differ by 1/h². Largest first; none where the step
+  // is not finite.
+  const std::vector<Root> roots = step_roots(h > 0 ? in_metres(step, plan, h, 1) : step, false);
   if (roots.empty()) return std::nullopt;
   // Zero may be a root of all slots that the spring has, four times in a chain: known to the fourth root of round-off.
   constexpr double nothing = 1e-3;

@@ -10,10 +10,6 @@ namespace ricochet {
 /// infinities.
 Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k);
 
-/// Eigenvalues of amplification(), largest modulus first: |r| > 1 grows, |r| = 1 is marginal. Those that coincide are
-/// known by their mean (step_map.hpp). Infinite where S vanishes.
-Eigen::VectorXcd amplification_roots(const StepPlan& plan, double m, double c, double k);
-
 /// ρ∞: what one step leaves of a mode whose frequency is far above 1/h, the largest |r| as hω → ∞, found on a spring
 /// without mass (m = c = 0, k = 1). Roots that coincide there are known by their mean. Nothing where S vanishes on it:
 /// an explicit step.

@@ -1,14 +1,13 @@
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <complex>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
-#include <ricochet/measure/stability/dense_modes.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
+#include <ricochet/measure/stability/structure_modes.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -29,12 +28,12 @@ std::vector<double> squared_pulsations(const SemiDiscrete& problem, int modes) {
   SparseLdlt ldlt;
   const bool held = ldlt.factorise(problem.stiffness);
   const double shift = held ? 0 : K.trace() / M.trace() / static_cast<double>(n * n);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(M, K + shift * M, Eigen::EigenvaluesOnly);
-  if (eigen.info() != Eigen::Success) return {};
+  const SymmetricModes modes_of = symmetric_modes(M, K + shift * M, EigenVectors::none);
+  if (!modes_of.found) return {};
   std::vector<double> squares;
   const Index regular = n - problem.inertia.kernel_dimension;
   for (Index i = 0; i < regular && static_cast<int>(squares.size()) < modes; ++i) {
-    const double mu = eigen.eigenvalues()[n - 1 - i];
+    const double mu = modes_of.values[n - 1 - i];
     if (mu > 0 && 1 / mu - shift > rigid * shift) squares.push_back(1 / mu - shift);
   }
   return squares;

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -16,7 +15,6 @@
 namespace ricochet {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Motions that begin with half of their energy elastic and half kinetic reach at most twice their first norm.
@@ -25,7 +23,6 @@ constexpr double growth_since_start = 4, growth_at_end = 1.5;
 // times is out of its reach but for the last half per mille.
 constexpr double blown_up = 1000;
 constexpr std::size_t window = 1024;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class NoContact final : public ContactLaw {
  public:
@@ -34,35 +31,28 @@ class NoContact final : public ContactLaw {
   void solve(ReducedProblem&) override {}
 };
 
-// |x_j − x_j*|² in K and in M for every slot, the largest of each third of the horizon.
+// |x_j|² in K and in M for every slot, the largest of each third of the horizon.
 class NormWatch final : public StepObserver {
  public:
-  NormWatch(const Marcher& marcher, VectorXd rest, long long steps, std::vector<int> held = {})
+  NormWatch(const Marcher& marcher, long long steps)
       : mass_(QuadraticForm::of(marcher.program().model->inertia())),
         stiffness_(marcher.program().model->stiffness()),
-        rest_(std::move(rest)),
-        difference_(rest_),
-        held_(std::move(held)),
+        column_(marcher.program().model->rows()),
         steps_(std::max(steps, 3LL)) {
     for (auto& third : largest_) third.assign(2 * static_cast<std::size_t>(marcher.slot_count()), 0.0);
   }
 
-  void stage_solved(const Marcher& marcher, const StageView& view) override {
-    if (!view.effort) return;
-    for (const int point : held_) opened_ = opened_ || view.effort[0][point * marcher.width()] == 0;
-  }
+  void stage_solved(const Marcher&, const StageView&) override {}
   void step_done(Marcher& marcher) override {
     if (!marcher.status(0).running) return;
-    if (opened_) marcher.freeze(0, "the disturbance has opened the contact");
     const auto third = static_cast<std::size_t>(std::min(2LL, 3 * marcher.step() / steps_));
     for (int j = 0; j < marcher.slot_count(); ++j) {
       const double* x = marcher.slot(j);
-      for (Eigen::Index i = 0; i < rest_.size(); ++i)
-        difference_[i] = x[i * marcher.width()] - (j == 0 ? rest_[i] : 0.0);
+      for (Eigen::Index i = 0; i < column_.size(); ++i) column_[i] = x[i * marcher.width()];
       double& elastic = largest_[third][2 * static_cast<std::size_t>(j)];
       double& kinetic = largest_[third][2 * static_cast<std::size_t>(j) + 1];
-      elastic = std::max(elastic, stiffness_(difference_.data()));
-      kinetic = std::max(kinetic, mass_(difference_.data()));
+      elastic = std::max(elastic, stiffness_(column_.data()));
+      kinetic = std::max(kinetic, mass_(column_.data()));
     }
   }
 
@@ -87,9 +77,7 @@ class NormWatch final : public StepObserver {
 
  private:
   QuadraticForm mass_, stiffness_;
-  VectorXd rest_, difference_;
-  std::vector<int> held_;
-  bool opened_ = false;
+  VectorXd column_;
   long long steps_;
   std::array<std::vector<double>, 3> largest_;  // per slot: in K, in M
 };
@@ -269,46 +257,7 @@ ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& proble
   auto program = compiled(bare, plan, h, std::make_unique<NoContact>(), std::move(lane), horizon);
   if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
   Marcher marcher(std::move(std::get<Program>(program)));
-  NormWatch watch(marcher, VectorXd::Zero(marcher.program().model->rows()), horizon.steps);
-  return march(marcher, watch, horizon);
-}
-
-ObservedOrRefusal observe_held(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                               std::unique_ptr<ContactLaw> law, const Parameters& parameters, const ClosedSet& set,
-                               const Excitation& start, const Horizon& horizon) {
-  const LinearLaw linear = linear_law(*law, problem->points(), parameters);
-  if (linear.evaluation)
-    for (const Stage& stage : plan.stages)
-      if (const auto& compliance = stage.at(*linear.evaluation); compliance && compliance->effort.size() > 1)
-        return Refusal{"a law that weights past efforts begins a held motion with a blow"};
-  const auto points = static_cast<Eigen::Index>(set.points.size());
-  MatrixXd rows(points, problem->dofs());
-  for (Eigen::Index i = 0; i < points; ++i)
-    rows.row(i) = Eigen::RowVectorXd(problem->contact.row(set.points[static_cast<std::size_t>(i)]));
-  const Eigen::LDLT<MatrixXd> stiffness{MatrixXd(problem->stiffness)};
-  if (!stiffness.isPositive() || stiffness.vectorD().minCoeff() <= 1e-14 * stiffness.vectorD().maxCoeff())
-    return Refusal{"a free structure has no rest against a stop"};
-
-  const auto bare = without_loads(*problem);
-  LaneSpec lane = scene_lane(*bare, parameters);
-  const VectorXd rest = stiffness.solve(rows.transpose() * VectorXd::Ones(points));
-  const double spring = linear.stiffness ? 1 / *linear.stiffness : 0.0;
-  lane.lower.setConstant(-infinity);
-  lane.upper.setConstant(infinity);
-  for (Eigen::Index i = 0; i < points; ++i)
-    lane.lower[set.points[static_cast<std::size_t>(i)]] = rows.row(i).dot(rest) + spring;
-  const double energy = 0.5 * rest.dot(MatrixXd(problem->stiffness) * rest);
-  const double share = start.position.size() > 0 ? 1e-6 * std::sqrt(energy) : 0.0;
-  lane.position = rest;
-  lane.velocity.setZero();
-  if (share > 0) {
-    lane.position += share * start.position;
-    lane.velocity = share * start.velocity;
-  }
-  auto program = compiled(bare, plan, h, std::move(law), std::move(lane), horizon);
-  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
-  Marcher marcher(std::move(std::get<Program>(program)));
-  NormWatch watch(marcher, marcher.program().model->to_model(rest), horizon.steps, set.points);
+  NormWatch watch(marcher, horizon.steps);
   return march(marcher, watch, horizon);
 }
 

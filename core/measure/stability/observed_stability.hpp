@@ -53,14 +53,6 @@ struct Horizon {
 ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                const Excitation& start, const Horizon& horizon);
 
-/// The structure pressed against stops at the points of `set` by 1 N each and disturbed from rest by 10⁻⁶ of that
-/// state: a contact that does not open, hence the linear step that StabilityPredictor::closed() speaks of; when it
-/// opens after all the disturbance has grown, and the cell counts as diverged. Refused for free structures, and for
-/// laws that weight past efforts (they begin with a blow).
-ObservedOrRefusal observe_held(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                               std::unique_ptr<ContactLaw> law, const Parameters& parameters, const ClosedSet& set,
-                               const Excitation& start, const Horizon& horizon);
-
 /// The scene itself, impacts and loads included. Growing: at some step the energy exceeds everything that the initial
 /// state and the loads gave by as much again (the scheme's own energy where it has one, plus the springs' of compliant
 /// laws), or the common energy is a thousand times that.

@@ -4,12 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
-#include <ricochet/measure/stability/dense_modes.hpp>
+#include <ricochet/measure/stability/root_collector.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/structure_modes.hpp>
 
 namespace ricochet {
 namespace {
@@ -26,141 +25,7 @@ constexpr double golden = std::numbers::phi - 1;
 // Roots of modes come from 2 × 2 or 3 × 3 matrices and are known to round-off; those of dense steps less well.
 constexpr double modal_marginal = 1e-9, dense_marginal = 1e-7;
 
-// The larger modulus of e^{λh}, mλ² + cλ + k = 0: what time h leaves of the motion; 0 where nothing moves by itself.
-double physical_modulus(double m, double c, double k, double h) {
-  if (m <= 0) return c > 0 ? std::exp(-k * h / c) : 0.0;
-  const double discriminant = c * c - 4 * m * k;
-  if (discriminant < 0) return std::exp(-0.5 * c * h / m);
-  const double sum = c + std::sqrt(discriminant);
-  return sum > 0 ? std::exp(-2 * k * h / sum) : 1.0;
-}
-
-std::string root_text(std::complex<double> r) {
-  const double near = 1e-6;
-  if (std::abs(r - 1.0) < near) return "root +1";
-  if (std::abs(r + 1.0) < near) return "root −1";
-  if (std::abs(r.real()) < near) return "roots ±i";
-  return fmt::format("roots of modulus 1 at ±{:.4g}°", std::abs(std::arg(r)) * 180 / std::numbers::pi);
-}
-
 }  // namespace
-
-/// Modes of M φ = μ K φ, slowest first, those of Ker M last.
-struct StabilityPredictor::Modes {
-  MatrixXd shapes;  // one column per mode
-  VectorXd mass, stiffness;
-  int regular = 0;  // modes with mass
-  int size() const { return static_cast<int>(mass.size()); }
-  double pulsation(int i) const { return i < regular ? std::sqrt(std::max(0.0, stiffness[i] / mass[i])) : 0.0; }
-  std::string name(int i) const {
-    if (i >= regular) return "the kernel of the mass";
-    return fmt::format("mode {} of {} ({:.4g} rad/s)", i + 1, regular, pulsation(i));
-  }
-
-  Modes(const MatrixXd& M, const MatrixXd& K, int kernel, bool free) {
-    const Index n = M.rows();
-    const Eigen::LLT<MatrixXd> regular_mass(M);
-    if (kernel == 0 && regular_mass.info() == Eigen::Success) {
-      // The fast modes, which limit steps, are the accurate ones here.
-      const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K, M);
-      shapes = eigen.eigenvectors();
-      stiffness = eigen.eigenvalues().cwiseMax(0.0);
-      if (free)
-        for (double& k : stiffness)
-          if (k < 1e-11 * stiffness.maxCoeff()) k = 0;
-      mass = VectorXd::Ones(n);
-      regular = static_cast<int>(n);
-      return;
-    }
-    // (K + σM) is definite whenever M and K share no kernel.
-    const double shift = free ? std::max(K.trace(), 1e-300) / M.trace() / static_cast<double>(n * n) : 0.0;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(M, K + shift * M);
-    shapes = eigen.eigenvectors().rowwise().reverse();
-    mass = eigen.eigenvalues().reverse().cwiseMax(0.0);
-    regular = static_cast<int>(n) - kernel;
-    mass.tail(kernel).setZero();
-    stiffness = VectorXd::Ones(n) - shift * mass;
-    for (double& k : stiffness)
-      if (k < 1e-11) k = 0;
-  }
-};
-
-// Gathers the roots of a step: the largest, and those that ought not to be marginal.
-class StabilityPredictor::Collector {
- public:
-  Collector(const Damping& damping, double h, Detail detail) : damping_(damping), h_(h), detail_(detail) {}
-
-  bool full() const { return detail_ == Detail::full; }
-  double h() const { return h_; }
-  const Damping& damping() const { return damping_; }
-  void largest(const Root& root, double pulsation, bool on_kernel, const std::string& mode) {
-    const double size = std::abs(root.value);
-    // Of equal moduli the first is told: slow modes of an undamped structure all have modulus one.
-    if (size <= spectrum.radius * (1 + 1e-12)) return;
-    spectrum.radius = size;
-    spectrum.root = root.value;
-    spectrum.pulsation = pulsation;
-    spectrum.on_kernel = on_kernel;
-    spectrum.mode = mode;
-  }
-
-  // A root that lives on a motion (m, c, k), of which `others` roots with this one are on the unit circle.
-  void judge(const Root& root, double m, double c, double k, int others, double tolerance, const std::string& where) {
-    const double size = std::abs(root.value);
-    if (size < 1 - tolerance || size > 1 + growth_tolerance) return;
-    const double physical = physical_modulus(m, c, k, h_);
-    if (physical >= 1 - 10 * tolerance) {
-      // A motion that neither decays nor lacks inertia has two roots on the circle, which meet at +1 as h → 0.
-      if (std::abs(root.value - 1.0) < 1e-3) return;
-      if (!root.defective && others <= 2) return;
-      name(root, where);
-    } else {
-      name(root, where + (m > 0 ? ", though the structure is damped" : ""));
-    }
-  }
-  void name(const Root& root, const std::string& where) {
-    spectrum.grows_linearly = spectrum.grows_linearly || root.defective;
-    for (Finding& finding : findings_)
-      if (finding.where == where && finding.defective == root.defective &&
-          std::min(std::abs(finding.root - root.value), std::abs(finding.root - std::conj(root.value))) < 1e-6) {
-        finding.count += std::abs(finding.root - root.value) < 1e-6;
-        return;
-      }
-    findings_.push_back({root.value, where, root.defective, 1});
-  }
-
-  StepSpectrum finish(const std::string& contact) {
-    spectrum.contact = contact;
-    for (std::size_t i = 0; i < findings_.size(); ++i) {
-      const Finding& finding = findings_[i];
-      if (!spectrum.marginal.empty()) spectrum.marginal += "; ";
-      if (i == most_findings) {
-        spectrum.marginal += fmt::format("and {} more", findings_.size() - i);
-        break;
-      }
-      spectrum.marginal += finding.defective ? "double " : "";
-      spectrum.marginal += root_text(finding.root) + " on " + finding.where;
-      if (finding.count > 1) spectrum.marginal += fmt::format(" ({} times)", finding.count);
-      if (finding.defective) spectrum.marginal += ": grows linearly";
-    }
-    return std::move(spectrum);
-  }
-
-  StepSpectrum spectrum;
-
- private:
-  struct Finding {
-    std::complex<double> root;
-    std::string where;
-    bool defective;
-    int count;
-  };
-  Damping damping_;
-  double h_;
-  Detail detail_;
-  static constexpr std::size_t most_findings = 3;
-  std::vector<Finding> findings_;
-};
 
 LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters) {
   LinearLaw out;
@@ -182,10 +47,7 @@ StabilityPredictor::StabilityPredictor(std::shared_ptr<const SemiDiscrete> probl
                                  problem_->dofs(), most_modal_dofs));
     return;
   }
-  SparseLdlt ldlt;
-  const bool free = !ldlt.factorise(problem_->stiffness);
-  modes_ = std::make_unique<Modes>(dense_mass(problem_->inertia), MatrixXd(problem_->stiffness),
-                                   problem_->inertia.kernel_dimension, free);
+  modes_ = std::make_unique<StructureModes>(open_modes(*problem_));
   choose_sets();
 }
 
@@ -219,11 +81,8 @@ void StabilityPredictor::choose_sets() {
 double StabilityPredictor::first_pulsation() const {
   return modes_ && modes_->regular > 0 ? modes_->pulsation(0) : 0.0;
 }
-double StabilityPredictor::last_pulsation() const {
-  return modes_ && modes_->regular > 0 ? modes_->pulsation(modes_->regular - 1) : 0.0;
-}
 
-Excitation StabilityPredictor::excite(const Modes& modes, double h) const {
+Excitation StabilityPredictor::excite(const StructureModes& modes, double h) const {
   Excitation out{VectorXd::Zero(problem_->dofs()), VectorXd::Zero(problem_->dofs())};
   for (int i = 0; i < modes.size(); ++i) {
     if (modes.stiffness[i] == 0) continue;
@@ -245,12 +104,12 @@ Excitation StabilityPredictor::excitation(double h) const {
 }
 Excitation StabilityPredictor::excitation(const ClosedSet& set, double h) const {
   const bool moves = modes_ && problem_->dofs() > static_cast<int>(set.points.size());
-  return moves ? excite(held_modes(set), h) : Excitation{};
+  return moves ? excite(held_at(set), h) : Excitation{};
 }
 
 // Modes from `first` on, each by itself.
-std::optional<Refusal> StabilityPredictor::add_modes(Collector& found, const StepPlan& plan, const Modes& modes,
-                                                     int first) const {
+std::optional<Refusal> StabilityPredictor::add_modes(RootCollector& found, const StepPlan& plan,
+                                                     const StructureModes& modes, int first) const {
   for (int i = first; i < modes.size(); ++i) {
     const double m = modes.mass[i], k = modes.stiffness[i];
     const double c = found.damping().stiffness * k + found.damping().mass * m;
@@ -269,40 +128,27 @@ std::optional<Refusal> StabilityPredictor::add_modes(Collector& found, const Ste
 
 SpectrumOrRefusal StabilityPredictor::open(const StepPlan& plan, double h, Detail detail) const {
   if (!modes_) return Refusal{notes_.front()};
-  Collector found(problem_->damping, h, detail);
+  RootCollector found(problem_->damping, h, detail);
   if (auto refusal = add_modes(found, plan, *modes_, 0)) return *refusal;
   return found.finish("open");
 }
 
-// The structure with H_J q = 0.
-const StabilityPredictor::Modes& StabilityPredictor::held_modes(const ClosedSet& set) const {
-  std::unique_ptr<Modes>& held = held_modes_[set.points];
-  if (held) return *held;
-  const Index n = problem_->dofs();
-  MatrixXd rows(static_cast<Index>(set.points.size()), n);
-  for (Index i = 0; i < rows.rows(); ++i)
-    rows.row(i) = Eigen::RowVectorXd(problem_->contact.row(set.points[static_cast<std::size_t>(i)]));
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
-  const MatrixXd basis = MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
-  int kernel = 0;
-  if (problem_->inertia.kernel_dimension > 0) {
-    const MatrixXd kernel_rows = rows * mass_kernel(problem_->inertia);
-    kernel = static_cast<int>(kernel_rows.cols() - kernel_rows.colPivHouseholderQr().rank());
+// Computed once for each set that is asked for.
+const StructureModes& StabilityPredictor::held_at(const ClosedSet& set) const {
+  std::unique_ptr<StructureModes>& held = held_modes_[set.points];
+  if (!held) {
+    const bool free = modes_->regular > 0 && modes_->stiffness.head(modes_->regular).minCoeff() == 0;
+    held = std::make_unique<StructureModes>(held_modes(*problem_, set.points, free));
   }
-  const MatrixXd M = basis.transpose() * dense_mass(problem_->inertia) * basis;
-  const MatrixXd K = basis.transpose() * MatrixXd(problem_->stiffness) * basis;
-  const bool free = modes_->regular > 0 && modes_->stiffness.head(modes_->regular).minCoeff() == 0;
-  held = std::make_unique<Modes>(M, K, kernel, free);
-  held->shapes = basis * held->shapes;
   return *held;
 }
 
 SpectrumOrRefusal StabilityPredictor::held(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const {
   const auto points = held_point_map(plan);
   if (!points) return dense(plan, h, set, detail);
-  Collector found(problem_->damping, h, detail);
+  RootCollector found(problem_->damping, h, detail);
   if (problem_->dofs() > static_cast<int>(set.points.size()))
-    if (auto refusal = add_modes(found, plan, held_modes(set), 0)) return *refusal;
+    if (auto refusal = add_modes(found, plan, held_at(set), 0)) return *refusal;
   for (const Root& root : step_roots(in_metres(*points, plan, h, 1), found.full())) {
     found.largest(root, 0, false, "the held points");
     // Held points do not move: no root of theirs has a motion behind it.
@@ -313,7 +159,7 @@ SpectrumOrRefusal StabilityPredictor::held(const StepPlan& plan, double h, const
 
 SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const {
   const Index n = problem_->dofs(), points = static_cast<Index>(set.points.size());
-  Modes modes = *modes_;
+  StructureModes modes = *modes_;
   MatrixXd rows(points, n);
   for (Index i = 0; i < points; ++i)
     rows.row(i) = Eigen::RowVectorXd(problem_->contact.row(set.points[static_cast<std::size_t>(i)])) * modes.shapes;
@@ -335,7 +181,7 @@ SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, cons
   const auto map = step_map(problem, plan, {law_.evaluation, law_.stiffness.value_or(0.0)});
   if (const auto* refusal = std::get_if<Refusal>(&map)) return *refusal;
 
-  Collector found(damping, h, detail);
+  RootCollector found(damping, h, detail);
   if (felt < n)
     if (auto refusal = add_modes(found, plan, modes, static_cast<int>(felt))) return *refusal;
   const std::vector<Root> roots =
@@ -390,50 +236,6 @@ SpectrumOrRefusal StabilityPredictor::worst_closed(const StepPlan& plan, double 
   }
   if (worst) return *worst;
   return refused.value_or(Refusal{notes_.empty() ? "no contact to close" : notes_.front()});
-}
-
-StepLimit step_limit(const std::function<SpectrumOrRefusal(double h)>& spectrum, const std::vector<double>& steps) {
-  StepLimit limit;
-  const auto at = [&](double h) -> std::optional<StepSpectrum> {
-    auto found = spectrum(h);
-    if (auto* known = std::get_if<StepSpectrum>(&found)) return std::move(*known);
-    return std::nullopt;
-  };
-  std::optional<double> stable, unstable;
-  for (const double h : steps) {
-    const auto found = at(h);
-    if (!found) continue;
-    if (!found->stable()) {
-      unstable = h;
-      limit.beyond = found;
-      break;
-    }
-    stable = h;
-  }
-  if (!unstable) return limit;
-  for (double h = *unstable; !stable && h > 1e-6 * steps.front();) {
-    limit.below_range = true;
-    h /= 4;
-    const auto found = at(h);
-    if (!found) return limit;
-    if (found->stable())
-      stable = h;
-    else
-      unstable = h, limit.beyond = found;
-  }
-  if (!stable) return limit;
-  double low = *stable, high = *unstable;
-  while (high > low * (1 + 1e-6)) {
-    const double middle = std::sqrt(low * high);
-    const auto found = at(middle);
-    if (!found) break;
-    if (found->stable())
-      low = middle;
-    else
-      high = middle, limit.beyond = found;
-  }
-  limit.step = low;
-  return limit;
 }
 
 }  // namespace ricochet

@@ -17,6 +17,9 @@
 /// closed on both sides, before anything runs.
 namespace ricochet {
 
+struct StructureModes;
+class RootCollector;
+
 /// Growth per step below which a step counts as stable: a double root is known to the square root of round-off only,
 /// and 10⁶ steps of such a growth are needed to see it.
 constexpr double growth_tolerance = 1e-6;
@@ -88,25 +91,23 @@ class StabilityPredictor {
   Excitation excitation(double h) const;
   Excitation excitation(const ClosedSet& set, double h) const;
 
-  /// First and last pulsation of the structure, contact open (rad/s); 0 where not known.
+  /// First pulsation of the structure, contact open (rad/s); 0 where not known.
   double first_pulsation() const;
-  double last_pulsation() const;
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  struct Modes;
-  class Collector;
   void choose_sets();
-  const Modes& held_modes(const ClosedSet& set) const;
-  Excitation excite(const Modes& modes, double h) const;
-  std::optional<Refusal> add_modes(Collector& found, const StepPlan& plan, const Modes& modes, int first) const;
+  const StructureModes& held_at(const ClosedSet& set) const;
+  Excitation excite(const StructureModes& modes, double h) const;
+  std::optional<Refusal> add_modes(RootCollector& found, const StepPlan& plan, const StructureModes& modes,
+                                   int first) const;
   SpectrumOrRefusal held(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;
   SpectrumOrRefusal dense(const StepPlan& plan, double h, const ClosedSet& set, Detail detail) const;
 
   std::shared_ptr<const SemiDiscrete> problem_;
   LinearLaw law_;
-  std::unique_ptr<Modes> modes_;
-  mutable std::map<std::vector<int>, std::unique_ptr<Modes>> held_modes_;  // by points, once asked for
+  std::unique_ptr<StructureModes> modes_;
+  mutable std::map<std::vector<int>, std::unique_ptr<StructureModes>> held_modes_;  // by points, once asked for
   std::vector<ClosedSet> sets_;
   std::vector<std::string> notes_;
 };

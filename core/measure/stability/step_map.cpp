@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
 namespace ricochet {
@@ -195,10 +195,10 @@ std::vector<Root> step_roots(const MatrixXd& matrix, bool vectors) {
   if (!matrix.allFinite()) return {};
   MatrixXd A = matrix;
   const Eigen::VectorXd scale = balance(A);
-  const Eigen::EigenSolver<MatrixXd> solver(A, vectors);
-  if (solver.info() != Eigen::Success) return {};
-  const Eigen::VectorXcd values = solver.eigenvalues();
-  const Eigen::MatrixXcd all = vectors ? Eigen::MatrixXcd(solver.eigenvectors()) : Eigen::MatrixXcd();
+  const GeneralModes modes = general_modes(A, vectors ? EigenVectors::wanted : EigenVectors::none);
+  if (!modes.found) return {};
+  const Eigen::VectorXcd& values = modes.values;
+  const Eigen::MatrixXcd& all = modes.vectors;
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
   std::stable_sort(order.begin(), order.end(),
@@ -224,7 +224,7 @@ std::vector<Root> step_roots(const MatrixXd& matrix, bool vectors) {
         for (std::size_t j = 0; j < cluster.size(); ++j)
           space.col(static_cast<Index>(j)) = all.col(cluster[j]).normalized();
         // Eigenvectors of a Jordan block of two come out parallel up to the square root of round-off.
-        const Eigen::VectorXd sizes = space.jacobiSvd().singularValues();
+        const Eigen::VectorXd sizes = singular_values(space);
         root.defective = sizes[sizes.size() - 1] < 1e-4 * sizes[0];
       }
     }

@@ -107,8 +107,8 @@ Interval block_bootstrap_mean(std::span<const double> series, double confidence,
   double open = boost::math::quantile(boost::math::students_t(std::max(1.0, n / block - 1)), 1 - tail) /
                 boost::math::quantile(boost::math::normal(), 1 - tail);
   if (resampled > 0 && variance > n * resampled) open *= std::sqrt(variance / (n * resampled));
-  return {mean, mean + open * std::min(0.0, sorted_quantile(means, tail)),
-          mean + open * std::max(0.0, sorted_quantile(means, 1 - tail))};
+  return {mean, mean + open * std::min(0.0, quantile(means, tail)),
+          mean + open * std::max(0.0, quantile(means, 1 - tail))};
 }
 
 }  // namespace ricochet

@@ -118,33 +118,6 @@ std::vector<double> shares_of(const std::vector<double>& variances, const std::v
   return out;
 }
 
-std::string spoken(const std::string& factor) {
-  if (factor == "mass") return "the mass matrix";
-  if (factor == "contact") return "the contact law";
-  if (factor == "time") return "the time scheme";
-  if (factor == "step") return "the step";
-  if (factor == "elements") return "the mesh";
-  return factor;
-}
-
-std::string percent(double share) {
-  return share < 0.095 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
-}
-
-/// What a share is of: `members` are factor names, none for what lies beyond triples.
-std::string source(const std::vector<std::string>& members, const std::string& first) {
-  if (members.empty()) return "interactions of more than three choices";
-  if (members.size() == 1) return spoken(members[0]);
-  std::string others;
-  const bool own = std::find(members.begin(), members.end(), first) != members.end();
-  for (const std::string& member : members) {
-    if (member == first) continue;
-    const bool last = member == (members.back() == first ? members[members.size() - 2] : members.back());
-    others += (others.empty() ? "" : last ? " and " : ", ") + spoken(member);
-  }
-  return (own ? "its interaction with " : "the interaction of ") + others;
-}
-
 /// One number per combination of the active factors' levels.
 struct Table {
   FactorialTable shape;
@@ -245,38 +218,17 @@ void set_interval(EffectShare& out, double share, const std::vector<double>& sor
   out.high = std::max(share, tidy(at(0.975)));
 }
 
-/// A share with the names of its factors.
-struct Named {
-  double share = 0;
-  std::vector<std::string> members;
-};
-
-std::string sentence_of(std::vector<Named> shares, const std::string& measure, bool log) {
-  std::stable_sort(shares.begin(), shares.end(), [](const Named& a, const Named& b) { return a.share > b.share; });
-  const std::string first = shares[0].members.size() == 1 ? shares[0].members[0] : "";
-  std::string out = fmt::format("{} of the spread of {}{} comes from {}", percent(shares[0].share), measure,
-                                log ? " (on a logarithmic scale)" : "", source(shares[0].members, ""));
-  for (std::size_t k = 1; k < std::min<std::size_t>(shares.size(), 3); ++k)
-    if (shares[k].share >= 0.01)
-      out += fmt::format(", {} from {}", percent(shares[k].share), source(shares[k].members, first));
-  return out + ".";
-}
-
 }  // namespace
 
-Effects effects_of(const std::string& measure, const std::vector<Factor>& factors, const Values& values,
-                   const EffectOptions& options) {
+Effects effects_of(const std::vector<Factor>& factors, const Values& values, const EffectOptions& options) {
   for (const Factor& factor : factors) {
     if (factor.level.size() != values.size()) throw std::invalid_argument("effects: one level per cell and factor");
     for (const std::size_t l : factor.level)
       if (l >= factor.levels.size()) throw std::invalid_argument("effects: a level that its factor does not have");
   }
   Effects out;
-  std::string name = measure;
-  std::replace(name.begin(), name.end(), '_', ' ');
   const auto without_shares = [&](const std::string& reason) {
     out.notes.push_back(reason);
-    out.sentence = fmt::format("No shares for {}: {}.", name, reason);
     for (EffectShare& share : out.shares)
       if (share.reason.empty()) share.reason = reason;
     return out;
@@ -317,27 +269,23 @@ Effects effects_of(const std::string& measure, const std::vector<Factor>& factor
   const std::vector<double> shares =
       shares_of(table.shape.variances(table.values, table.shape.uniform()), sets, table.repeats);
   const auto draws = bootstrap(table, sets, options);
-  std::vector<Named> named;
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    Named one{shares[k], {}};
+    std::vector<std::string> members;
     for (std::size_t f = 0; f < sizes.size(); ++f)
-      if (sets[k] >> f & 1) one.members.push_back(factors[active.factors[f]].name);
-    const bool alone = one.members.size() == 1;
-    if (!alone) out.shares.push_back({fmt::format("{}", fmt::join(one.members, " × "))});
+      if (sets[k] >> f & 1) members.push_back(factors[active.factors[f]].name);
+    const bool alone = members.size() == 1;
+    if (!alone) out.shares.push_back({fmt::format("{}", fmt::join(members, " × "))});
     set_interval(alone ? out.shares[active.factors[k]] : out.shares.back(), shares[k], draws[k]);
-    named.push_back(std::move(one));
   }
   if (sizes.size() > highest_order) {
     out.shares.push_back({"higher"});
     set_interval(out.shares.back(), shares[sets.size()], draws[sets.size()]);
-    named.push_back({shares[sets.size()], {}});
   }
   if (table.repeats > 0) {
     out.shares.push_back({"repeats"});
     set_interval(out.shares.back(), shares.back(), draws.back());
     out.notes.push_back("cells that the factors do not tell apart differ: their means are taken, the rest is repeats");
   }
-  out.sentence = sentence_of(std::move(named), name, out.log);
   return out;
 }
 

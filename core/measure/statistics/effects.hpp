@@ -58,7 +58,6 @@ struct Effects {
   bool log = false;                 ///< shares of log10 f: all f > 0, over more than two decades
   std::size_t combinations = 0, missing = 0;
   std::vector<std::string> notes;  ///< what a reader must know: missing combinations, levels without a value, …
-  std::string sentence;            ///< to quote: "87 % of the spread of energy end comes from the mass matrix, …"
 };
 
 struct EffectOptions {
@@ -69,7 +68,7 @@ struct EffectOptions {
 /// Shares of a measure. values[c] belongs to the cell with levels factors[k].level[c]; nothing (or what is not finite)
 /// is a missing value. Several cells of one combination are averaged, and what they differ by is the share "repeats".
 /// Throws std::invalid_argument when sizes do not agree.
-Effects effects_of(const std::string& measure, const std::vector<Factor>& factors,
-                   const std::vector<std::optional<double>>& values, const EffectOptions& options = {});
+Effects effects_of(const std::vector<Factor>& factors, const std::vector<std::optional<double>>& values,
+                   const EffectOptions& options = {});
 
 }  // namespace ricochet

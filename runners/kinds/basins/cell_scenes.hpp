@@ -4,7 +4,7 @@
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
-#include "runners/study/with_parameter.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
 

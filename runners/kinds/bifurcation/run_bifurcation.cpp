@@ -15,9 +15,9 @@
 #include "runners/kinds/sweep/orbit_portraits.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/random_states.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,15 +1,10 @@
 #pragma once
-#include "runners/kinds/comparison/references.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include <ricochet/contract/registry.hpp>
+
+#include "runners/march/case_plan.hpp"
+#include "runners/march/motion_shelf.hpp"
 
 namespace ricochet {
-
-/// Where a case keeps what would be lost if it were killed, and says how far it is.
-struct CaseDesk {
-  MotionShelf shelf;  ///< bytes by key; empty bytes forget a key
-  std::string key;    ///< of this case and everything its bits depend on
-  int workers = 1;    ///< threads that this case may use
-};
 
 /// What would run for a case of kind `bifurcation`.
 CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry);

@@ -11,22 +11,11 @@
 #include <vector>
 
 #include "runners/march/case_watch.hpp"
+#include "runners/march/motion_shelf.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
-
-/// Where computed references outlive the program: find(key) gives what keep(key, content) once stored, or "".
-struct MotionShelf {
-  std::function<std::string(const std::string& key)> find;
-  std::function<void(const std::string& key, const std::string& content)> keep;
-  /// Shows what a case under way has so far; empty where nobody looks.
-  std::function<void(const CaseRecord&)> show;
-  /// A case in whose stead something is computed that others need too: what its plugins do wrong is its own fault.
-  std::function<TicketPointer(const StudyCase&)> ticket;
-  /// Whether a case has failed: nothing is computed with its methods for others.
-  std::function<bool(const std::string& id)> failed;
-};
 
 /// A reference as cases are compared with it.
 struct KnownReference {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
 namespace {

@@ -5,7 +5,7 @@
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
-#include "runners/study/with_parameter.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
 namespace {

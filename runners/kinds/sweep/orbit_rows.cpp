@@ -11,8 +11,8 @@
 #include <span>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/study/with_parameter.hpp"
 
 namespace ricochet {
 namespace {

@@ -260,7 +260,7 @@ TEST_CASE("settling: agrees with the recurrence of what follows, and a chaotic o
   CHECK(recurrence(after, 2 * tolerance).period == 8);
 }
 
-TEST_CASE("settling: saved and loaded, it goes on as if it had not stopped; adding allocates nothing") {
+TEST_CASE("settling: a copy goes on as if it had not stopped; adding allocates nothing") {
   Settling whole({1.0, 3.0}, tolerance, 20), parts = whole;
   const auto row = [](int k) { return std::vector<double>{std::pow(0.7, k) + k % 6, 2.0 * (k % 3)}; };
   for (int k = 0; k < 80; ++k) {
@@ -269,14 +269,13 @@ TEST_CASE("settling: saved and loaded, it goes on as if it had not stopped; addi
     const bool one = whole.add(x.data());
     CHECK(allocations() == before);
     CHECK(parts.add(x.data()) == one);
-    if (k % 7 == 0) parts = Settling::load(parts.save());
+    // Plain data: what a checkpoint copies is all there is.
+    if (k % 7 == 0) parts = Settling(parts);
   }
   CHECK(whole.period() == 6);
-  CHECK(parts.save() == whole.save());
-  std::vector<double> torn = whole.save();
-  torn.pop_back();
-  CHECK_THROWS_AS(Settling::load(torn), std::invalid_argument);
-  CHECK_THROWS_AS(Settling::load({}), std::invalid_argument);
+  CHECK(parts.ring == whole.ring);
+  CHECK(parts.repeats == whole.repeats);
+  CHECK(parts.periods == whole.periods);
 }
 
 TEST_CASE("clouds: the same whatever their order, up to the tolerance in each direction") {

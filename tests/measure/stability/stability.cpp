@@ -3,7 +3,9 @@
 
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
+#include <ricochet/measure/stability/structure_modes.hpp>
 
+#include "tests/amplification_roots.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -47,6 +49,11 @@ StepSpectrum known(const SpectrumOrRefusal& spectrum) {
   INFO((std::holds_alternative<Refusal>(spectrum) ? std::get<Refusal>(spectrum).sentence : ""));
   REQUIRE(std::holds_alternative<StepSpectrum>(spectrum));
   return std::get<StepSpectrum>(spectrum);
+}
+
+double last_pulsation(const SemiDiscrete& problem) {
+  const StructureModes modes = open_modes(problem);
+  return modes.pulsation(modes.regular - 1);
 }
 
 LinearProblem nodal(const SemiDiscrete& problem, const std::vector<int>& closed) {
@@ -112,6 +119,12 @@ VectorXd state(const Marcher& marcher, int lane, Eigen::Index size) {
   return x;
 }
 
+// Dumont–Paoli with β < ¼ has no step on the kernel of a singular mass; all others run.
+bool refused(const Choice& mass, const Choice& time) {
+  return mass.name == "singular" && time.name == "newmark-dumont-paoli" &&
+         std::get<double>(time.values.at("beta")) < 0.25;
+}
+
 const std::vector<Choice>& schemes() {
   static const std::vector<Choice> all = {dumont_paoli(0),
                                           dumont_paoli(0.25),
@@ -134,7 +147,9 @@ TEST_CASE("the step matrix is the step that is marched, contact open") {
         CompileOptions nodal_band;
         nodal_band.kind = OperatorKind::band;
         auto program = compiled(problem, {mass, {"none"}, time}, h, nodal_band);
-        if (std::holds_alternative<Refusal>(program)) continue;
+        INFO(mass.name << " " << time.name << " " << alpha);
+        REQUIRE(std::holds_alternative<Refusal>(program) == refused(mass, time));
+        if (refused(mass, time)) continue;
         Marcher made(std::move(std::get<Program>(program)));
         made.start();
         const auto map = step_map(nodal(*problem, {}), made.program().plan, {});
@@ -143,7 +158,6 @@ TEST_CASE("the step matrix is the step that is marched, contact open") {
         VectorXd x = state(made, 0, A.rows());
         made.march(3);
         for (int k = 0; k < 3; ++k) x = A * x;
-        INFO(mass.name << " " << time.name << " " << alpha);
         const VectorXd marched = state(made, 0, A.rows());
         // Accelerations lose 1/h² of round-off against positions: each slot is compared in its own size.
         const auto n = A.rows() / made.slot_count();
@@ -156,6 +170,7 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
   // A stop pressed far into the structure holds it; two motions that never leave it differ by a solution of the linear
   // problem, past efforts of the first step included, which are zero for both.
   const double push = 0.5, h = 2e-5;
+  int compared = 0;
   for (const Choice& contact :
        {Choice{"signorini"}, penalty(1e5, "implicit"), penalty(1e5, "averaged"), penalty(1e3, "explicit")})
     for (const Choice& time : schemes())
@@ -193,6 +208,7 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         const MatrixXd& A = std::get<MatrixXd>(map);
         const bool starts_in_contact = !made.program().plan.start.empty() && made.program().start[0].reads_contact;
         if (starts_in_contact) continue;  // its efforts would be the past of the first step
+        ++compared;
         VectorXd x = state(made, 1, A.rows()) - state(made, 0, A.rows());
         made.march(4);
         for (int k = 0; k < 4; ++k) x = A * x;
@@ -203,9 +219,11 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         for (int j = 0; j < made.slot_count(); ++j)
           CHECK((marched - x).segment(j * n, n).norm() <= 1e-5 * x.segment(j * n, n).norm());
       }
+  CHECK(compared == 99);
 }
 
 TEST_CASE("mode by mode and all at once give the same radius") {
+  int closed_sets = 0;
   for (const Choice& mass : {Choice{"consistent"}, Choice{"singular", {{"velocity", std::string("P0")}}}})
     for (const double alpha : {0.0, 1e-4})
       for (const Choice& time : schemes())
@@ -213,7 +231,8 @@ TEST_CASE("mode by mode and all at once give the same radius") {
           const auto problem = problem_of(damped_scene(alpha, StopsSpec::Place::nodes), 4, mass);
           const auto facts = problem_facts(*problem, *make(registry().contact("signorini"), {"signorini"}));
           const auto made = plan_of(time, h, facts);
-          if (std::holds_alternative<Refusal>(made)) continue;
+          REQUIRE(std::holds_alternative<Refusal>(made) == refused(mass, time));
+          if (refused(mass, time)) continue;
           const StepPlan& step = std::get<StepPlan>(made);
           const auto predicted = predictor(problem, {"signorini"});
           const auto dense = [&](const std::vector<int>& closed) {
@@ -229,23 +248,27 @@ TEST_CASE("mode by mode and all at once give the same radius") {
           const double near = 2e-4;
           CHECK(known(predicted.open(step, h)).radius == Approx(dense({})).epsilon(near));
           if (step.stages[0].impact->value.z == 0) continue;
-          for (const ClosedSet& set : predicted.sets())
+          for (const ClosedSet& set : predicted.sets()) {
             CHECK(known(predicted.closed(step, h, set)).radius == Approx(dense(set.points)).epsilon(near));
+            ++closed_sets;
+          }
         }
+  CHECK(closed_sets == 99);
 }
 
 TEST_CASE("central differences need h below 0.0334014 ℓ² √(ρS/EI)") {
   const SceneSpec scene = working_set();
   const double wave = std::sqrt(282.8125);  // √(EI/ρS) of the working set
   for (const int elements : {10, 40}) {
-    const auto predicted = predictor(problem_of(scene, elements, {"consistent"}), {"signorini"});
+    const auto problem = problem_of(scene, elements, {"consistent"});
+    const auto predicted = predictor(problem, {"signorini"});
     const double length = 1.501 / elements, exact = 0.0334014193 * length * length / wave;
     const StepLimit limit = open_limit(predicted, dumont_paoli(0), decades(1e-8, 1e-3));
     REQUIRE(limit.step);
     // The constant is that of a long beam; 10 elements miss it by 1.6e-6. Bisection adds 1e-6.
     CHECK(*limit.step == Approx(exact).epsilon(5e-6));
     CHECK(limit.beyond->mode == "mode " + std::to_string(2 * elements) + " of " + std::to_string(2 * elements) + " (" +
-                                    fmt::format("{:.4g}", predicted.last_pulsation()) + " rad/s)");
+                                    fmt::format("{:.4g}", last_pulsation(*problem)) + " rad/s)");
     CHECK(limit.beyond->root.real() < -1);
     CHECK_FALSE(limit.below_range);
     // Unconditionally stable schemes have none.
@@ -259,14 +282,15 @@ TEST_CASE("central differences need h below 0.0334014 ℓ² √(ρS/EI)") {
 }
 
 TEST_CASE("each scheme's limit is what it declares, over the largest pulsation of the structure") {
-  const auto predicted = predictor(problem_of(working_set(), 6, {"consistent"}), {"signorini"});
+  const auto problem = problem_of(working_set(), 6, {"consistent"});
+  const auto predicted = predictor(problem, {"signorini"});
   for (const double beta : {0.0, 0.1, 0.2}) {
     for (const Choice& time : {dumont_paoli(beta), Choice{"newmark", {{"beta", beta}}}}) {
       const double declared = *plan(time, 1e-5).facts.stability_limit;
       const StepLimit limit = open_limit(predicted, time, decades(1e-6, 1e-2));
       REQUIRE(limit.step);
       // Bisection to 1e-6.
-      CHECK(*limit.step == Approx(declared / predicted.last_pulsation()).epsilon(3e-6));
+      CHECK(*limit.step == Approx(declared / last_pulsation(*problem)).epsilon(3e-6));
     }
   }
 }
@@ -391,7 +415,7 @@ TEST_CASE("a bar that nothing holds keeps its step, one mode of it drifting") {
   const auto predicted = predictor(problem, {"signorini"});
   CHECK(predicted.first_pulsation() == 0);
   // Consistent linear elements: λ_max = 12 EA/(ρA ℓ²).
-  CHECK(predicted.last_pulsation() == Approx(std::sqrt(12.0) * elements).epsilon(1e-10));
+  CHECK(last_pulsation(*problem) == Approx(std::sqrt(12.0) * elements).epsilon(1e-10));
   const double h = 1e-3;
   for (const Choice& time : {dumont_paoli(0.25), Choice{"newmark", {}}, Choice{"moreau-jean", {}}}) {
     const StepSpectrum open = known(predicted.open(plan(time, h), h));

@@ -259,6 +259,7 @@ TEST_CASE("the tip stays between its stops, and a stop only pushes") {
   REQUIRE(motion.events.size() > 8);
   std::size_t event = 0;
   int side = 0;
+  bool flown = false, held = false;
   for (std::size_t i = 1; i < grid.times.size(); ++i) {
     bool changed = false;
     for (; event < motion.events.size() && motion.events[event].time <= grid.times[i]; ++event) {
@@ -274,7 +275,10 @@ TEST_CASE("the tip stays between its stops, and a stop only pushes") {
     const double push = motion.impulse[i] - motion.impulse[i - 1];
     if (side == 0) CHECK(push == 0);
     if (side != 0) CHECK(push * -side > -1e-13);
+    (side == 0 ? flown : held) = true;
   }
+  CHECK(flown);
+  CHECK(held);
   if (!forced)
     for (std::size_t i = 1; i < grid.times.size(); ++i) CHECK(motion.energy[i] <= motion.energy[i - 1]);
 }

@@ -75,13 +75,13 @@ int run_here(const Bad& bad, const ScratchFolder& scratch, bool fresh = false) {
     call(one, "plan");
     return CasePlan{};
   };
-  runner.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
+  runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
     ::usleep(10000);
     if (stop) throw Interrupted{};
     call(one, "solve");
     return fake_result(one);
   };
-  runner.time = nullptr;
+  runner.cases.time = nullptr;
   write_text(scratch / "plugin.so", bad.library);
   runner.libraries = [&](const StudyCase&) { return std::vector<std::filesystem::path>{scratch / "plugin.so"}; };
   runner.out = std::fopen((scratch / "out.txt").c_str(), "w");

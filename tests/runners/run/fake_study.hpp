@@ -57,7 +57,7 @@ class FakeRun {
   explicit FakeRun(const ScratchFolder& scratch) : FakeRun(scratch.path()) {}
   explicit FakeRun(const std::filesystem::path& scratch) : said_(scratch / "said.txt"), told_(scratch / "told.txt") {
     runner.plan = [](const ricochet::StudyCase&) { return ricochet::CasePlan{}; };
-    runner.run = [this](const ricochet::StudyCase& one, const std::atomic<bool>&) {
+    runner.cases.run = [this](const ricochet::StudyCase& one, const std::atomic<bool>&) {
       ++runs;
       return fake_result(one);
     };

@@ -44,7 +44,7 @@ int child_run(const std::string& scenario, const std::filesystem::path& out) {
   std::atomic<int> begun{0};
   FakeRun fake(out.parent_path());  // the parent's folder: a killed child removes nothing
   StudyRunner runner = fake.runner;
-  runner.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
+  runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>& stop) {
     constexpr int before = 5;
     if ((scenario == "hang" || scenario == "stubborn") && ++begun > before)
       for (;;) {

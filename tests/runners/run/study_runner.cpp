@@ -30,7 +30,7 @@ TEST_CASE("run: every file of a study is there, and the exit code is 0") {
 TEST_CASE("run: what was finished is not run again, whatever its status, until --fresh") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
-  run.runner.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     ++run.runs;
     CaseRecord record = fake_result(one);
     record.status = one.mass.name == "odd" ? "diverged" : "done";
@@ -95,7 +95,7 @@ TEST_CASE("run: excluded cases are rows with their reason, and nothing runs for 
 TEST_CASE("run: what a case throws is its row, and the others go on") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
-  run.runner.run = [](const StudyCase& one, const std::atomic<bool>&) {
+  run.runner.cases.run = [](const StudyCase& one, const std::atomic<bool>&) {
     if (one.id.back() == '0') throw InputError("/scene/stops/lower", "the stops cross at x = 0.3");
     if (one.id.back() == '1') throw std::runtime_error("out of luck");
     if (one.id.back() == '2') throw std::bad_alloc();
@@ -124,7 +124,7 @@ TEST_CASE("run: longest predicted first, on one thread as predicted") {
     plan.predicted_seconds = one.id.back() == '2' ? 10 : 1 + (one.id.back() - '0');
     return plan;
   };
-  run.runner.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     order.push_back(one.id.substr(9));
     return fake_result(one);
   };
@@ -144,7 +144,7 @@ TEST_CASE("run: never more cases at once than --jobs") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
   std::atomic<int> at_once{0}, most{0};
-  run.runner.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     const int now = ++at_once;
     for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
     }
@@ -160,8 +160,8 @@ TEST_CASE("run: cases on several threads show what they have so far, and none fa
   const ScratchFolder scratch;
   FakeRun run(scratch);
   MotionShelf shelf;
-  run.runner.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
-  run.runner.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+  run.runner.cases.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     for (int k = 0; k < 10; ++k) {
       CaseRecord partial = fake_result(one);
       partial.id = one.id;

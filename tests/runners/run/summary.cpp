@@ -24,14 +24,16 @@ CaseRecord ended(const char* status, const char* reason) {
 }  // namespace
 
 TEST_CASE("summary: outcomes in words") {
-  CHECK(outcome_text(done(12.3, 11.9, 14)) == "done: energy 12.3 J → 11.9 J (−3.3 %), 14 impacts, 0.421 µs/step");
-  CHECK(outcome_text(done(2, 3, 1)) == "done: energy 2 J → 3 J (+50.0 %), 1 impact, 0.421 µs/step");
-  CHECK(outcome_text(done(1, 1 - 1e-9, 0)) == "done: energy 1 J → 1 J (−1.0e-07 %), 0 impacts, 0.421 µs/step");
-  CHECK(outcome_text(done(2, 2, 0)) == "done: energy 2 J → 2 J (unchanged), 0 impacts, 0.421 µs/step");
-  CHECK(outcome_text(done(0, 2, 0)) == "done: energy 0 J → 2 J, 0 impacts, 0.421 µs/step");
-  CHECK(outcome_text(ended("done", "")) == "done");
-  CHECK(outcome_text(ended("refused", "β = 0 leaves S singular")) == "refused: β = 0 leaves S singular");
-  CHECK(outcome_text(ended("diverged", "at t = 0.1 s")) == "diverged: at t = 0.1 s");
+  CHECK(outcome_text(done(12.3, 11.9, 14), "trajectory") ==
+        "done: energy 12.3 J → 11.9 J (−3.3 %), 14 impacts, 0.421 µs/step");
+  CHECK(outcome_text(done(2, 3, 1), "trajectory") == "done: energy 2 J → 3 J (+50.0 %), 1 impact, 0.421 µs/step");
+  CHECK(outcome_text(done(1, 1 - 1e-9, 0), "trajectory") ==
+        "done: energy 1 J → 1 J (−1.0e-07 %), 0 impacts, 0.421 µs/step");
+  CHECK(outcome_text(done(2, 2, 0), "trajectory") == "done: energy 2 J → 2 J (unchanged), 0 impacts, 0.421 µs/step");
+  CHECK(outcome_text(done(0, 2, 0), "trajectory") == "done: energy 0 J → 2 J, 0 impacts, 0.421 µs/step");
+  CHECK(outcome_text(ended("done", ""), "trajectory") == "done");
+  CHECK(outcome_text(ended("refused", "β = 0 leaves S singular"), "trajectory") == "refused: β = 0 leaves S singular");
+  CHECK(outcome_text(ended("diverged", "at t = 0.1 s"), "trajectory") == "diverged: at t = 0.1 s");
 }
 
 TEST_CASE("summary: only the axes that vary are shown, aligned whatever the alphabet") {
@@ -65,13 +67,13 @@ TEST_CASE("summary: a stability case whose march contradicts its spectrum is sai
        named_columns({"step", "closed", "behaviour"}),
        {{1e-4, false, "stable"}, {1e-3, false, "unstable"}}}};
   results.cases = {record};
-  CHECK(outcome_text(record) == "done: largest spectral radius 1");
+  CHECK(outcome_text(record, "stability") == "done: largest spectral radius 1");
   CHECK(results_exit_code(results) == 0);
 
   record.tables.front().rows.front()[2] = "diverged";
   record.measures.emplace_back("contradictions", 2);
   results.cases.push_back(record);
-  CHECK(outcome_text(record) ==
+  CHECK(outcome_text(record, "stability") ==
         "done: largest spectral radius 1, unstable at every step marched, spectrum and march disagree without contact "
         "at 2 steps: an error of the method");
   CHECK(totals_text(results) == "2 cases: 2 done; in 1 spectrum and march disagree without contact");

@@ -61,7 +61,7 @@ TEST_CASE("records: cases have case, axes, status, reason, steps, times, then ev
   const std::vector<std::string> first(lines[0].begin(), lines[0].begin() + 10);
   CHECK(first == std::vector<std::string>{"case", "mass", "mass.velocity", "step", "status", "reason", "steps",
                                           "setup_seconds", "run_seconds", "scheme_energy_start"});
-  CHECK(lines[0].size() == 9 + trajectory_measures().size());
+  CHECK(lines[0].size() == 9 + standing_measures("trajectory").size());
   CHECK(lines[1].size() == lines[0].size());
   CHECK(lines[2].size() == lines[0].size());
   CHECK(lines[1][4] == "done");
@@ -151,15 +151,14 @@ TEST_CASE("records: a curve is its columns, and a value that is not finite is em
 
 TEST_CASE("measures: names are unique, units and texts are there") {
   std::vector<std::string> names;
-  for (const auto* list : {&trajectory_measures(), &further_measures()})
-    for (const MeasureInfo& measure : *list) {
-      CHECK(std::find(names.begin(), names.end(), measure.name) == names.end());
-      names.emplace_back(measure.name);
-      CHECK_FALSE(std::string(measure.unit).empty());
-      CHECK(std::string(measure.text).back() == '.');
-      CHECK(measure_info(measure.name) == &measure);
-    }
+  for (const MeasureInfo& measure : all_measures()) {
+    CHECK(std::find(names.begin(), names.end(), measure.name) == names.end());
+    names.emplace_back(measure.name);
+    CHECK_FALSE(std::string(measure.unit).empty());
+    CHECK(std::string(measure.text).back() == '.');
+    CHECK(measure_info(measure.name) == &measure);
+  }
   CHECK(names.front() == "scheme_energy_start");
-  CHECK(trajectory_measures().back().name == std::string("microseconds_per_step"));
+  CHECK(standing_measures("trajectory").back() == "microseconds_per_step");
   CHECK(measure_info("no such measure") == nullptr);
 }

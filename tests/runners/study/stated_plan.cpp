@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "runners/run/minimal_study.hpp"
+#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/study/study_fixture.hpp"

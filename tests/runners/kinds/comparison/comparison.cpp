@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/run/derive.hpp"
-#include "runners/run/minimal_study.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"

@@ -3,8 +3,8 @@
 
 #include "runners/kinds/sweep/orbit_bytes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/study/with_parameter.hpp"
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;

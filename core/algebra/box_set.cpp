@@ -1,0 +1,138 @@
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/algebra/box_round_off.hpp>
+#include <ricochet/algebra/infinity.hpp>
+
+/// \file
+/// One set of active points: its effort, what that does to all measures, and how far it is from (1).
+namespace ricochet {
+namespace {
+
+// Dot products of shorter rows are not worth the vector instructions.
+constexpr int short_row = 16;
+
+using Array = Eigen::Map<Eigen::ArrayXd>;
+using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
+
+}  // namespace
+
+void BoxSolver::try_set(const Operator& A) {
+  for (int j = 0; j < count_; ++j) effort_[set_[j]] = 0;
+  factorise(A);
+  for (int j = 0; j < count_; ++j) right_[j] = bound(set_[j]) - free_[set_[j]];
+  substitute();
+  for (int j = 0; j < count_; ++j) effort_[set_[j]] = right_[j];
+  evaluate(A);
+}
+
+// A_SS = L D Lᵀ row by row; points that depend on earlier ones, and immobile ones, leave the set.
+// Neighbouring sets of one search begin alike: the rows of what they share stay.
+void BoxSolver::factorise(const Operator& A) {
+  const int known = known_;
+  bool shared = true;
+  count_ = 0;
+  dropped_ = -1;
+  const auto row_length = static_cast<std::size_t>(points_);
+  for (int i = 0; i < points_; ++i) {
+    if (!active(i)) continue;
+    shared = shared && count_ < known && set_[count_] == i;
+    if (shared) {
+      ++count_;
+      continue;
+    }
+    const double* column = A.columns.column(i);
+    const double a = A.reach * column[i] + A.compliance;
+    if (!(a > 0)) {
+      side_[i] = Side::immobile;
+      continue;
+    }
+    double* row = factor_.data() + count_ * row_length;
+    double d = a;
+    for (int j = 0; j < count_; ++j) {
+      const double* earlier = factor_.data() + j * row_length;
+      double w = A.reach * column[set_[j]];
+      if (j < short_row)
+        for (int t = 0; t < j; ++t) w -= earlier[t] * row[t];
+      else
+        w -= Eigen::Map<const Eigen::VectorXd>(earlier, j).dot(Eigen::Map<const Eigen::VectorXd>(row, j));
+      row[j] = w;
+    }
+    for (int j = 0; j < count_; ++j) {
+      const double w = row[j];
+      row[j] = w / pivot_[j];
+      d -= w * row[j];
+    }
+    if (!(d > box::round_off(count_) * a)) {
+      std::copy_n(row, count_, null_.begin());
+      dropped_ = i;
+      dropped_side_ = side_[i];
+      rank_ = count_;
+      side_[i] = Side::none;
+      continue;
+    }
+    set_[count_] = i;
+    column_[count_] = column;
+    diagonal_[count_] = a;
+    pivot_[count_++] = d;
+  }
+  known_ = count_;
+}
+
+void BoxSolver::substitute() {
+  const auto row_length = static_cast<std::size_t>(points_);
+  for (int j = 0; j < count_; ++j) {
+    const double* row = factor_.data() + j * row_length;
+    for (int t = 0; t < j; ++t) right_[j] -= row[t] * right_[t];
+  }
+  for (int j = 0; j < count_; ++j) right_[j] /= pivot_[j];
+  for (int j = count_ - 1; j > 0; --j) {
+    const double* row = factor_.data() + j * row_length;
+    for (int t = 0; t < j; ++t) right_[t] -= row[t] * right_[j];
+  }
+}
+
+void BoxSolver::evaluate(const Operator& A) {
+  const ConstArray free(free_.data(), points_), lower(lower_.data(), points_), upper(upper_.data(), points_);
+  Array y(measure_.data(), points_);
+  y = free;
+  double largest = 0, work = 0;
+  for (int j = 0; j < count_; ++j) {
+    const double effort = effort_[set_[j]];
+    y += (A.reach * effort) * ConstArray(column_[j], points_);
+    y[set_[j]] += A.compliance * effort;
+    largest = std::max(largest, diagonal_[j]);
+    work += diagonal_[j] * effort * effort;
+  }
+  // Bounds max_i Σ_j |A_ij p_j| by Cauchy–Schwarz on |A_ij| ≤ √(A_ii A_jj).
+  terms_ = std::sqrt(count_ * largest * work);
+  // A sum that is not finite is the sign of a term that is not.
+  worst_ = std::isfinite(y.sum()) ? std::max(0.0, (lower - y).max(y - upper).maxCoeff()) : infinity;
+  spill_ = ((lower - y).max(y - upper) - box::round_off(count_) * (free.abs() + y.abs() + terms_)).maxCoeff();
+}
+
+// The bound that a free point passes by more than round-off.
+BoxSolver::Side BoxSolver::beyond(int i) const {
+  const double y = measure_[i];
+  const double slack = box::round_off(count_) * (std::abs(free_[i]) + std::abs(y) + terms_);
+  return y < lower_[i] - slack ? Side::lower : y > upper_[i] + slack ? Side::upper : Side::none;
+}
+
+double BoxSolver::residual() const {
+  double worst = worst_;
+  for (int j = 0; j < count_; ++j) {
+    const int i = set_[j];
+    worst = std::max(worst, box::complementarity(measure_[i], lower_[i], upper_[i], effort_[i], diagonal_[j]));
+  }
+  return worst;
+}
+
+double BoxSolver::tolerance() const {
+  double size = size_;
+  for (int j = 0; j < count_; ++j)
+    if (active(set_[j])) size = std::max(size, std::abs(bound(set_[j])));
+  return 1e-12 * depth_ + 4 * box::round_off(count_) * (size + terms_);
+}
+
+}  // namespace ricochet

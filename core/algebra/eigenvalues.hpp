@@ -1,0 +1,39 @@
+#pragma once
+#include <Eigen/Core>
+
+/// \file
+/// Eigenvalues of dense matrices, compiled once: Eigen's own solvers are templates that every user would compile again.
+namespace ricochet {
+
+/// Modes of a symmetric problem: values ascending, one column of `vectors` per value (none where they were not asked
+/// for). `found` is false where the iteration did not converge or B is not positive definite; then nothing is said.
+struct SymmetricModes {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+  bool found = false;
+};
+
+enum class EigenVectors { wanted, none };
+
+/// A φ = λ φ, A n × n symmetric (its lower half is read); φᵀφ = 1. (Householder tridiagonalisation and implicit QR.)
+SymmetricModes symmetric_modes(const Eigen::MatrixXd& A, EigenVectors vectors = EigenVectors::wanted);
+
+/// A φ = λ B φ, A and B n × n symmetric, B positive definite; φᵀBφ = 1. (Cholesky of B, then as above.)
+SymmetricModes symmetric_modes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                               EigenVectors vectors = EigenVectors::wanted);
+
+/// Modes of a general real matrix, in the order in which the iteration finds them; complex ones in conjugate pairs.
+struct GeneralModes {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+  bool found = false;
+};
+
+/// A φ = λ φ, A n × n. (Hessenberg form and shifted QR.)
+GeneralModes general_modes(const Eigen::MatrixXd& A, EigenVectors vectors = EigenVectors::wanted);
+
+/// Singular values of A, descending (one-sided Jacobi, accurate to round-off of the largest).
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
+Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A);
+
+}  // namespace ricochet

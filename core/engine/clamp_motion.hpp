@@ -1,0 +1,30 @@
+#pragma once
+#include <ricochet/algebra/block.hpp>
+#include <ricochet/engine/compile.hpp>
+
+namespace ricochet {
+
+/// The clamp's motion φ = A sin(ωt + ψ) for all lanes of a block, each with its own A and ψ. Sine and cosine are asked
+/// for once per step, whatever the number of lanes and of time levels.
+class ClampMotion {
+ public:
+  ClampMotion(double pulsation, int width);
+
+  /// A (m) and ψ (rad) of a lane; those of a lane that was never placed are zero.
+  void place(int lane, double amplitude, double phase);
+  void hold_still(int lane) { amplitude_.at(0, lane) = 0; }
+
+  /// When the step begins, s.
+  void set_time(double t);
+  /// Σ_k w_k A sin(ω(t + c_k h) + ψ), or its rate, per lane; `phase` holds the levels (w_k, c_k).
+  void offsets(const PhaseWeights& phase, double* out, bool rate) const;
+  /// ω² times the first of these: what the clamp's acceleration gives to a load.
+  void accelerations(const PhaseWeights& phase, double* out) const;
+
+ private:
+  double pulsation_, sine_ = 0, cosine_ = 1;  // ω, sin ωt, cos ωt
+  Block amplitude_, cos_phase_, sin_phase_;   // 1 × T
+  bool phases_ = false;                       // whether some ψ is not zero
+};
+
+}  // namespace ricochet

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ricochet/algebra/infinity.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
+
+namespace ricochet {
+
+// Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
+void Marcher::open_gates(StageProgram& program, StageState& state) {
+  const VelocityGate& gate = *program.gate;
+  const int points = lower_.rows(), T = program_.width;
+  std::vector<const double*>& slots = slot_pointers_;
+  const double* offset = nullptr;
+  const auto measure = [&](const std::vector<double>& weights, const PhaseWeights& phase, bool rate, Block& out) {
+    if (program_.support) {
+      clamp_.offsets(phase, offset_.data(), rate);
+      offset = offset_.data();
+    }
+    kernels_.measure(program_.model->contact().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
+  };
+  measure(state.gap_weights, program.predictor_phase, false, state.gap);
+  state.closed_lanes = 0;
+  for (int lane = 0; lane < T; ++lane) {
+    bool closed = false;
+    for (int i = 0; i < points; ++i)
+      closed = closed || state.gap.at(i, lane) <= lower_.at(i, lane) || state.gap.at(i, lane) >= upper_.at(i, lane);
+    state.closed_lanes |= static_cast<std::uint32_t>(closed) << lane;
+  }
+  if (state.closed_lanes == 0) return;
+  measure(state.approach_weights, program.approach_phase, true, state.approach);
+  for (int lane = 0; lane < T; ++lane) {
+    if (!((state.closed_lanes >> lane) & 1u)) continue;
+    double& fastest = state.fastest.at(0, lane);
+    for (int i = 0; i < points; ++i) fastest = std::max(fastest, std::abs(state.approach.at(i, lane)));
+    const double still = 1e-10 * fastest;
+    for (int i = 0; i < points; ++i) {
+      const double gap = state.gap.at(i, lane), speed = state.approach.at(i, lane);
+      const bool lower = gap <= lower_.at(i, lane), upper = gap >= upper_.at(i, lane);
+      const double from_lower = speed > still ? -speed : -gate.restitution * std::min(speed, 0.0);
+      const double from_upper = speed < -still ? -speed : -gate.restitution * std::max(speed, 0.0);
+      state.gate_lower.at(i, lane) = lower ? from_lower : -infinity;
+      state.gate_upper.at(i, lane) = upper ? from_upper : infinity;
+    }
+  }
+  for (int i = 0; i < points; ++i)
+    for (int lane = 0; lane < T; ++lane)
+      if (!((state.closed_lanes >> lane) & 1u)) {
+        state.gate_lower.at(i, lane) = -infinity;
+        state.gate_upper.at(i, lane) = infinity;
+      }
+}
+
+// What the law reads in every lane; a bit for each lane beyond a bound.
+std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state, const double* z) {
+  const bool gated = program.gate.has_value();
+  if (gated) {
+    open_gates(program, state);
+    if (state.closed_lanes == 0 && state.contact_lanes == 0) return 0;
+    if (state.closed_lanes == 0) {
+      state.gate_lower.fill(-infinity);
+      state.gate_upper.fill(infinity);
+    }
+  }
+  std::array<const double*, most_slots + 1> slots{};
+  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
+  slots[static_cast<std::size_t>(slot_count())] = z;
+  const double* offset = nullptr;
+  if (program_.support) {
+    clamp_.offsets(program.measure_phase, offset_.data(), gated);
+    offset = offset_.data();
+  }
+  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(),
+                   offset, state.free.data());
+  if (state.rate.rows() > 0) {
+    if (program_.support) clamp_.offsets(program.rate_phase, offset_.data(), true);
+    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
+                     offset, state.rate.data());
+  }
+  if (state.before.rows() > 0) {
+    if (program_.support) clamp_.offsets(program.before_phase, offset_.data(), false);
+    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
+                     offset, state.before.data());
+  }
+  const Block& lower = gated ? state.gate_lower : lower_;
+  const Block& upper = gated ? state.gate_upper : upper_;
+  return kernels_.outside(lower_.rows(), state.free.data(), lower.data(), upper.data());
+}
+
+}  // namespace ricochet

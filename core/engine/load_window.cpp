@@ -1,0 +1,53 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/engine/load_window.hpp>
+#include <set>
+
+namespace ricochet {
+namespace {
+
+// Times of a step at which the load is asked, of stages and of their work forms.
+std::size_t distinct_load_levels(const StepPlan& plan) {
+  std::set<long long> levels;
+  const auto add = [&](const Levels& list) {
+    for (const Level& level : list) levels.insert(std::llround(level.at * 1e6));
+  };
+  for (const auto* stages : {&plan.start, &plan.stages})
+    for (const Stage& stage : *stages) {
+      add(stage.load);
+      if (stage.work) add(stage.work->load);
+    }
+  return levels.size();
+}
+
+}  // namespace
+
+LoadWindow::LoadWindow(const Program& program)
+    : problem_(program.problem.get()), model_(program.model.get()), h_(program.h), constant_(program.load_constant) {
+  const auto rows = static_cast<std::size_t>(model_->rows());
+  entries_.resize(distinct_load_levels(program.plan) + 1);
+  for (Entry& entry : entries_) entry.value.resize(rows);
+  sum_.resize(rows);
+  nodal_.resize(rows);
+}
+
+const double* LoadWindow::sum(const Levels& levels, double t) {
+  std::fill(sum_.begin(), sum_.end(), 0.0);
+  for (const Level& level : levels) {
+    const double key = constant_ ? 0.0 : t / h_ + level.at;
+    auto found = std::find_if(entries_.begin(), entries_.end(),
+                              [&](const Entry& entry) { return std::abs(entry.level - key) < 1e-6; });
+    if (found == entries_.end()) {
+      found = std::min_element(entries_.begin(), entries_.end(),
+                               [](const Entry& a, const Entry& b) { return a.used < b.used; });
+      found->level = key;
+      problem_->load->assemble(t + level.at * h_, nodal_.data());
+      model_->load_to_model(nodal_.data(), found->value.data());
+    }
+    found->used = ++clock_;
+    for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += level.weight * found->value[i];
+  }
+  return sum_.data();
+}
+
+}  // namespace ricochet

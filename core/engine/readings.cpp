@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/engine/energy_bounds.hpp>
+#include <ricochet/engine/load_window.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
+
+/// \file
+/// What others read of a march.
+namespace ricochet {
+
+bool Marcher::any_running() const {
+  return std::any_of(status_.begin(), status_.end(), [](const LaneStatus& status) { return status.running; });
+}
+
+double Marcher::support(int lane, double t) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  return spec.amplitude * std::sin(program_.problem->support.pulsation * t + spec.phase);
+}
+
+double Marcher::support_rate(int lane, double t) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const double omega = program_.problem->support.pulsation;
+  return spec.amplitude * omega * std::cos(omega * t + spec.phase);
+}
+
+double Marcher::support_levels(int lane, double t, const Levels& levels) const {
+  double sum = 0;
+  for (const Level& level : levels) sum += level.weight * support(lane, t + level.at * program_.h);
+  return sum;
+}
+
+const double* Marcher::distributed_load(const Levels& levels, double t) {
+  return load_window_ ? load_window_->sum(levels, t) : nullptr;
+}
+
+double Marcher::energy_bound(int lane) const {
+  return energy_bounds_->of(lane);
+}
+
+bool Marcher::beyond_bound(int lane, double energy) {
+  return energy_bounds_->passed(lane, energy, time());
+}
+
+Eigen::VectorXd Marcher::position(int lane) const {
+  Eigen::VectorXd q(program_.model->rows());
+  for (int i = 0; i < q.size(); ++i) q[i] = blocks_[0].at(i, lane);
+  return program_.model->to_nodal(q);
+}
+
+double Marcher::tip(int lane) const {
+  const RowMatrix& row = program_.model->tip();
+  double sum = support(lane, time());
+  for (std::size_t e = 0; e < row.index.size(); ++e) sum += row.value[e] * blocks_[0].at(row.index[e], lane);
+  return sum;
+}
+
+double Marcher::depth(int lane, int point, double relative, double support) const {
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  return std::max(spec.lower[point] - (relative + support), relative + support - spec.upper[point]);
+}
+
+double Marcher::penetration(int lane) const {
+  if (!program_.contact) return 0;
+  const RowMatrix& rows = program_.model->contact();
+  const double phi = support(lane, time());
+  double deepest = 0;
+  for (int j = 0; j < rows.rows(); ++j) {
+    double sum = 0;
+    for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
+      sum += rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
+    deepest = std::max(deepest, depth(lane, j, sum, phi));
+  }
+  return deepest;
+}
+
+int Marcher::delassus_columns() const {
+  int columns = 0;
+  for (const auto& state : stage_states_)
+    if (state->delassus) columns += state->delassus->computed();
+  return columns;
+}
+
+}  // namespace ricochet

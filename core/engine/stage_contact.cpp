@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
+
+namespace ricochet {
+namespace {
+
+bool finite_in(const Block& block, int lane) {
+  for (int i = 0; i < block.rows(); ++i)
+    if (!std::isfinite(block.at(i, lane))) return false;
+  return true;
+}
+
+}  // namespace
+
+// z° becomes z = z° + S⁻¹Hᵀ Σ_k π_k p₋ₖ: first with the efforts that are known, then with the one that the law finds.
+void Marcher::contact(StageProgram& program, StageState& state, double* z) {
+  remember_efforts(program, state, z);
+  state.touched_lanes = 0;
+  const std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
+  if (mask == 0) return;
+  choose_touched(state, mask);
+  solve_law(program, state);
+  keep_contact(state);
+  if (program_.tangents > 0) tangent_contact(program, state);
+  if (program.effort[0] == 1.0) {
+    if (state.contact_lanes != 0) correct(state, state.effort[0].data(), z);
+  } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
+    const auto size = state.effort[0].size();
+    for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
+    correct(state, state.weighted.data(), z);
+  }
+}
+
+// z += S⁻¹Hᵀ p, column by column where some lane has an effort.
+void Marcher::correct(StageState& state, const double* effort, double* z) {
+  const int rows = program_.model->rows(), T = program_.width;
+  for (int j = 0; j < lower_.rows(); ++j) {
+    const double* p = effort + static_cast<std::size_t>(j) * static_cast<std::size_t>(T);
+    if (std::any_of(p, p + T, [](double x) { return x != 0; }))
+      kernels_.add_column(rows, state.delassus->response(j), p, z);
+  }
+}
+
+// What was p is p₋₁ now, and acts.
+void Marcher::remember_efforts(const StageProgram& program, StageState& state, double* z) {
+  const auto size = state.effort[0].size();
+  for (std::size_t k = state.effort.size(); k-- > 1;)
+    std::copy_n(state.effort[k - 1].data(), size, state.effort[k].data());
+  for (std::size_t k = 1; k < program.effort.size() && k < state.effort_pointers.size(); ++k) {
+    if (program.effort[k] == 0 || !state.effort_pointers[k]) continue;
+    for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort_pointers[k][e];
+    correct(state, state.weighted.data(), z);
+  }
+}
+
+// Of the lanes that are outside or were in contact, those that run and can be measured.
+void Marcher::choose_touched(StageState& state, std::uint32_t mask) {
+  touched_.clear();
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    if (lane >= lanes() || !status_[static_cast<std::size_t>(lane)].running) continue;
+    if (finite_in(state.free, lane)) {
+      touched_.push_back(lane);
+      state.touched_lanes |= 1u << lane;
+    } else
+      freeze(lane, "the displacement at a contact point is not finite");
+  }
+}
+
+void Marcher::solve_law(const StageProgram& program, StageState& state) {
+  for (const int lane : touched_) outcome_[static_cast<std::size_t>(lane)] = {};
+  ReducedProblem problem;
+  problem.points = lower_.rows();
+  problem.lanes = program_.width;
+  problem.delassus = state.delassus.get();
+  problem.reach = program.measure_z * program.effort[0];
+  problem.free = state.free.data();
+  problem.lower = program.gate ? state.gate_lower.data() : lower_.data();
+  problem.upper = program.gate ? state.gate_upper.data() : upper_.data();
+  problem.rate_reach = program.compliance ? program.compliance->rate.z * program.effort[0] : 0.0;
+  problem.rate_free = state.rate.rows() > 0 ? state.rate.data() : nullptr;
+  problem.before = state.before.rows() > 0 ? state.before.data() : nullptr;
+  problem.memory = memory_.rows() > 0 ? memory_.data() : nullptr;
+  problem.effort = state.effort[0].data();
+  problem.touched = touched_;
+  problem.outcome = outcome_.data();
+  program_.law->solve(problem);
+}
+
+// Which lanes push now; those that the law failed stop.
+void Marcher::keep_contact(StageState& state) {
+  const int points = lower_.rows();
+  state.contact_lanes = 0;
+  for (const int lane : touched_) {
+    bool active = false, finite = true;
+    for (int i = 0; i < points; ++i) {
+      const double p = state.effort[0].at(i, lane);
+      active = active || p != 0;
+      finite = finite && std::isfinite(p);
+    }
+    const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
+    if (!outcome.converged || !finite) {
+      for (int i = 0; i < points; ++i) state.effort[0].at(i, lane) = 0;
+      freeze(lane, finite ? fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)",
+                                        outcome.residual, outcome.iterations)
+                          : "a contact effort is not finite");
+      continue;
+    }
+    if (active) state.contact_lanes |= 1u << lane;
+  }
+}
+
+}  // namespace ricochet

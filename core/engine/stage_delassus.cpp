@@ -1,0 +1,36 @@
+#include <algorithm>
+#include <ricochet/engine/stage_delassus.hpp>
+
+namespace ricochet {
+
+StageDelassus::StageDelassus(StageOperator& op, const RowMatrix& contact, int rows)
+    : op_(op), contact_(contact), rows_(rows), points_(contact.rows()) {
+  const auto points = static_cast<std::size_t>(points_);
+  known_.assign(points, false);
+  columns_ = std::make_unique_for_overwrite<double[]>(points * points);
+  responses_ = std::make_unique_for_overwrite<double[]>(points * static_cast<std::size_t>(rows));
+  rhs_.assign(static_cast<std::size_t>(rows), 0.0);
+}
+
+int StageDelassus::computed() const {
+  return static_cast<int>(std::count(known_.begin(), known_.end(), true));
+}
+
+void StageDelassus::compute(int j) {
+  known_[static_cast<std::size_t>(j)] = true;
+  const auto first = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j)]);
+  const auto last = static_cast<std::size_t>(contact_.start[static_cast<std::size_t>(j) + 1]);
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  for (std::size_t e = first; e < last; ++e) rhs_[static_cast<std::size_t>(contact_.index[e])] = contact_.value[e];
+  double* response = responses_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(rows_);
+  op_.solve_column(rhs_.data(), response);
+  double* out = columns_.get() + static_cast<std::size_t>(j) * static_cast<std::size_t>(points_);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points_); ++i) {
+    double sum = 0;
+    for (auto e = static_cast<std::size_t>(contact_.start[i]); e < static_cast<std::size_t>(contact_.start[i + 1]); ++e)
+      sum += contact_.value[e] * response[contact_.index[e]];
+    out[i] = sum;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <ricochet/algebra/block.hpp>
+#include <ricochet/engine/active_system.hpp>
+#include <ricochet/engine/stage_delassus.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// What a Marcher keeps of a stage between steps, and the constants of its loop.
+struct StageState {
+  std::unique_ptr<StageDelassus> delassus;  ///< null: the stage reads no contact
+  std::vector<Block> effort;  ///< p of this stage, then of 1, 2, … steps ago as far as anyone weights it
+  /// p, p₋₁, p₋₂, …: this stage, the one before it, …; null: no contact there
+  std::vector<const double*> effort_pointers;
+  Block free, weighted, rate, before, gap, gate_lower, gate_upper, approach;
+  Block fastest;                    ///< largest speed seen at a closed point, per lane
+  std::uint32_t contact_lanes = 0;  ///< lanes with a non-zero effort
+  std::uint32_t closed_lanes = 0;   ///< lanes with a closed gate
+  std::uint32_t touched_lanes = 0;  ///< lanes that the law looked at in this stage
+  std::vector<double> update;       ///< slots × (slots + 1)
+  std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
+  std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
+  ActiveSystem tangents;         ///< of the lane whose tangents are being corrected
+};
+
+}  // namespace ricochet

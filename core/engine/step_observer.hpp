@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <ricochet/engine/compile.hpp>
+
+namespace ricochet {
+
+class Marcher;
+
+/// What an observer sees while a step is made. Blocks are rows × T or points × T.
+struct StageView {
+  int stage = 0;
+  const Stage* plan = nullptr;
+  const StageProgram* program = nullptr;  ///< what was derived of the stage
+  bool starting = false;                  ///< a stage of the start rule
+  double time = 0;                        ///< when the step begins, s
+  double from = 0, to = 0;                ///< when the position stands before and after the stage, s
+  const double* const* slots = nullptr;   ///< before the stage
+  const double* z = nullptr;              ///< the stage's unknown, efforts included
+  const double* const* effort = nullptr;  ///< p, p₋₁, … as far as the plan weights them; null: no contact
+  int efforts = 0;                        ///< how many; each may be null: a stage that reads no contact
+  const LaneOutcome* outcome = nullptr;   ///< per lane, of the law; of lanes that were looked at
+  std::uint32_t touched_lanes = 0;        ///< lanes that the law looked at
+  const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
+  std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
+};
+
+/// Looks at every step of a block; a march without an observer pays nothing for it.
+class StepObserver {
+ public:
+  virtual ~StepObserver() = default;
+  /// The stage has found z and p; the slots are not yet updated.
+  virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
+  /// The step is complete.
+  virtual void step_done(Marcher& marcher) = 0;
+};
+
+}  // namespace ricochet

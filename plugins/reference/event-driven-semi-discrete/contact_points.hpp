@@ -1,0 +1,18 @@
+#pragma once
+#include "contact_modes.hpp"
+
+namespace ricochet::reference {
+
+/// What the contact points move against: massless modes alone, or mass.
+struct ContactPoints {
+  Eigen::MatrixXd reach;    ///< H Z, Z the massless modes
+  Eigen::MatrixXd moving;   ///< H X of the oscillators with contact open
+  bool massless = false;    ///< the massless modes carry every contact point
+  Eigen::Index kernel = 0;  ///< massless modes
+
+  /// `open`: the modes without contact. Throws Stopped where rigid stops have no unique motion: two points at one
+  /// place, several points with inertia, a point that mass and massless modes carry together.
+  ContactPoints(const LinearStructure& structure, const ContactModes& open);
+};
+
+}  // namespace ricochet::reference

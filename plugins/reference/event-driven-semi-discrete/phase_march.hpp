@@ -1,0 +1,52 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "contact_phase.hpp"
+#include "motion_record.hpp"
+
+namespace ricochet::reference {
+
+/// How a phase ends: what fell below zero, and when.
+struct Fall {
+  double tau = 0;  ///< since the phase began, s
+  Watch watch;
+  double impulse = 0;  ///< Σp over the phase, N s
+};
+
+/// Follows one phase after the other, each to the first function that falls below zero: looked at in steps that resolve
+/// the fastest motion that still matters, with a bound of the curvature between looks, and polished to round-off.
+class PhaseMarch {
+ public:
+  /// `resolution`: step × fastest rate.
+  PhaseMarch(const LinearStructure& structure, double resolution, MotionRecord& record)
+      : at_(structure), resolution_(resolution), record_(record) {}
+
+  /// Enters a phase. `point` is where a gap or a force has just become zero: what round-off leaves there is no event.
+  void begin(const ContactModes& modes, const State& from, int point);
+  /// Takes samples on the way, on top of the impulse so far; none: the motion is over.
+  std::optional<Fall> march(double impulse_before);
+  State state(double tau) const { return phase_->state(tau); }
+
+ private:
+  /// How fast what matters still changes, and how curved each watched function may be until then.
+  struct Survey {
+    double step = 0;
+    Eigen::VectorXd curve, noise;
+    std::vector<double> left;  // of each content
+  };
+  void read(double tau, Columns& at);
+  void survey(double tau, const Columns& at, Survey& now) const;
+  std::optional<Fall> first_of(double from, const Columns& here, double to, const Columns& there, const Survey& now);
+  double pushed(double from, double to);
+
+  const LinearStructure& at_;
+  double resolution_;
+  MotionRecord& record_;
+  std::optional<ContactPhase> phase_;
+  Columns scratch_;
+  Eigen::VectorXd haze_;  // of each watch, what round-off leaves of it at the start
+  long long work_ = 0;    // columns read
+};
+
+}  // namespace ricochet::reference

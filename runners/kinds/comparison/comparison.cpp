@@ -1,0 +1,110 @@
+#include "runners/kinds/comparison/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/comparison/run_comparison.hpp"
+
+namespace ricochet {
+namespace {
+
+// A study none of whose scenes has a reference is told so before anything runs.
+void require_reference(const Study& study, References& references, const MotionShelf& shelf,
+                       const std::atomic<bool>& stop) {
+  std::set<std::string> scenes, refusals;
+  for (const StudyCase& one : study.cases) {
+    if (one.excluded || !scenes.insert(one.scene_json.dump()).second) continue;
+    if (shelf.failed && shelf.failed(one.id)) return;
+    std::optional<CaseScope> named;
+    if (shelf.ticket) named.emplace(shelf.ticket(one));
+    try {
+      const ReferenceSet set = references.of(one, stop);
+      if (!set.applicable.empty()) return;
+      refusals.insert(set.refusals.begin(), set.refusals.end());
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const InputError&) {
+      throw;
+    } catch (...) {
+      return;  // a method or a reference that fails is told in the rows of its cases
+    }
+  }
+  if (refusals.empty()) return;
+  throw InputError("/reference", fmt::format("no reference applies to this scene: {}; \"{}\" applies wherever the "
+                                             "methods march",
+                                             fmt::join(refusals, "; "), marched_reference));
+}
+
+}  // namespace
+
+Json comparison_settings(const Json& resolved) {
+  return given_settings(resolved, {"reference", "errors", "horizon", "repeats", "budget"});
+}
+
+CaseRunner compare_cases(const RunContext& context) {
+  // Made when the store is open, and shared by all threads of the run.
+  const auto references = std::make_shared<std::unique_ptr<References>>();
+  CaseRunner runner;
+  runner.open = [references, &study = context.study, &registry = context.registry](MotionShelf shelf,
+                                                                                   const std::atomic<bool>& stop) {
+    if (!*references) *references = std::make_unique<References>(study, registry, shelf);
+    require_reference(study, **references, shelf, stop);
+  };
+  runner.run = [references, &registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
+    return run_comparison(study_case, registry, **references, stop);
+  };
+  return runner;
+}
+
+std::string errors_text(const CaseRecord& record) {
+  constexpr std::size_t shown = 3;
+  const std::string prefix = "error.";
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : record.measures)
+    if (name.starts_with(prefix) && parts.size() < shown)
+      parts.push_back(fmt::format("{} {:.2e}", name.substr(prefix.size()), value));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::vector<MeasureInfo> comparison_measures() {
+  using Of = MeasureInfo::Of;
+  return {
+      {"horizon", "s", "Time up to which the motion is compared with its reference.", Of::computation},
+      {"reference_of_mesh", "1",
+       "1 where the reference has the case's own mesh, so that the error is the time scheme's; 0 where it has none.",
+       Of::computation},
+      {"declared_order", "1", "Order in the step that the scheme declares for such a run.", Of::computation},
+      {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},
+      {"error.tip-l2", "m", "Root mean square over time of the difference of the tip's displacement."},
+      {"error.displacement-l2", "m^3/2",
+       "Root mean square over time of the L² norm along x of the difference of the displacement."},
+      {"error.displacement-h2", "m^-1/2",
+       "Root mean square over time of the L² norm of the difference of the curvature (a bar: of the strain)."},
+      {"error.velocity-l2", "m^3/2/s", "Root mean square over time of the L² norm of the difference of the velocity."},
+      {"error.energy", "J", "Mean over time of the modulus of the difference of the mechanical energy."},
+      {"error.impact-times", "s",
+       "Largest distance from an impact of the reference to the nearest impact on the same side."},
+      {"error.impulse", "N s",
+       "Largest difference of the impulse so far: the contact force in the dual norm of W^{1,1}."},
+      {"floor.tip-linf", "m", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.tip-l2", "m", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.displacement-l2", "m^3/2", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.displacement-h2", "m^-1/2", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.velocity-l2", "m^3/2/s", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.energy", "J", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.impact-times", "s", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+      {"floor.impulse", "N s", "What the reference itself is uncertain by: below it the error says nothing.",
+       Of::computation},
+  };
+}
+
+}  // namespace ricochet

@@ -1,0 +1,21 @@
+#pragma once
+#include "runners/kinds/kind.hpp"
+
+/// \file
+/// What the kinds that compare each case with a reference share.
+namespace ricochet {
+
+/// The settings of a comparing case: reference, errors, horizon, repeats (where the kind times), budget.
+Json comparison_settings(const Json& resolved);
+
+/// Runs cases against references that are computed once; a study none of whose scenes has one is refused before
+/// anything runs.
+CaseRunner compare_cases(const RunContext& context);
+
+/// "tip-linf 1.23e-04, …": the first errors of a case.
+std::string errors_text(const CaseRecord& record);
+
+/// The measures of every comparison: errors, their floors, how they were found.
+std::vector<MeasureInfo> comparison_measures();
+
+}  // namespace ricochet

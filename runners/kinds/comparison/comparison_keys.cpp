@@ -1,0 +1,45 @@
+#include "runners/kinds/comparison/comparison_keys.hpp"
+
+#include <fmt/format.h>
+
+#include "runners/study/fields.hpp"
+
+namespace ricochet {
+
+const std::vector<std::string>& error_names() {
+  static const std::vector<std::string> names = {"tip-linf",    "tip-l2", "displacement-l2", "displacement-h2",
+                                                 "velocity-l2", "energy", "impact-times",    "impulse"};
+  return names;
+}
+
+std::vector<Field> comparison_keys() {
+  using namespace keys;
+  Field reference =
+      methods("reference", Role::reference,
+              "What each case is compared with: a reference plugin, \"self\" (the method itself on finer "
+              "steps and meshes), or a list; the first is the reference, and its gap to the others is part "
+              "of the error floor.");
+  reference.marched = true;
+  Field errors = of_form(Field::Form::words, "errors", std::nullopt, "The errors to measure.");
+  errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());
+  errors.fallback = Json(error_names());
+  return {
+      step(),
+      duration(),
+      samples(),
+      std::move(reference),
+      std::move(errors),
+      optional(real("horizon", "s", positive, std::nullopt,
+                    "Trajectories are compared up to this time; null: up to the end, or up to where two nearby runs "
+                    "have drifted apart, whichever comes first (the report says which).")),
+      budget()};
+}
+
+void check_comparison(const Json& study) {
+  if (const auto horizon = study.find("horizon"); horizon != study.end() && !horizon->is_null())
+    if (horizon->get<double>() > study["duration"].get<double>())
+      throw InputError("/horizon", fmt::format("a horizon of {} s lies beyond the duration of {} s",
+                                               horizon->get<double>(), study["duration"].get<double>()));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#include "runners/kinds/convergence/convergence.hpp"
+
+#include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/comparison_keys.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/minimal_study.hpp"
+#include "runners/kinds/trajectory/run_case.hpp"
+
+namespace ricochet {
+
+Kind convergence_kind() {
+  Kind kind;
+  kind.format.name = "convergence";
+  kind.format.text = "Each case is compared with a reference, and orders are fitted to the errors.";
+  kind.format.keys = comparison_keys();
+  kind.format.settings = comparison_settings;
+  kind.format.check = check_comparison;
+  kind.plan = plan_case;
+  kind.start = compare_cases;
+  kind.tables = [](StudyResults& results) {
+    results.derived.push_back(errors_table(results));
+    results.derived.push_back(orders_table(results));
+    results.derived.push_back(order_verdicts_table(results.derived.back()));
+    collect_tables(results);
+  };
+  kind.outcome = errors_text;
+  kind.measures = comparison_measures();
+  kind.alone = minimal_study;
+  return kind;
+}
+
+}  // namespace ricochet

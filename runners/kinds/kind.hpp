@@ -1,0 +1,84 @@
+#pragma once
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <ricochet/contract/registry.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "runners/march/case_plan.hpp"
+#include "runners/march/motion_shelf.hpp"
+#include "runners/store/record.hpp"
+#include "runners/study/study_kind.hpp"
+
+namespace ricochet {
+
+/// What a kind may use to run the cases of one study. It outlives them.
+struct RunContext {
+  const Study& study;
+  const Registry& registry;
+  std::function<std::string(const StudyCase&)> key;  ///< of a case and everything that its bits depend on
+  int jobs = 1;                                      ///< threads of the whole run
+};
+
+/// How the cases of one study run.
+struct CaseRunner {
+  /// Runs one case; throws Interrupted where `stop` became true.
+  std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
+  /// Called once, when the store is open and before any case runs; throws InputError for what only shows then. May be
+  /// empty.
+  std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
+  /// Processor seconds of one case's marching, alone; empty: cases of this kind are not timed apart.
+  std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
+};
+
+/// One point of a stored study that is to be marched again.
+struct PointRequest {
+  std::string case_id;                         ///< or the beginning of one
+  std::vector<std::filesystem::path> plugins;  ///< libraries beside the program's own
+  std::optional<double> parameter;
+  std::string start, cell;       ///< "" where none is given
+  int periods = 0, samples = 0;  ///< 0 where none is given
+};
+
+/// Why a point cannot be marched again: the message is complete.
+class PointRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A kind of study, all that the program knows of it. Functions that may be empty say so.
+struct Kind {
+  StudyKind format;  ///< its name, its keys, and what it adds to a case
+
+  /// What would run for a case, decided without running it.
+  std::function<CasePlan(const StudyCase&, const Registry&)> plan;
+  /// What runs the cases of a study.
+  std::function<CaseRunner(const RunContext&)> start;
+
+  /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
+  std::function<void(StudyResults&)> tables;
+  /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". Empty, or "": energies and impacts.
+  std::function<std::string(const CaseRecord&)> outcome;
+  /// Measures that this kind adds to those of the kinds registered before it.
+  std::vector<MeasureInfo> measures;
+  /// Whether its measures stand in cases.csv even where no case has one.
+  bool measures_stand = false;
+  /// A study of one case alone, to be looked at; null where the case cannot be repeated alone. Empty: never.
+  std::function<nlohmann::ordered_json(const StudyResults&, const CaseRecord&)> alone;
+  /// Marches one point of a stored study again, samples to `out`; returns the exit code. Throws PointRefused. Empty:
+  /// such a study has no points.
+  std::function<int(const StudyResults&, const PointRequest&, std::ostream& out)> point;
+};
+
+/// The kinds of the program, in the order in which they are told.
+const std::vector<Kind>& kinds();
+/// Adds a kind; to be called before any study is read. Throws std::logic_error for a name that is taken.
+void add_kind(Kind kind);
+/// The kind of this name; null where there is none.
+const Kind* find_kind(const std::string& name);
+
+}  // namespace ricochet

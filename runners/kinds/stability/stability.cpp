@@ -1,0 +1,113 @@
+#include "runners/kinds/stability/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/kinds/stability/run_stability.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/kinds/stability/step_limits.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/fields.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+std::vector<Field> stability_keys() {
+  using namespace keys;
+  ObjectForm steps;
+  steps.fields = {single(real("from", "s", positive, std::nullopt, "Smallest step.")),
+                  single(real("to", "s", positive, std::nullopt, "Largest step.")),
+                  integer("count", {1, 10000, false, false}, 20, "Number of steps, spaced evenly on a log scale.")};
+  Field observe;
+  observe.spec.type = ParameterSpec::Type::boolean;
+  observe.spec.key = "observe";
+  observe.spec.text = "Whether the same cells are marched as well, and the limit found by bisection.";
+  observe.fallback = true;
+  return {object("steps", std::nullopt, "The range of steps.", steps), observe,
+          optional(real("duration", "s", positive, std::nullopt,
+                        "Simulated time of each observed cell; null: as long as growth needs to show.")),
+          budget()};
+}
+
+void check_stability(const Json& study) {
+  if (const auto steps = study.find("steps"); steps != study.end()) {
+    // The square of a step and of its inverse are numbers of a plan.
+    constexpr double least = 1e-100, most = 1e100;
+    for (const char* end : {"from", "to"})
+      if (const double h = (*steps)[end].get<double>(); h < least || h > most)
+        throw InputError(std::string("/steps/") + end,
+                         fmt::format("a step of {} s; expected one between {:g} and {:g} s", h, least, most));
+    if ((*steps)["from"].get<double>() > (*steps)["to"].get<double>())
+      throw InputError("/steps/from", fmt::format("the range begins at {} s and ends at {} s; expected from ≤ to",
+                                                  (*steps)["from"].get<double>(), (*steps)["to"].get<double>()));
+  }
+}
+
+// Marched at some steps, and stable at none of them.
+bool never_stable(const CaseRecord& record) {
+  const Table* table = find_table(record.tables, "stability_observed");
+  if (!table || table->rows.empty()) return false;
+  const std::size_t behaviour = TableReader(*table).column("behaviour");
+  return std::none_of(table->rows.begin(), table->rows.end(),
+                      [&](const Row& row) { return row.at(behaviour) == "stable" || row.at(behaviour) == "marginal"; });
+}
+
+std::string limits_text(const CaseRecord& record) {
+  std::vector<std::string> parts;
+  const auto predicted = measure(record, "limit_predicted"), observed = measure(record, "limit_observed");
+  if (predicted) parts.push_back(fmt::format("step limit predicted {:.4g} s", *predicted));
+  if (observed) parts.push_back(fmt::format("observed {:.4g} s", *observed));
+  if (const auto radius = measure(record, "largest_radius"); radius && !predicted)
+    parts.push_back(fmt::format("largest spectral radius {:.6g}", *radius));
+  if (never_stable(record)) parts.emplace_back("unstable at every step marched");
+  if (const auto steps = measure(record, "contradictions"))
+    parts.push_back(fmt::format("spectrum and march disagree without contact at {:.0f} step{}: an error of the method",
+                                *steps, *steps == 1 ? "" : "s"));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::vector<MeasureInfo> stability_measures() {
+  using Of = MeasureInfo::Of;
+  return {
+      {"limit_predicted", "s", "Largest stable step of the range, from the plan alone."},
+      {"limit_observed", "s", "Largest stable step of the range, found by marching and bisection."},
+      {"largest_radius", "1", "Largest spectral radius of the step over the range."},
+      {"agreement", "1", "Observed over predicted step limit."},
+      {"contradictions", "1",
+       "Steps of the range at which spectrum and march disagree without contact: an error of the method.",
+       Of::computation},
+  };
+}
+
+}  // namespace
+
+Kind stability_kind() {
+  Kind kind;
+  kind.format.name = "stability";
+  kind.format.text = "Each case goes through a range of steps: the spectrum of the step, and what marching it shows.";
+  kind.format.keys = stability_keys();
+  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
+  kind.format.check = check_stability;
+  kind.plan = plan_stability;
+  kind.start = [](const RunContext& context) {
+    CaseRunner runner;
+    runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return run_stability(study_case, registry, stop);
+    };
+    return runner;
+  };
+  kind.tables = [](StudyResults& results) {
+    for (CaseRecord& record : results.cases) describe_stability(record);
+    collect_tables(results);
+    results.derived.push_back(step_limits_table(results));
+    results.derived.push_back(step_limit_agreement_table(results.derived.back()));
+  };
+  kind.outcome = limits_text;
+  kind.measures = stability_measures();
+  return kind;
+}
+
+}  // namespace ricochet

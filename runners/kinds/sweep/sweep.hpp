@@ -1,0 +1,18 @@
+#pragma once
+#include "runners/kinds/kind.hpp"
+
+/// \file
+/// What the kinds that go through a parameter have in common as kinds.
+namespace ricochet {
+
+/// A case of a sweep, with the desk at which it keeps what would be lost if it were killed.
+using RunSweep = CaseRecord (*)(const StudyCase&, const Registry&, const CaseDesk&, const std::atomic<bool>& stop);
+
+/// Format, runner, tables and study-of-one-case of a kind that goes through a parameter; name, text, keys, plan, measures
+/// and point are its own.
+Kind sweep_kind(RunSweep run);
+
+/// The measures of orbits.
+std::vector<MeasureInfo> orbit_measures();
+
+}  // namespace ricochet

@@ -1,0 +1,276 @@
+#include "runners/kinds/sweep/sweep_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <set>
+
+#include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/study/check_object.hpp"
+#include "runners/study/json_text.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::array swept_roles = {Role::mass, Role::contact, Role::time};
+
+// Bytes of one row: sections, what else each value and start keeps (at most 64 impacts, a portrait), a cell with its
+// own section.
+constexpr double point_row = 7 * 8, orbit_rows = 64 * 5 * 8 + 200 * 5 * 8, cell_row = 1000, cell_point_row = 6 * 8;
+
+std::vector<double> values_between(const Json& range, const std::string& pointer) {
+  const auto from = range.at("from").get<double>(), to = range.at("to").get<double>();
+  const auto count = range.at("count").get<std::size_t>();
+  if (!(from < to))
+    throw InputError(pointer_to(pointer, "from"),
+                     fmt::format("the range from {} to {} is empty; expected from < to", from, to));
+  const auto last = static_cast<double>(count - 1);
+  std::vector<double> exact, rounded;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<double>(i);
+    double value = i == 0 ? from : i + 1 == count ? to : from * ((last - at) / last) + to * (at / last);
+    exact.push_back(value);
+    if (i > 0 && i + 1 < count) {
+      value = std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
+      if (std::abs(value) < 1e-12 * std::max(std::abs(from), std::abs(to))) value = 0;
+    }
+    rounded.push_back(value);
+  }
+  const auto repeats = [](const std::vector<double>& values) {
+    return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) != values.end();
+  };
+  if (!repeats(rounded)) return rounded;
+  if (repeats(exact))
+    throw InputError(pointer_to(pointer, "count"),
+                     fmt::format("{} values do not fit between {} and {}", count, from, to));
+  return exact;
+}
+
+Json swept(const Json& given, const std::string& pointer) {
+  std::vector<double> values;
+  if (given.contains("values")) {
+    values = given["values"].get<std::vector<double>>();
+    std::sort(values.begin(), values.end());
+  } else {
+    values = values_between(given, pointer);
+  }
+  return {{"pointer", given.at("pointer")}, {"values", values}};
+}
+
+// Pointers of the settings and where the study writes them.
+std::vector<std::pair<std::string, std::string>> pointers_of(const Json& settings) {
+  std::vector<std::pair<std::string, std::string>> pointers;
+  if (settings.contains("parameter"))
+    pointers.emplace_back(settings["parameter"]["pointer"].get<std::string>(), "/parameter/pointer");
+  else
+    for (std::size_t i = 0; i < settings.at("axes").size(); ++i)
+      pointers.emplace_back(settings["axes"][i]["pointer"].get<std::string>(),
+                            pointer_to(pointer_to("/axes", i), "pointer"));
+  return pointers;
+}
+
+// The entries of a role that are named "/methods/ROLE/…" by a pointer; "" when it names none.
+std::string role_of(const std::string& pointer) {
+  for (const Role role : swept_roles)
+    if (const std::string start = std::string("/methods/") + role_name(role) + "/"; pointer.starts_with(start))
+      return role_name(role);
+  return "";
+}
+
+const ParameterSpec* parameter_of(const Registry& registry, const std::string& role, const std::string& method,
+                                  const std::string& pointer) {
+  for (const Role known : swept_roles) {
+    if (role != role_name(known)) continue;
+    if (const PluginManual* manual = registry.manual(known, method))
+      for (const ParameterSpec& spec : manual->parameters)
+        if (pointer == "/methods/" + role + "/" + spec.key && spec.type == ParameterSpec::Type::real) return &spec;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> method_scalars(const Json& methods, const Registry& registry) {
+  std::vector<std::string> pointers;
+  for (const Role role : swept_roles)
+    for (const Json& entry : methods.at(role_name(role)))
+      for (const ParameterSpec& spec : registry.manual(role, entry.at("name").get<std::string>())->parameters) {
+        const std::string pointer = std::string("/methods/") + role_name(role) + "/" + spec.key;
+        if (spec.type == ParameterSpec::Type::real &&
+            std::find(pointers.begin(), pointers.end(), pointer) == pointers.end())
+          pointers.push_back(pointer);
+      }
+  return pointers;
+}
+
+void refuse_list(const Json& list, const std::string& pointer, const std::string& where) {
+  if (list.is_array())
+    throw InputError(where, fmt::format("{} is a list, an axis of this study; expected one number there, the parameter "
+                                        "takes its own values",
+                                        pointer));
+}
+
+void check_pointer(const Json& resolved, const std::string& pointer, const std::string& where,
+                   const Registry& registry) {
+  std::vector<std::string> names = scene_scalars(resolved.at("scene"));
+  for (const std::string& name : method_scalars(resolved.at("methods"), registry)) names.push_back(name);
+  if (std::find(names.begin(), names.end(), pointer) == names.end()) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    throw InputError(where, quote(Json(pointer)) +
+                                " names no number of the scene and no real parameter of the methods" +
+                                did_you_mean(pointer, names) + " (numbers of this study: " + all + ")");
+  }
+  const std::string role = role_of(pointer);
+  if (role.empty()) {
+    const Json& value = resolved.at(Json::json_pointer(pointer));
+    refuse_list(value, pointer, where);
+    if (value.is_null())
+      throw InputError(where, fmt::format("{} is null, no stop is there; expected one to move", pointer));
+    return;
+  }
+  const std::string key = pointer.substr(pointer.rfind('/') + 1);
+  for (const Json& entry : resolved.at("methods").at(role))
+    if (const auto found = entry.find(key); found != entry.end()) refuse_list(*found, pointer, where);
+}
+
+void check_memory(const Json& settings, double cases) {
+  const auto keep = settings.at("keep").get<double>();
+  double bytes = 0;
+  std::string what, where, advice;
+  if (settings.contains("parameter")) {
+    const auto values = static_cast<double>(settings["parameter"]["values"].size());
+    const auto starts = static_cast<double>(starts_of(settings).size());
+    bytes = cases * values * starts * (keep * point_row + orbit_rows);
+    what = fmt::format("{:g} case{} × {:g} values × {:g} start{} × {:g} kept periods", cases, cases == 1 ? "" : "s",
+                       values, starts, starts == 1 ? "" : "s", keep);
+    where = "/keep";
+    advice = "keep fewer periods, take fewer values or starts, or split the study";
+  } else {
+    const auto columns = static_cast<double>(settings.at("axes")[0]["values"].size());
+    const auto rows = static_cast<double>(settings["axes"][1]["values"].size());
+    bytes = cases * columns * rows * (cell_row + std::min(keep, 64.0) * cell_point_row);
+    what = fmt::format("{:g} case{} × {:g} × {:g} cells", cases, cases == 1 ? "" : "s", columns, rows);
+    where = "/axes";
+    advice = "take a coarser grid or split the study";
+  }
+  if (bytes > largest_results)
+    throw InputError(where, fmt::format("{} would need about {:.3g} GB of memory; expected at most {:g} GB: {}", what,
+                                        1e-9 * bytes, 1e-9 * largest_results, advice));
+}
+
+}  // namespace
+
+Json sweep_settings(const Json& resolved) {
+  Json settings = Json::object();
+  if (resolved.contains("parameter")) {
+    settings["parameter"] = swept(resolved["parameter"], "/parameter");
+    settings["start"] = resolved.at("start");
+  } else {
+    settings["axes"] = Json::array();
+    for (std::size_t i = 0; i < resolved.at("axes").size(); ++i)
+      settings["axes"].push_back(swept(resolved["axes"][i], pointer_to("/axes", i)));
+  }
+  for (const char* key : {"transient", "keep", "section", "phase"}) settings[key] = resolved.at(key);
+  settings["exponents"] = resolved.value("exponents", 0);
+  settings["refine"] = resolved.at("refine");
+  if (!resolved.at("budget").is_null()) settings["budget"] = resolved["budget"];
+  return settings;
+}
+
+void check_sweep(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs) {
+  const auto pointers = pointers_of(settings);
+  for (std::size_t i = 0; i < pointers.size(); ++i) {
+    check_pointer(resolved, pointers[i].first, pointers[i].second, registry);
+    for (std::size_t j = 0; j < i; ++j)
+      if (pointers[j].first == pointers[i].first)
+        throw InputError(pointers[i].second, fmt::format("repeats {} of {}; expected two different axes",
+                                                         pointers[i].first, pointers[j].second));
+  }
+  if (settings.contains("start") && pointers.front().first.starts_with("/scene/initial/"))
+    for (std::size_t i = 0; i < settings["start"].size(); ++i)
+      if (settings["start"][i] != "state")
+        throw InputError(pointer_to("/start", i),
+                         fmt::format("the parameter {} is read by the start \"state\" alone, found {}",
+                                     pointers.front().first, quote(settings["start"][i])));
+  const auto periods = settings.at("transient").at("periods").get<long long>();
+  const auto at_most = settings["transient"].at("at_most").get<long long>();
+  if (at_most < periods)
+    throw InputError("/transient/at_most", fmt::format("at most {} periods, of which {} are always marched; expected "
+                                                       "at_most ≥ periods",
+                                                       at_most, periods));
+  const auto exponents = settings.at("exponents").get<int>();
+  if (exponents > 2 * dofs)
+    throw InputError("/exponents", fmt::format("{} exponents of a state of {} components (2 × {} dofs); expected at "
+                                               "most {}",
+                                               exponents, 2 * dofs, dofs, 2 * dofs));
+  check_memory(settings, cases);
+}
+
+void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study_case) {
+  for (const auto& [pointer, where] : pointers_of(settings)) {
+    const std::string role = role_of(pointer);
+    if (role.empty()) continue;
+    const std::string key = pointer.substr(pointer.rfind('/') + 1);
+    const MethodChoice& method =
+        role == "mass" ? study_case.mass : (role == "contact" ? study_case.contact : study_case.time);
+    const ParameterSpec* spec = parameter_of(registry, role, method.name, pointer);
+    if (!spec) {
+      if (!study_case.excluded)
+        study_case.excluded =
+            fmt::format("the {} method \"{}\" has no real parameter \"{}\" to go through", role, method.name, key);
+      continue;
+    }
+    study_case.swept.emplace_back(pointer, *spec);
+    for (auto& [name, value] : study_case.axes)
+      if (name == role + "." + key) value = "swept";
+  }
+}
+
+void check_values(const Study& study) {
+  std::set<std::string> seen;
+  std::optional<InputError> first;
+  bool same = true, any = false, possible = false, unforced = false;
+  for (const StudyCase& one : study.cases) {
+    if (one.excluded) continue;
+    any = true;
+    const Json& settings = one.settings;
+    const bool strobe = settings.at("section") == "strobe";
+    std::vector<GridAxis> axes;
+    if (settings.contains("axes"))
+      axes = grid_axes(settings);
+    else
+      axes = {{settings.at("parameter").at("pointer").get<std::string>(), parameter_values(settings)}};
+    std::string key = one.scene_json.dump() + std::to_string(one.elements);
+    for (const GridAxis& axis : axes)
+      if (!role_of(axis.pointer).empty()) key += one.mass.name + " " + one.contact.name + " " + one.time.name;
+    if (!seen.insert(key).second) continue;
+    for (const double x : axes.front().values)
+      for (const double y : axes.size() > 1 ? axes.back().values : std::vector<double>{0.0}) {
+        try {
+          std::vector<std::pair<std::string, double>> place = {{axes.front().pointer, x}};
+          if (axes.size() > 1) place.emplace_back(axes.back().pointer, y);
+          const StudyCase at = with_parameters(one, place);
+          possible = true;
+          if (!strobe || is_forced(at.scene)) return;
+          unforced = true;
+        } catch (const InputError& error) {
+          if (first && (first->pointer() != error.pointer() || std::string(first->what()) != error.what()))
+            same = false;
+          if (!first) first = error;
+        }
+      }
+  }
+  if (!any) throw InputError("/exclude", "every case is excluded; nothing would run");
+  if (unforced)
+    throw InputError("/section",
+                     "a strobe reads once per forcing period, and nothing is forced at any value (amplitude 0); "
+                     "expected a forcing, or the section \"impact\" or \"extremum\"");
+  if (possible || !first) return;
+  throw InputError(first->pointer(), same ? std::string(first->what())
+                                          : fmt::format("no value is possible; the first: {}", first->what()));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,228 @@
+#include "runners/kinds/sweep/with_parameter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+
+#include "runners/study/check_object.hpp"
+#include "runners/study/json_text.hpp"
+#include "runners/study/read_scene.hpp"
+
+namespace ricochet {
+namespace {
+
+/// A scalar of the scene: where it is, what declares it.
+struct Scalar {
+  std::string pointer;
+  const Field* field = nullptr;
+};
+
+void collect(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Scalar>& scalars) {
+  for (const Field* field : fields_of(form, value, pointer)) {
+    const std::string here = pointer_to(pointer, field->key());
+    const auto found = value.find(field->key());
+    if (found == value.end()) continue;
+    if (field->form == Field::Form::object)
+      collect(field->nested.front(), *found, here, scalars);
+    else if (field->form == Field::Form::formula ||
+             (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real))
+      scalars.push_back({here, field});
+    else if (field->form == Field::Form::places && found->is_array())
+      for (std::size_t i = 0; i < found->size(); ++i)
+        if ((*found)[i].is_number()) scalars.push_back({pointer_to(here, i), field});
+  }
+}
+
+const Field& scene_field() {
+  for (const Field& field : study_form().fields)
+    if (field.key() == "scene") return field;
+  throw std::logic_error("the study form has no scene");
+}
+
+std::vector<Scalar> scalars_of(const Json& scene) {
+  std::vector<Scalar> scalars;
+  collect(scene_field().nested.front(), scene, "/scene", scalars);
+  return scalars;
+}
+
+// The number or the formula that the value makes of what stands there.
+Json changed(const Json& old, const Field& field, const std::string& pointer, double value) {
+  if (old.is_null()) throw InputError(pointer, "there is no stop here (null) that a parameter could move");
+  if (field.form == Field::Form::scalar && check_parameter(field.spec, value))
+    throw InputError(
+        pointer, fmt::format("the value {} is impossible; expected a number in {}{}", value, field.spec.range.text(),
+                             field.spec.unit.empty() || field.spec.unit == "1" ? "" : ", in " + field.spec.unit));
+  if (!old.is_string()) return value;
+  const auto text = old.get<std::string>();
+  const Formula formula(text, pointer, field.variables);
+  if (!formula.uses_x() && !formula.uses_t()) return value;
+  return fmt::format("({})*({})", value, text);
+}
+
+void change_scene(StudyCase& one, const std::string& pointer, double value) {
+  const std::vector<Scalar> scalars = scalars_of(one.scene_json);
+  const auto scalar =
+      std::find_if(scalars.begin(), scalars.end(), [&](const Scalar& known) { return known.pointer == pointer; });
+  if (scalar == scalars.end()) throw InputError(pointer, "names no number of this scene");
+  Json& place = one.scene_json[Json::json_pointer(pointer.substr(std::string("/scene").size()))];
+  place = changed(place, *scalar->field, pointer, value);
+}
+
+void change_method(StudyCase& one, const std::string& role, MethodChoice& method, const std::string& pointer,
+                   double value) {
+  const std::string key = pointer.substr(std::string("/methods/").size() + role.size() + 1);
+  const auto& known = method.parameters.values();
+  const auto found = known.find(key);
+  if (found == known.end() ||
+      (!std::holds_alternative<double>(found->second) && !std::holds_alternative<long long>(found->second)))
+    throw InputError(pointer, fmt::format("the {} method \"{}\" has no real parameter \"{}\"", role, method.name, key));
+  for (const auto& [swept, spec] : one.swept)
+    if (swept == pointer)
+      if (const auto problem = check_parameter(spec, value))
+        throw InputError(pointer, fmt::format("the value {} is impossible: {}", value, *problem));
+  method.parameters.set(key, value);
+  for (auto& [name, axis] : one.axes)
+    if (name == role + "." + key) axis = value;
+}
+
+}  // namespace
+
+StudyCase with_parameter(const StudyCase& study_case, const std::string& pointer, double value) {
+  return with_parameters(study_case, {{pointer, value}});
+}
+
+StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pair<std::string, double>>& values) {
+  StudyCase one = study_case;
+  bool scene = false;
+  for (const auto& [pointer, value] : values) {
+    if (!std::isfinite(value)) throw InputError(pointer, "the value is not a finite number");
+    if (pointer.starts_with("/scene/")) {
+      change_scene(one, pointer, value);
+      scene = true;
+    } else if (pointer.starts_with("/methods/mass/")) {
+      change_method(one, "mass", one.mass, pointer, value);
+    } else if (pointer.starts_with("/methods/contact/")) {
+      change_method(one, "contact", one.contact, pointer, value);
+    } else if (pointer.starts_with("/methods/time/")) {
+      change_method(one, "time", one.time, pointer, value);
+    } else {
+      throw InputError(pointer, "names neither a number of the scene nor a parameter of a method");
+    }
+  }
+  if (scene) {
+    one.scene = read_scene(one.scene_json);
+    check_scene(one.scene, one.elements);
+  }
+  if (one.steps_per_period > 0) check_forcing(one.scene);
+  return one;
+}
+
+StudyCase at_rest(const StudyCase& study_case) {
+  StudyCase one = study_case;
+  one.scene.initial.displacement = one.scene.initial.velocity = Formula(0.0);
+  if (one.scene_json.is_object())
+    for (const char* key : {"displacement", "velocity"}) one.scene_json["initial"][key] = "0";
+  return one;
+}
+
+double forcing_pulsation(const SceneSpec& scene) {
+  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
+  const OscillatorSpec::Force force = oscillator ? oscillator->force : OscillatorSpec::Force{};
+  if (scene.support.amplitude != 0 && scene.support.pulsation > 0) return scene.support.pulsation;
+  if (force.amplitude != 0 && force.pulsation > 0) return force.pulsation;
+  return scene.support.pulsation > 0 ? scene.support.pulsation : force.pulsation;
+}
+
+bool is_forced(const SceneSpec& scene) {
+  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
+  return (scene.support.amplitude != 0 && scene.support.pulsation > 0) ||
+         (oscillator && oscillator->force.amplitude != 0 && oscillator->force.pulsation > 0) || scene.load.uses_t();
+}
+
+void check_forcing(const SceneSpec& scene) {
+  const double pulsation = forcing_pulsation(scene);
+  const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
+  if (!(pulsation > 0))
+    throw InputError("/scene/support/pulsation",
+                     fmt::format("no forcing has a period (the pulsation is 0); steps per period need one: expected a "
+                                 "pulsation above 0 of the support{}",
+                                 oscillator ? " or of the force" : ""));
+  constexpr double tolerance = 1e-9;
+  const double period = 2 * std::numbers::pi / pulsation;
+  if (oscillator && oscillator->force.amplitude != 0) {
+    const double ratio = oscillator->force.pulsation / pulsation;
+    if (std::abs(ratio - std::round(ratio)) > tolerance * std::max(1.0, ratio))
+      throw InputError("/scene/structure/force/pulsation",
+                       fmt::format("the force of {:.6g} rad/s does not repeat with the period of the support, {:.6g} "
+                                   "rad/s; expected a whole multiple of it",
+                                   oscillator->force.pulsation, pulsation));
+  }
+  if (!scene.load.uses_t()) return;
+  const Formula load = scene.load;  // a formula keeps its variables inside: evaluate our own copy
+  constexpr int places = 9, phases = 64;
+  const double length = structure_length(scene);
+  double largest = 0, worst = 0, worst_x = 0, worst_t = 0, worst_k = 0;
+  for (int i = 0; i < places; ++i)
+    for (int j = 0; j < phases; ++j) {
+      const double x = length * i / (places - 1);
+      const double t = period * (j + 0.5 * std::numbers::inv_pi) / phases;
+      const double value = load(x, t);
+      largest = std::max(largest, std::abs(value));
+      for (const double k : {1.0, 2.0, 7.0, 50.0, 300.0, 2000.0}) {
+        const double change = std::abs(load(x, t + k * period) - value);
+        if (change <= worst) continue;
+        worst = change, worst_x = x, worst_t = t, worst_k = k;
+      }
+    }
+  if (worst > tolerance * largest)
+    throw InputError("/scene/load",
+                     fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s: "
+                                 "at x = {:.6g} m it differs by {:.3g} N/m between t = {:.6g} s and {:g} "
+                                 "period{} later; expected f(x, t + T) = f(x, t)",
+                                 load.text(), period, worst_x, worst, worst_t, worst_k, worst_k == 1 ? "" : "s"));
+}
+
+std::vector<double> parameter_values(const Json& settings) {
+  return settings.at("parameter").at("values").get<std::vector<double>>();
+}
+
+std::vector<StartSpec> starts_of(const Json& settings) {
+  static const std::array<std::pair<const char*, StartSpec::Kind>, 4> words = {
+      {{"rest", StartSpec::rest}, {"state", StartSpec::state}, {"up", StartSpec::up}, {"down", StartSpec::down}}};
+  std::vector<StartSpec> starts;
+  for (const Json& start : settings.at("start")) {
+    if (start.is_object()) {
+      for (int i = 1; i <= start.at("random").get<int>(); ++i)
+        starts.push_back({StartSpec::random, i, start.at("seed").get<std::uint64_t>(), "random-" + std::to_string(i)});
+      continue;
+    }
+    for (const auto& [word, kind] : words)
+      if (start == word) starts.push_back({kind, 0, 0, word});
+  }
+  return starts;
+}
+
+bool any_start(const std::vector<StartSpec>& starts, bool own_state) {
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const StartSpec& start) { return start.own_state() == own_state; });
+}
+
+std::vector<GridAxis> grid_axes(const Json& settings) {
+  std::vector<GridAxis> axes;
+  for (const Json& axis : settings.at("axes"))
+    axes.push_back({axis.at("pointer").get<std::string>(), axis.at("values").get<std::vector<double>>()});
+  return axes;
+}
+
+std::vector<std::string> scene_scalars(const Json& scene) {
+  std::vector<std::string> pointers;
+  for (const Scalar& scalar : scalars_of(scene)) pointers.push_back(scalar.pointer);
+  return pointers;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,107 @@
+#include "runners/kinds/trajectory/trajectory.hpp"
+
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/energy_tables.hpp"
+#include "runners/kinds/trajectory/minimal_study.hpp"
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/study/fields.hpp"
+
+namespace ricochet {
+namespace {
+
+std::vector<MeasureInfo> trajectory_measures() {
+  using Of = MeasureInfo::Of;
+  return {
+      {"scheme_energy_start", "J", "The scheme's own discrete energy after its start rule, where it declares one.",
+       Of::motion, true},
+      {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step.", Of::motion, true},
+      {"energy_start", "J",
+       "The common mechanical energy ½vᵀMv + ½qᵀKq plus the contact potential, where the scheme's velocity stands: at "
+       "t = 0, "
+       "or in the middle of the first sub-step where the velocity is a mean over it.",
+       Of::motion, true},
+      {"energy_end", "J",
+       "The common mechanical energy at the end of the last step, or in the middle of its last sub-step."},
+      {"energy_ratio", "1", "Common energy at the end divided by that at the start."},
+      {"largest_step_gain", "J",
+       "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
+       "work of the loads."},
+      {"drift_per_impact", "J",
+       "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true},
+      {"work_of_damping", "J", "Energy taken out by the viscous forces over the run."},
+      {"work_of_loads", "J",
+       "Energy brought in by the distributed load and by the moving support over the run, in the frame of the clamp.",
+       Of::motion, true},
+      {"dissipated_at_contact", "J",
+       "Energy taken out by the contact efforts over the run, less what springs at the stops still store."},
+      {"balance_residual", "J",
+       "What the balance of the scheme's own energy fails to close by: change − loads + damping + losses that the "
+       "scheme "
+       "declares − work of the stops; "
+       "round-off × steps "
+       "where the scheme has an exact balance."},
+      {"projection_energy", "J",
+       "Energy after minus before the projection of the initial state on the constraint of a singular mass.",
+       Of::motion, true},
+      {"kernel_energy", "J",
+       "Energy of the initial state in the kernel of a singular mass, which no inertia holds: lost or left ringing at "
+       "any step, 0 after projection.",
+       Of::motion, true},
+      {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
+      {"impacts", "1", "Number of times that contact began: no active point in one sub-step, some in the next."},
+      {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed.", Of::motion,
+       true},
+      {"impulse", "N s",
+       "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
+       "stage is "
+       "worth follows from the scheme's plan."},
+      {"complementarity_residual", "m or m/s",
+       "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
+       "velocity).",
+       Of::motion, true},
+      {"law_iterations", "1", "Most iterations that one solve of the contact law took."},
+      {"dissipated_by_law", "J",
+       "Energy that a compliant law itself took out over the run, by the power that it reports: the share of a damper "
+       "in what is dissipated at contact."},
+      {"dissipated_by_scheme", "J",
+       "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
+       "the "
+       "scheme declares its losses."},
+      {"first_impact", "s", "Time at which a contact point first closed.", Of::motion, true},
+      {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
+      {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run."},
+      {"microseconds_per_step", "µs",
+       "Processor time of the marching, energy audit of every step included, divided by the number of steps.",
+       Of::computation},
+  };
+}
+
+}  // namespace
+
+Kind trajectory_kind() {
+  Kind kind;
+  kind.format.name = "trajectory";
+  kind.format.text = "Each case marches its scene once.";
+  kind.format.keys = {keys::step(), keys::duration(), keys::samples(), keys::budget()};
+  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"budget"}); };
+  kind.plan = plan_case;
+  kind.start = [](const RunContext& context) {
+    CaseRunner runner;
+    runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return run_case(study_case, registry, stop);
+    };
+    return runner;
+  };
+  kind.tables = [](StudyResults& results) {
+    collect_tables(results);
+    for (Table table : {energy_ends_table(results), energy_by_mass_table(results), energy_trends_table(results),
+                        choice_worth_table(results)})
+      if (!table.rows.empty()) results.derived.push_back(std::move(table));
+  };
+  kind.measures = trajectory_measures();
+  kind.measures_stand = true;
+  kind.alone = minimal_study;
+  return kind;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,9 @@
+#pragma once
+#include "runners/kinds/kind.hpp"
+
+namespace ricochet {
+
+/// As convergence, and each case is timed: error against processor time.
+Kind work_precision_kind();
+
+}  // namespace ricochet

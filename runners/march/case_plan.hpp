@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ricochet {
+
+/// What would run for a case, decided without running it.
+struct CasePlan {
+  std::string refusal;        ///< "" when the case applies
+  std::string operator_name;  ///< diagonal, modal, band, sparse
+  long long steps = 0;
+  double predicted_seconds = 0;
+  std::vector<std::pair<std::string, std::string>> left_out;  ///< item, reason
+  std::vector<std::string> notes;
+};
+
+/// Thrown out of a case when `stop` became true while it marched; the case leaves nothing behind.
+struct Interrupted {};
+
+}  // namespace ricochet

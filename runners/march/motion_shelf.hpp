@@ -1,0 +1,30 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "runners/march/case_watch.hpp"
+#include "runners/store/record.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once stored, or "".
+struct MotionShelf {
+  std::function<std::string(const std::string& key)> find;
+  std::function<void(const std::string& key, const std::string& content)> keep;
+  /// Shows what a case under way has so far; empty where nobody looks.
+  std::function<void(const CaseRecord&)> show;
+  /// A case in whose stead something is computed that others need too: what its plugins do wrong is its own fault.
+  std::function<TicketPointer(const StudyCase&)> ticket;
+  /// Whether a case has failed: nothing is computed with its methods for others.
+  std::function<bool(const std::string& id)> failed;
+};
+
+/// Where a case keeps what would be lost if it were killed, and says how far it is.
+struct CaseDesk {
+  MotionShelf shelf;  ///< bytes by key; empty bytes forget a key
+  std::string key;    ///< of this case and everything its bits depend on
+  int workers = 1;    ///< threads that this case may use
+};
+
+}  // namespace ricochet

@@ -1,0 +1,95 @@
+#include "runners/study/fields.hpp"
+
+namespace ricochet::keys {
+
+Field real(const char* key, const char* unit, const Range& range, std::optional<double> fallback, const char* text) {
+  Field field;
+  field.spec = real_parameter(key, unit, fallback, range, text);
+  if (fallback) field.fallback = *fallback;
+  field.axis = true;
+  return field;
+}
+
+Field single(Field field) {
+  field.axis = false;
+  return field;
+}
+
+Field integer(const char* key, const Range& range, std::optional<long long> fallback, const char* text) {
+  Field field;
+  field.spec = integer_parameter(key, fallback, range, text);
+  if (fallback) field.fallback = *fallback;
+  return field;
+}
+
+Field word(const char* key, std::vector<std::string> words, std::optional<std::string> fallback, const char* text) {
+  Field field;
+  field.spec = word_parameter(key, std::move(words), fallback, text);
+  if (fallback) field.fallback = *fallback;
+  return field;
+}
+
+Field of_form(Field::Form form, const char* key, std::optional<Json> fallback, const char* text) {
+  Field field;
+  field.form = form;
+  field.spec.key = key;
+  field.spec.text = text;
+  field.fallback = std::move(fallback);
+  return field;
+}
+
+Field formula(const char* key, const char* unit, const char* variables, bool nullable, std::optional<Json> fallback,
+              const char* text) {
+  Field field = of_form(Field::Form::formula, key, std::move(fallback), text);
+  field.spec.unit = unit;
+  field.variables = variables;
+  field.nullable = nullable;
+  field.axis = true;
+  return field;
+}
+
+Field object(const char* key, std::optional<Json> fallback, const char* text, ObjectForm keys) {
+  Field field = of_form(Field::Form::object, key, std::move(fallback), text);
+  field.nested.push_back(std::move(keys));
+  return field;
+}
+
+Field methods(const char* key, Role role, const char* text) {
+  Field field = of_form(Field::Form::methods, key, std::nullopt, text);
+  field.role = role;
+  return field;
+}
+
+Field step() {
+  return real("step", "s", positive, std::nullopt, "Time step h.");
+}
+
+Field duration() {
+  return single(real("duration", "s", positive, std::nullopt,
+                     "Simulated time; the run ends at the last whole step not beyond it."));
+}
+
+Field samples() {
+  return integer("samples", {2, 1000000, false, false}, 200, "Number of points of each sampled curve.");
+}
+
+Field optional(Field field) {
+  field = single(std::move(field));
+  field.nullable = true;
+  field.fallback = Json(nullptr);
+  return field;
+}
+
+Field budget() {
+  return optional(real("budget", "s", positive, std::nullopt,
+                       "Processor time after which a case is stopped and counts as failed; null: no limit."));
+}
+
+Field steps_per_period() {
+  Field field = integer("steps_per_period", {8, 100000000, false, false}, std::nullopt,
+                        "Steps per forcing period: h = 2π/(ω·steps_per_period).");
+  field.axis = true;
+  return field;
+}
+
+}  // namespace ricochet::keys

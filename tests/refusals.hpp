@@ -1,0 +1,36 @@
+#pragma once
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// \file
+/// What a refusal must be, so that whoever reads it can act on it.
+namespace ricochet::testing {
+
+/// Matches "what does not fit; what to take instead": a clause of four words or more that ends in a colon, a semicolon
+/// or a comma, and after it an order with its object ("use …", "keep one", "lower `modes`").
+class CauseAndRemedy final : public Catch::MatcherBase<std::string> {
+ public:
+  bool match(const std::string& sentence) const override {
+    const std::vector<std::string> orders = {"use",   "choose", "take",  "give", "keep", "start",   "move",
+                                             "lower", "raise",  "place", "drop", "add",  "shorten", "project"};
+    std::istringstream text(sentence);
+    int words = 0;
+    bool cause = false;
+    for (std::string word; text >> word;) {
+      const bool order = std::find(orders.begin(), orders.end(), word) != orders.end();
+      if (cause && order) return static_cast<bool>(text >> word);
+      cause = cause || (++words >= 4 && std::string(":;,").find(word.back()) != std::string::npos);
+    }
+    return false;
+  }
+  std::string describe() const override { return "names a cause and a remedy"; }
+};
+
+inline CauseAndRemedy names_cause_and_remedy() {
+  return {};
+}
+
+}  // namespace ricochet::testing

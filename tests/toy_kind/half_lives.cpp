@@ -1,0 +1,119 @@
+// A kind of study that the program does not have, in this file alone: it is registered, and runs from a study to a
+// report.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "runners/command/command.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/fields.hpp"
+#include "tests/runners/scratch_folder.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+// How long the free oscillator takes to lose half of its amplitude, for several thresholds: t = ln(1/share)·2m/c.
+Kind half_lives() {
+  Kind kind;
+  kind.format.name = "half-lives";
+  kind.format.text = "Each case is asked when its amplitude has fallen to given shares.";
+  Field shares = keys::of_form(Field::Form::numbers, "shares", std::nullopt, "The shares, all different.");
+  shares.spec = real_parameter("shares", "1", std::nullopt, {0, 1, true, true}, shares.spec.text);
+  kind.format.keys = {std::move(shares), keys::budget()};
+  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"shares", "budget"}); };
+  kind.format.check = [](const Json& resolved) {
+    if (resolved.at("scene").at("structure").at("type") != "oscillator")
+      throw InputError("/scene/structure/type", "half-lives are those of an oscillator");
+  };
+  kind.plan = [](const StudyCase&, const Registry&) { return CasePlan{}; };
+  kind.start = [](const RunContext&) {
+    CaseRunner runner;
+    runner.run = [](const StudyCase& study_case, const std::atomic<bool>&) {
+      const Json structure = study_case.scene_json.at("structure");
+      const double decay = structure.at("damping").get<double>() / (2 * structure.at("mass").get<double>());
+      CaseRecord record;
+      record.id = study_case.id;
+      record.axes = study_case.axes;
+      record.status = "done";
+      Table table{"half_lives",
+                  "When the amplitude has fallen to each share.",
+                  {{"share", "1", "Share of the first amplitude."}, {"time", "s", "Time after which it is reached."}},
+                  {}};
+      for (const Json& share : study_case.settings.at("shares")) {
+        const double time = -std::log(share.get<double>()) / decay;
+        table.rows.push_back({share.get<double>(), time});
+        record.measures = {{"longest_half_life", time}};
+      }
+      record.tables.push_back(std::move(table));
+      return record;
+    };
+    return runner;
+  };
+  kind.tables = [](StudyResults& results) { collect_tables(results); };
+  kind.outcome = [](const CaseRecord& record) {
+    return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
+  };
+  kind.measures = {{"longest_half_life", "s", "Time after which the smallest share is reached."}};
+  return kind;
+}
+
+const bool registered = (add_kind(half_lives()), true);
+
+const char* const study_text = R"({"name": "toy", "kind": "half-lives", "shares": [0.5, 0.25],
+  "scene": {"structure": {"type": "oscillator", "mass": 2.0, "stiffness": 8.0, "damping": [0.5, 1.0]}},
+  "methods": {"mass": "consistent", "contact": "none", "time": "newmark"}})";
+
+int command(const std::vector<std::string>& words, std::string& said) {
+  std::ostringstream out, messages;
+  const int code = run_command(words, out, messages);
+  said = out.str() + messages.str();
+  return code;
+}
+
+}  // namespace
+
+TEST_CASE("a kind of study is one record: the program runs one that it has never seen, from the study to the report") {
+  REQUIRE(registered);
+  const ScratchFolder scratch;
+  const auto file = scratch.path() / "toy.json", folder = scratch.path() / "results";
+  write_text(file, study_text);
+  std::string said;
+  INFO(said);
+  REQUIRE(command({"run", file.string(), "--out", folder.string()}, said) == 0);
+
+  // t = 2m/c·ln 2 and ln 4, for c = 0.5 and 1.
+  const std::string table = read_text(folder / "half_lives.csv");
+  CHECK(table.find("share,time") != std::string::npos);
+  CHECK(table.find("0.5,5.545177444479562") != std::string::npos);
+  CHECK(table.find("0.25,5.545177444479562") != std::string::npos);
+  CHECK(read_text(folder / "cases.csv").find("longest_half_life") != std::string::npos);
+  CHECK(std::filesystem::exists(folder / "report.html"));
+  CHECK(read_text(folder / "report.html").find("half-lives") != std::string::npos);
+
+  REQUIRE(command({"report", folder.string()}, said) == 0);
+  REQUIRE(command({"export", folder.string(), "--to", (scratch.path() / "export").string()}, said) == 0);
+  CHECK(read_text(scratch.path() / "export" / "measures.csv").find("longest_half_life,s,") != std::string::npos);
+}
+
+TEST_CASE("a registered kind is in the schema, in the names that are offered, and checks its own keys") {
+  const ScratchFolder scratch;
+  const auto refusal = [&](std::string text, const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+    const auto file = scratch.path() / "wrong.json";
+    write_text(file, text);
+    std::string said;
+    CHECK(command({"plan", file.string()}, said) == 2);
+    return said;
+  };
+  CHECK(refusal(study_text, "half-lives", "half-life").find("did you mean \"half-lives\"") != std::string::npos);
+  CHECK(refusal(study_text, "0.25", "2").find("/shares") != std::string::npos);
+  CHECK(refusal(study_text, "\"shares\": [0.5, 0.25],", "").find("/shares: missing") != std::string::npos);
+  std::string schema;
+  CHECK(command({"schema"}, schema) == 0);
+  CHECK(schema.find("half-lives") != std::string::npos);
+  CHECK(schema.find("The shares, all different.") != std::string::npos);
+  CHECK_THROWS_AS(add_kind(half_lives()), std::logic_error);
+}
