@@ -8,10 +8,11 @@
 #include <sstream>
 
 #include "runners/command/command.hpp"
+#include "runners/command/plain.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/command/table.hpp"
 #include "runners/study/check_object.hpp"
 #include "runners/study/stated_plan.hpp"
+#include "runners/table/plain_text.hpp"
 
 namespace ricochet {
 namespace {

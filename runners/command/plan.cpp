@@ -7,9 +7,10 @@
 #include <thread>
 
 #include "runners/command/command.hpp"
+#include "runners/command/plain.hpp"
 #include "runners/command/study_file.hpp"
-#include "runners/command/table.hpp"
 #include "runners/run/plan_cases.hpp"
+#include "runners/table/plain_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -68,9 +69,9 @@ void print_costs(const Costs& costs, std::ostream& out) {
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  out << "predicted: " << plain_seconds(costs.total) << " on 1 core";
+  out << "predicted: " << duration_text(costs.total) << " on 1 core";
   // A case runs on one core: the longest bounds the whole.
-  if (cores > 1) out << ", " << plain_seconds(std::max(costs.total / cores, costs.longest)) << " on all " << cores;
+  if (cores > 1) out << ", " << duration_text(std::max(costs.total / cores, costs.longest)) << " on all " << cores;
   out << "\n";
 }
 
@@ -129,7 +130,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
         costs.total += plan.predicted_seconds;
         costs.longest = std::max(costs.longest, plan.predicted_seconds);
         row.insert(row.end(),
-                   {fmt::format("{}", plan.steps), plan.operator_name, plain_seconds(plan.predicted_seconds), ""});
+                   {fmt::format("{}", plan.steps), plan.operator_name, duration_text(plan.predicted_seconds), ""});
         for (const auto& [item, reason] : plan.left_out) ++left_out[item + ": " + reason];
         for (const std::string& note : plan.notes) ++notes[note];
       }

@@ -125,21 +125,19 @@ std::string details(const EvidenceRows& rows, const std::vector<Method>& all) {
 }
 
 /// "24 orders against what the methods declare: 18 confirmed, 2 refuted, 4 undecided."
-std::string counts(const EvidenceRows& rows) {
+std::string counts(const StudyResults& results) {
+  const Table* verdicts = find_table(results.derived, "order_verdicts");
+  if (!verdicts || verdicts->rows.empty()) return "";
+  const TableReader rows(*verdicts);
+  const auto count = [&](const char* column) { return static_cast<size_t>(rows.number(0, column).value_or(0)); };
   std::string out;
-  size_t declared = 0;
-  for (const char* verdict : {"confirmed", "refuted", "undecided"}) {
-    size_t count = 0;
-    for (size_t row = 0; row < rows.size(); ++row)
-      count += rows.number(row, "declared") && rows.text(row, "verdict") == verdict;
-    declared += count;
-    if (count) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, verdict);
-  }
-  if (declared == 0)
+  for (const char* verdict : {"confirmed", "refuted", "undecided"})
+    if (count(verdict) > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count(verdict), verdict);
+  if (count("declared") == 0)
     return fmt::format("<p class=\"lead\">{}, none with a declared order to compare with.</p>\n",
-                       count_text(rows.size(), "order", "orders"));
+                       count_text(count("orders"), "order", "orders"));
   return fmt::format("<p class=\"lead\">{} against what the methods declare: {}.</p>\n",
-                     count_text(declared, "order", "orders"), out);
+                     count_text(count("declared"), "order", "orders"), out);
 }
 
 }  // namespace
@@ -148,7 +146,7 @@ std::string orders_html(const CaseView& view) {
   const EvidenceRows rows(view.results(), "orders");
   if (rows.empty()) return "";
   const std::vector<Method> all = methods(view, rows);
-  return counts(rows) + matrix(rows, all) + details(rows, all);
+  return counts(view.results()) + matrix(rows, all) + details(rows, all);
 }
 
 }  // namespace ricochet::report

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runners/run/say.hpp"
+#include "runners/table/plain_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -29,15 +30,6 @@ int terminal_width(std::FILE* out) {
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-  constexpr long long minute = 60, hour = 3600;
-  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
-  const long long whole = std::llround(seconds);
-  if (whole < minute) return fmt::format("{} s", whole);
-  if (whole < hour) return fmt::format("{} min {:02} s", whole / minute, whole % minute);
-  return fmt::format("{} h {:02} min", whole / hour, whole % hour / minute);
-}
 
 double progress_fraction(const ProgressState& state) {
   if (state.total == 0 || state.done >= state.total) return 1;

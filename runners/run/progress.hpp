@@ -28,9 +28,6 @@ std::string progress_text(const ProgressState& state);
 /// "[######------] " and the text, at most `width` characters.
 std::string progress_bar(const ProgressState& state, int width);
 
-/// "0.8 s", "42 s", "3 min 05 s", "2 h 10 min".
-std::string duration_text(double seconds);
-
 /// Tells a person how far a run is: on a terminal a bar redrawn in place five times a second, otherwise a plain line
 /// now and then. Safe from several threads; nothing else may print to `out` while it lives, except through note().
 class Progress {

@@ -23,6 +23,7 @@
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
+#include "runners/table/plain_text.hpp"
 
 namespace ricochet {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
@@ -15,16 +16,6 @@ namespace {
 
 std::string cell(const CaseRecord& record, const std::string& column) {
   return axis(record, column).text();
-}
-
-/// Characters shown, for UTF-8 text without combining marks.
-std::size_t shown(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(width - std::min(width, shown(text)), ' ');
 }
 
 std::string signed_percent(double ratio) {
@@ -74,37 +65,25 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
 }
 
 std::string case_table(const StudyResults& results) {
-  struct Column {
-    std::string name;
-    std::size_t width;
-    std::vector<std::string> cells;
-  };
-  std::vector<Column> columns;
-  const auto add = [&](const std::string& name, auto value) {
-    Column column{name, shown(name), {}};
-    for (const CaseRecord& record : results.cases) {
-      column.cells.push_back(value(record));
-      column.width = std::max(column.width, shown(column.cells.back()));
-    }
-    columns.push_back(std::move(column));
-  };
+  std::vector<std::string> header;
   for (const std::string& name : results.columns) {
     const auto differs = [&](const CaseRecord& record) {
       return cell(record, name) != cell(results.cases.front(), name);
     };
-    if (std::any_of(results.cases.begin(), results.cases.end(), differs))
-      add(name, [&](const CaseRecord& record) { return cell(record, name); });
+    if (std::any_of(results.cases.begin(), results.cases.end(), differs)) header.push_back(name);
   }
-  if (columns.empty()) add("case", [](const CaseRecord& record) { return record.id; });
-
-  std::string table;
-  for (const Column& column : columns) table += padded(column.name, column.width) + "  ";
-  table += "outcome\n";
-  for (std::size_t i = 0; i < results.cases.size(); ++i) {
-    for (const Column& column : columns) table += padded(column.cells[i], column.width) + "  ";
-    table += outcome_text(results.cases[i], results.kind) + '\n';
+  const std::vector<std::string> axes = header;
+  if (axes.empty()) header.emplace_back("case");
+  header.emplace_back("outcome");
+  TextTable table(header);
+  for (const CaseRecord& record : results.cases) {
+    std::vector<std::string> line;
+    for (const std::string& name : axes) line.push_back(cell(record, name));
+    if (axes.empty()) line.push_back(record.id);
+    line.push_back(outcome_text(record, results.kind));
+    table.add(std::move(line));
   }
-  return table;
+  return table.text();
 }
 
 std::string totals_text(const StudyResults& results) {

@@ -3,6 +3,7 @@
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
@@ -21,6 +22,7 @@ Kind convergence_kind() {
   kind.tables = [](StudyResults& results) {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
+    results.derived.push_back(order_verdicts_table(results.derived.back()));
     collect_tables(results);
   };
   kind.outcome = errors_text;

@@ -3,6 +3,7 @@
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/comparison/run_comparison.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
@@ -32,7 +33,9 @@ Kind work_precision_kind() {
   kind.tables = [](StudyResults& results) {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
+    results.derived.push_back(order_verdicts_table(results.derived.back()));
     results.derived.push_back(work_precision_table(results));
+    results.derived.push_back(precision_targets_table(results));
     collect_tables(results);
   };
   kind.outcome = errors_text;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/store/record_values.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
@@ -34,6 +35,7 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
   out.name = "work-precision-free";
   out.question = "Which method reaches a given error in the least time?";
   out.kind = "work-precision";
+  out.study = {{"errors", {"tip-linf", "energy", "impact-times"}}};
   out.columns = {"mass", "mass.velocity", "contact", "time", "time.beta", "elements", "step"};
   const std::vector<std::string> kinds = {"tip-linf", "energy", "impact-times"};
   std::mt19937 random(4);
@@ -84,6 +86,7 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
             error.insert(error.end(), {kinds[k], value, k == 2 ? 1e-18 : (k == 1 ? 40 : 1) * 3e-5});
             errors.rows.push_back(std::move(error));
             record.measures.emplace_back("error." + kinds[k], value);
+            record.measures.emplace_back("floor." + kinds[k], k == 2 ? 1e-18 : (k == 1 ? 40 : 1) * 3e-5);
           }
           const bool done = record.status == "done";
           worked.insert(worked.end(), {kinds[k], has ? Cell(value) : Cell(), done ? Cell(seconds) : Cell(),
@@ -91,6 +94,10 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
                                        record.steps, record.status});
           work.rows.push_back(std::move(worked));
         }
+        if (record.status == "done")
+          record.measures.insert(
+              record.measures.end(),
+              {{"timed_seconds", seconds}, {"timed_low", 0.93 * seconds}, {"timed_high", 1.2 * seconds}});
         out.cases.push_back(std::move(record));
       }
       if (refused) continue;
@@ -130,7 +137,7 @@ inline StudyResults comparison(const std::vector<double>& steps = {1e-3, 5e-4, 2
     share(measure, "mass × time × step", 0.01, first);
     share(measure, "higher", 0.005, first);
   }
-  out.derived = {errors, orders, work, effects};
+  out.derived = {errors, orders, work, effects, precision_targets_table(out), order_verdicts_table(orders)};
   return out;
 }
 

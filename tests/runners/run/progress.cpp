@@ -31,14 +31,6 @@ TEST_CASE("progress: the bar fits the terminal") {
   CHECK_THAT(progress_bar(state, 80), Catch::StartsWith("[#") && Catch::EndsWith("30 s left"));
 }
 
-TEST_CASE("progress: durations") {
-  CHECK(duration_text(0.84) == "0.8 s");
-  CHECK(duration_text(42.3) == "42 s");
-  CHECK(duration_text(59.7) == "1 min 00 s");
-  CHECK(duration_text(185) == "3 min 05 s");
-  CHECK(duration_text(7800) == "2 h 10 min");
-}
-
 TEST_CASE("progress: a terminal's line is erased at the end, and notes stand on lines of their own") {
   const ScratchFolder scratch;
   const std::atomic<bool> stop{false};

@@ -62,7 +62,10 @@ TEST_CASE("summary: a stability case whose march contradicts its spectrum is sai
   CaseRecord record = ended("done", "");
   record.measures = {{"largest_radius", 1.0}};
   record.tables = {
-      {"stability_observed", {"step", "contact", "behaviour"}, {{1e-4, "open", "stable"}, {1e-3, "open", "unstable"}}}};
+      {"stability_observed",
+       "",
+       named_columns({"step", "closed", "behaviour"}),
+       {{1e-4, false, "stable"}, {1e-3, false, "unstable"}}}};
   results.cases = {record};
   CHECK(outcome_text(record, "stability") == "done: largest spectral radius 1");
   CHECK(results_exit_code(results) == 0);

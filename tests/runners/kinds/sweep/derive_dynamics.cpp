@@ -347,13 +347,15 @@ TEST_CASE("sections that converge with the step are at distances that converge")
 TEST_CASE("shifts of located changes carry the intervals of both") {
   std::vector<Method> methods = {method(0.25, 2000, 20, moving), method(0.5, 8000, 20, moving)};
   StudyResults results = study(methods, range(0.07, 0.09, 5));
-  const std::vector<std::string> columns = {"start", "from", "to", "kind", "value", "low", "high", "steps"};
+  const std::vector<Column> columns = bifurcations_head().columns;
   results.cases[0].tables.push_back({"bifurcations",
+                                     "",
                                      columns,
                                      {{"up", "periodic 1", "chaotic", "change", 0.0853, 0.0852, 0.0854, 8},
                                       {"up", "periodic 1", "chaotic", "change", 0.0741, 0.0740, 0.0742, 8},
                                       {"up", "chaotic", "periodic 3", "change", 0.088, 0.0879, 0.0881, 8}}});
   results.cases[1].tables.push_back({"bifurcations",
+                                     "",
                                      columns,
                                      {{"up", "periodic 1", "chaotic", "change", 0.085, 0.0849, 0.0851, 8},
                                       {"up", "no contact", "periodic 1", "grazing", 0.0792, 0.0791, 0.0793, 8},

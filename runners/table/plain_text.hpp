@@ -1,9 +1,13 @@
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+/// \file
+/// What a terminal shows: tables and spans of time as plain text.
 namespace ricochet {
+
+/// Characters shown, for UTF-8 text without combining marks.
+std::size_t shown_width(const std::string& text);
 
 /// Plain text in aligned columns; the last column is not padded, and empty columns are left out.
 class TextTable {
@@ -18,10 +22,8 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// A value of an axis as a person reads it: words bare, numbers in their shortest form, null as "none".
-std::string plain(const nlohmann::ordered_json& value);
-
-/// A span of time: "0.8 s", "3 min 20 s", "2 h 5 min".
-std::string plain_seconds(double seconds);
+/// A span of time in two digits or in whole seconds, never in scientific notation: "2.4 ms", "8.4 s", "42 s", "3 min 05
+/// s", "2 h 10 min".
+std::string duration_text(double seconds);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "runners/command/table.hpp"
+#include "runners/table/plain_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,11 @@
 #include <cmath>
 
 namespace ricochet {
-namespace {
 
-std::size_t width(const std::string& text) {
+std::size_t shown_width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
-
-}  // namespace
 
 std::string TextTable::text(std::size_t indent) const {
   const std::size_t columns = rows_.front().size();
@@ -21,7 +18,7 @@ std::string TextTable::text(std::size_t indent) const {
   for (std::size_t column = 0; column < columns; ++column) {
     bool empty = true;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
-      widths[column] = std::max(widths[column], width(rows_[row][column]));
+      widths[column] = std::max(widths[column], shown_width(rows_[row][column]));
       empty = empty && (row == 0 || rows_[row][column].empty());
     }
     if (!empty) shown.push_back(column);
@@ -30,35 +27,25 @@ std::string TextTable::text(std::size_t indent) const {
   for (const auto& row : rows_) {
     std::string line(indent, ' ');
     for (const std::size_t column : shown)
-      line += row[column] + std::string(widths[column] - width(row[column]) + 2, ' ');
+      line += row[column] + std::string(widths[column] - shown_width(row[column]) + 2, ' ');
     while (!line.empty() && line.back() == ' ') line.pop_back();
     result += line + "\n";
   }
   return result;
 }
 
-std::string plain(const nlohmann::ordered_json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_null()) return "none";
-  if (value.is_number_float()) {
-    const auto number = value.get<double>();
-    const std::string exact = fmt::format("{}", number), brief = fmt::format("{:g}", number);
-    return brief.size() < exact.size() && std::stod(brief) == number ? brief : exact;
-  }
-  return value.dump();
-}
-
-std::string plain_seconds(double seconds) {
-  // Two digits, never in scientific notation.
+std::string duration_text(double seconds) {
+  constexpr long long minute = 60, hour = 3600;
   const auto two = [](double value) {
     return value < 9.95 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
   };
   if (seconds < 1e-3) return two(seconds * 1e6) + " µs";
   if (seconds < 1) return two(seconds * 1e3) + " ms";
-  if (seconds < 99.5) return two(seconds) + " s";
-  const double whole = std::round(seconds), minutes = std::floor(whole / 60);
-  if (minutes < 100) return fmt::format("{:.0f} min {:.0f} s", minutes, whole - 60 * minutes);
-  return fmt::format("{:.0f} h {:.0f} min", std::floor(minutes / 60), minutes - 60 * std::floor(minutes / 60));
+  if (seconds < 9.95) return two(seconds) + " s";
+  const long long whole = std::llround(seconds);
+  if (whole < minute) return fmt::format("{} s", whole);
+  if (whole < hour) return fmt::format("{} min {:02} s", whole / minute, whole % minute);
+  return fmt::format("{} h {:02} min", whole / hour, whole % hour / minute);
 }
 
 }  // namespace ricochet

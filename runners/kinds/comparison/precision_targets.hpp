@@ -1,0 +1,14 @@
+#pragma once
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// precision_targets: for each error, scene and power of ten, the cheapest method that gets there with a step that was
+/// run, and the runner-up. From the power that the worst case misses (or the first that some case reaches) to the last
+/// that one does. What an error is known to is its value, or the floor of its reference if that is larger.
+Table precision_targets_table(const StudyResults& results);
+
+/// order_verdicts: how many of the orders with a declared one are confirmed, refuted and undecided.
+Table order_verdicts_table(const Table& orders);
+
+}  // namespace ricochet
