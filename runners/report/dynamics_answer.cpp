@@ -8,6 +8,7 @@
 #include "runners/report/dynamics_report.hpp"
 #include "runners/report/evidence_rows.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/interval.hpp"
 #include "runners/report/orbits.hpp"
 
 namespace ricochet::report {
@@ -139,8 +140,8 @@ std::string grazing_sentence(const Cases& cases, const Quantity& parameter) {
 
 std::optional<double> physical_viscosity(const CaseView& view, const CaseRecord& record) {
   if (const auto axis = CaseView::number(record, "structure.damping.stiffness")) return axis;
-  const Json& study = view.results().study;
-  const Json::json_pointer pointer("/scene/structure/damping/stiffness");
+  const nlohmann::ordered_json& study = view.results().study;
+  const nlohmann::ordered_json::json_pointer pointer("/scene/structure/damping/stiffness");
   if (!study.is_object() || !study.contains(pointer) || !study.at(pointer).is_number()) return std::nullopt;
   return study.at(pointer).get<double>();
 }

@@ -10,14 +10,14 @@
 namespace ricochet::report {
 namespace {
 
-std::string text_of(const nlohmann::ordered_json& value) {
+std::string cell_words(const nlohmann::ordered_json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float()) return exact_text(value.get<double>());
   return value.dump();
 }
 
-void extend(std::string& key, std::string_view column, const std::string& text) {
+void extend_key(std::string& key, std::string_view column, const std::string& text) {
   if (text.empty()) return;
   key += column;
   key += '\x1e' + text + '\x1f';
@@ -35,8 +35,8 @@ EvidenceRows::EvidenceRows(const StudyResults& results, std::string_view table, 
       axes_.push_back(column);
   for (size_t row = 0; row < size(); ++row) {
     std::string key;
-    for (const std::string& column : axes_) extend(key, column, text(row, column));
-    for (const std::string& column : keys_) extend(key, column, text(row, column));
+    for (const std::string& column : axes_) extend_key(key, column, text(row, column));
+    for (const std::string& column : keys_) extend_key(key, column, text(row, column));
     places_.emplace(std::move(key), row);
   }
 }
@@ -50,7 +50,7 @@ const nlohmann::ordered_json* EvidenceRows::cell(size_t row, std::string_view co
 
 std::string EvidenceRows::text(size_t row, std::string_view column) const {
   const auto* value = cell(row, column);
-  return value ? text_of(*value) : "";
+  return value ? cell_words(*value) : "";
 }
 
 std::optional<double> EvidenceRows::number(size_t row, std::string_view column) const {
@@ -58,6 +58,11 @@ std::optional<double> EvidenceRows::number(size_t row, std::string_view column) 
   if (!value || !value->is_number()) return std::nullopt;
   const double number = value->get<double>();
   return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+nlohmann::ordered_json EvidenceRows::value(size_t row, std::string_view column) const {
+  const auto* found = cell(row, column);
+  return found ? *found : nlohmann::ordered_json();
 }
 
 bool EvidenceRows::flag(size_t row, std::string_view column) const {
@@ -78,8 +83,8 @@ std::optional<size_t> EvidenceRows::find(const CaseRecord& record, const std::ve
                                          const std::vector<std::string>& but) const {
   std::string key;
   for (const std::string& column : axes_)
-    if (std::find(but.begin(), but.end(), column) == but.end()) extend(key, column, CaseView::text(record, column));
-  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend(key, keys_[k], keys[k]);
+    if (std::find(but.begin(), but.end(), column) == but.end()) extend_key(key, column, CaseView::text(record, column));
+  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend_key(key, keys_[k], keys[k]);
   const auto found = places_.find(key);
   return found == places_.end() ? std::nullopt : std::optional(found->second);
 }

@@ -1,16 +1,11 @@
 #include "runners/report/stability_rows.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-
-#include "runners/report/html.hpp"
 
 namespace ricochet::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using TableJson = nlohmann::ordered_json;
 
 const DerivedTable* table_of(const CaseRecord& record, const std::string& name) {
   const auto found = std::find_if(record.tables.begin(), record.tables.end(),
@@ -18,17 +13,17 @@ const DerivedTable* table_of(const CaseRecord& record, const std::string& name) 
   return found == record.tables.end() ? nullptr : &*found;
 }
 
-const Json& cell(const DerivedTable& table, const std::vector<Json>& row, const std::string& column) {
-  static const Json none;
+const TableJson& cell_in(const DerivedTable& table, const std::vector<TableJson>& row, const std::string& column) {
+  static const TableJson none;
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);
   const auto index = static_cast<size_t>(found - table.columns.begin());
   return found == table.columns.end() || index >= row.size() ? none : row[index];
 }
 
-std::optional<double> number(const Json& value) {
+std::optional<double> number_in(const TableJson& value) {
   return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
-std::string text(const Json& value) {
+std::string text_in(const TableJson& value) {
   return value.is_string() ? value.get<std::string>() : "";
 }
 
@@ -43,20 +38,20 @@ std::optional<StabilityRange> stability_range(const CaseRecord& record, bool clo
   out.record = &record;
   out.closed = closed;
   for (const auto& row : predicted->rows) {
-    const auto step = number(cell(*predicted, row, "step"));
-    if (text(cell(*predicted, row, "contact")) != contact || !step) continue;
+    const auto step = number_in(cell_in(*predicted, row, "step"));
+    if (text_in(cell_in(*predicted, row, "contact")) != contact || !step) continue;
     StabilityCell one;
     one.step = *step;
-    one.radius = number(cell(*predicted, row, "radius"));
-    one.marginal = text(cell(*predicted, row, "marginal"));
-    one.status = text(cell(*predicted, row, "status"));
-    one.reason = text(cell(*predicted, row, "reason"));
-    out.predicted = number(cell(*predicted, row, "limit_predicted"));
-    out.observed = number(cell(*predicted, row, "limit_observed"));
+    one.radius = number_in(cell_in(*predicted, row, "radius"));
+    one.marginal = text_in(cell_in(*predicted, row, "marginal"));
+    one.status = text_in(cell_in(*predicted, row, "status"));
+    one.reason = text_in(cell_in(*predicted, row, "reason"));
+    out.predicted = number_in(cell_in(*predicted, row, "limit_predicted"));
+    out.observed = number_in(cell_in(*predicted, row, "limit_observed"));
     if (observed)
       for (const auto& seen : observed->rows)
-        if (text(cell(*observed, seen, "contact")) == contact && number(cell(*observed, seen, "step")) == step)
-          one.behaviour = text(cell(*observed, seen, "behaviour"));
+        if (text_in(cell_in(*observed, seen, "contact")) == contact && number_in(cell_in(*observed, seen, "step")) == step)
+          one.behaviour = text_in(cell_in(*observed, seen, "behaviour"));
     out.cells.push_back(std::move(one));
   }
   if (out.cells.empty()) return std::nullopt;
@@ -95,22 +90,18 @@ Cases stability_cases(const CaseView& view, bool closed) {
   return out;
 }
 
-std::vector<std::string> disagreements(const StabilityRange& range) {
-  std::vector<std::string> out;
-  for (size_t i = 0; i < range.cells.size();) {
-    if (!range.cells[i].disagrees()) {
+std::vector<Disagreement> disagreements(const StabilityRange& range) {
+  std::vector<Disagreement> out;
+  const std::vector<StabilityCell>& cells = range.cells;
+  for (size_t i = 0; i < cells.size();) {
+    if (!cells[i].disagrees()) {
       ++i;
       continue;
     }
     size_t end = i;
-    const bool predicted = range.cells[i].predicted_unstable();
-    while (end < range.cells.size() && range.cells[end].disagrees() &&
-           range.cells[end].predicted_unstable() == predicted)
-      ++end;
-    const std::string from = number_text(range.cells[i].step, 3), to = number_text(range.cells[end - 1].step, 3);
-    out.push_back(fmt::format("h = {} s{}: predicted {}, observed {}", from,
-                              end - i > 1 ? fmt::format(" to {} s ({} steps)", to, end - i) : "",
-                              predicted ? "unstable" : "stable", predicted ? "stable" : "unstable"));
+    const bool predicted = cells[i].predicted_unstable();
+    while (end < cells.size() && cells[end].disagrees() && cells[end].predicted_unstable() == predicted) ++end;
+    out.push_back({cells[i].step, cells[end - 1].step, end - i, predicted});
     i = end;
   }
   return out;
