@@ -11,8 +11,8 @@ namespace ricochet::report {
 namespace {
 
 constexpr size_t most_labels = 250;
-constexpr std::array colours = {"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00",
-                                "#6A3D9A", "#8C6D31", "#F0E442", "#44AA99", "#882255", "#999933"};
+constexpr std::array attractor_colours = {"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00",
+                                          "#6A3D9A", "#8C6D31", "#F0E442", "#44AA99", "#882255", "#999933"};
 
 /// How a label sorts: attractors by number before everything else.
 using Rank = std::pair<long long, std::string>;
@@ -111,7 +111,7 @@ Basins basins_of(const StudyResults& results) {
       const auto said = names.find(rank.first);
       out.labels.push_back({"attractor " + std::to_string(rank.first) +
                                 (said == names.end() || said->second.empty() ? "" : " (" + said->second + ")"),
-                            colours[attractor++ % colours.size()], true});
+                            attractor_colours[attractor++ % attractor_colours.size()], true});
     }
   }
   std::map<const CaseRecord*, size_t> place;

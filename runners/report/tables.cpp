@@ -7,7 +7,6 @@
 #include <set>
 
 #include "runners/report/html.hpp"
-#include "runners/report/options.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -18,7 +17,7 @@ const std::set<std::string> aside = {
     "projection_energy",   "kernel_energy",     "active_set_changes", "complementarity_residual",
     "drift_per_impact",    "first_impact",      "first_release"};
 
-struct Column {
+struct CaseColumn {
   std::string header, tooltip, classes;
 };
 
@@ -28,7 +27,7 @@ std::string cell_number(double value, const std::string& classes, int digits = 5
                      exact_text(value), number_text(value, digits));
 }
 
-std::string spaced(std::string name) {
+std::string words_of(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
@@ -48,7 +47,7 @@ std::vector<std::string> measures_present(const CaseView& view) {
   return out;
 }
 
-std::string header_cell(const Column& column) {
+std::string header_cell(const CaseColumn& column) {
   return fmt::format(
       "<th scope=\"col\" class=\"{}\" title=\"{}\" aria-sort=\"none\"><button type=\"button\">{}</button></th>",
       column.classes, escape(column.tooltip), escape(column.header));
@@ -59,7 +58,7 @@ std::string glossary(const std::vector<std::string>& measures) {
   for (const std::string& name : measures)
     if (const MeasureInfo* info = measure_info(name))
       rows +=
-          fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(with_unit({spaced(name), info->unit})), escape(info->text));
+          fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(with_unit({words_of(name), info->unit})), escape(info->text));
   return rows.empty() ? ""
                       : "<details><summary>What the measures mean</summary><dl class=\"glossary\">\n" + rows +
                             "</dl></details>\n";
@@ -72,7 +71,7 @@ std::string case_table_html(const CaseView& view) {
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
 
-  std::vector<Column> columns = {
+  std::vector<CaseColumn> columns = {
       {"case", "Identity of the case: its row in cases.csv and its file in curves/", "text extra"}};
   for (const std::string& column : results.columns)
     columns.push_back(
@@ -85,7 +84,7 @@ std::string case_table_html(const CaseView& view) {
   columns.push_back({"run (s)", "Time of marching", "number"});
   for (const std::string& name : measures) {
     const MeasureInfo* info = measure_info(name);
-    columns.push_back({with_unit({spaced(name), info ? info->unit : ""}), info ? info->text : "",
+    columns.push_back({with_unit({words_of(name), info ? info->unit : ""}), info ? info->text : "",
                        aside.contains(name) ? "number extra" : "number"});
   }
 
@@ -106,7 +105,7 @@ std::string case_table_html(const CaseView& view) {
                        escape(fmt::format("{}", fmt::join(constants, " · "))));
 
   out += "<div class=\"scroll tall\"><table class=\"cases\" id=\"cases\"><thead><tr>";
-  for (const Column& column : columns) out += header_cell(column);
+  for (const CaseColumn& column : columns) out += header_cell(column);
   out += "</tr></thead>\n<tbody>\n";
   for (const CaseRecord& record : results.cases) {
     out += fmt::format("<tr data-status=\"{}\"><td class=\"text extra\">{}</td>", escape(record.status),

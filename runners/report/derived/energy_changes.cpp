@@ -1,0 +1,18 @@
+#include <cmath>
+
+#include "runners/report/answer.hpp"
+#include "runners/report/derived/shown_tables.hpp"
+
+namespace ricochet::report {
+
+Table energy_changes(const CaseView& view) {
+  Table out{"energy_changes", "", named_columns({"case", "change", "gained", "conservative"}), {}};
+  if (view.results().kind != "trajectory") return out;
+  const bool kept = conservative(view);
+  for (const CaseRecord* record : view.all())
+    if (const auto ratio = CaseView::measure(*record, "energy_ratio"))
+      out.rows.push_back({record->id, std::abs(*ratio - 1), *ratio > 1, kept});
+  return out;
+}
+
+}  // namespace ricochet::report
