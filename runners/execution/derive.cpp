@@ -10,6 +10,7 @@
 #include <set>
 
 #include "runners/execution/derive_dynamics.hpp"
+#include "runners/report/derived/shown_tables.hpp"
 
 namespace ricochet {
 namespace {
@@ -275,6 +276,7 @@ void derive_tables(StudyResults& results) {
   if (has_dynamics(results)) derive_dynamics(results);
   if (DerivedTable effects = effects_table(results); !effects.rows.empty())
     results.derived.push_back(std::move(effects));
+  for (DerivedTable& table : report::shown_tables(results)) results.derived.push_back(std::move(table));
 }
 
 }  // namespace ricochet

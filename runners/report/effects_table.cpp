@@ -18,8 +18,9 @@ std::string effects_html(const CaseView& view) {
         rows += fmt::format(
             "<tr><td>{}</td><td>{}</td><td class=\"number\" title=\"{}\">{}</td><td class=\"number\">{} to "
             "{}</td></tr>\n",
-            escape(in_words(measure.name) + (measure.log ? " (log)" : "")), escape(share.factor), exact_text(share.share),
-            effects_percent(share.share), effects_percent(share.low), effects_percent(share.high));
+            escape(in_words(measure.name) + (measure.log ? " (log)" : "")), escape(share.factor),
+            exact_text(share.share), effects_percent(share.share), effects_percent(share.low),
+            effects_percent(share.high));
   }
   sentences += "</ul>\n";
   if (rows.empty()) return sentences;

@@ -74,11 +74,13 @@ std::string effects_sentence(const MeasureShares& measure) {
   if (!measure.told()) return fmt::format("No shares for {}.", in_words(measure.name));
   const MeasureShare& largest = measure.shares.front();
   const std::string first = largest.order == 1 ? largest.factor : "";
-  std::string out = fmt::format("{} of the spread of {}{} comes from {}", effects_percent(largest.share), in_words(measure.name),
-                                measure.log ? " (on a logarithmic scale)" : "", source_of_spread(largest, ""));
+  std::string out =
+      fmt::format("{} of the spread of {}{} comes from {}", effects_percent(largest.share), in_words(measure.name),
+                  measure.log ? " (on a logarithmic scale)" : "", source_of_spread(largest, ""));
   for (size_t k = 1; k < std::min<size_t>(measure.shares.size(), 3); ++k)
     if (measure.shares[k].share >= 0.01)
-      out += fmt::format(", {} from {}", effects_percent(measure.shares[k].share), source_of_spread(measure.shares[k], first));
+      out += fmt::format(", {} from {}", effects_percent(measure.shares[k].share),
+                         source_of_spread(measure.shares[k], first));
   return out + ".";
 }
 

@@ -293,13 +293,13 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   OrbitJson groups = OrbitJson::array(), kinds = OrbitJson::array();
   for (const RegimeGroup& group : regime_groups) groups.push_back({group.name, group.colour});
   for (const StartKind& kind : start_kinds) kinds.push_back({kind.name, kind.symbol});
-  OrbitJson out = {
-      {"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
+  OrbitJson out = {{"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
   OrbitJson cases = OrbitJson::object();
   for (const CaseRecord* record : view.all()) {
     const DerivedTable* table = case_table(*record, "values");
     if (!table) continue;
     const std::vector<Orbit> orbits = orbits_of(*record);
+    if (orbits.empty()) continue;
     OrbitJson one = {{"columns", columns_of(*table)}};
     OrbitJson group = OrbitJson::array(), kind = OrbitJson::array();
     double low = INFINITY, high = -INFINITY;

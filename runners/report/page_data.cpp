@@ -4,6 +4,7 @@
 #include <map>
 
 #include "runners/report/basin_data.hpp"
+#include "runners/report/column_info.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/report/derived/shown_tables.hpp"
 #include "runners/report/orbit_data.hpp"
@@ -15,14 +16,14 @@ namespace {
 using PageJson = nlohmann::ordered_json;
 
 PageJson column_json(const std::string& name) {
-  const MeasureInfo* info = measure_info(name);
-  const std::string unit = axis_unit(name);
-  return {{"name", name}, {"unit", info ? info->unit : unit}, {"text", info ? info->text : ""}};
+  const ColumnInfo info = column_info(name);
+  return {{"name", name}, {"unit", info.unit}, {"text", info.text}};
 }
 
 /// Words are written once each, numbers as they are.
 PageJson packed(PageJson cells) {
-  const bool words = std::all_of(cells.begin(), cells.end(), [](const PageJson& c) { return c.is_string() || c.is_null(); });
+  const bool words =
+      std::all_of(cells.begin(), cells.end(), [](const PageJson& c) { return c.is_string() || c.is_null(); });
   if (!words || cells.empty()) return cells;
   PageJson list = PageJson::array(), at = PageJson::array();
   std::map<std::string, int> places;
@@ -78,8 +79,9 @@ PageJson axes_json(const CaseView& view) {
 }
 
 PageJson cases_json(const CaseView& view) {
-  PageJson out = {{"id", PageJson::array()},        {"status", PageJson::array()},  {"reason", PageJson::array()},
-                  {"partial", PageJson::array()},   {"steps", PageJson::array()},   {"setup_seconds", PageJson::array()},
+  PageJson out = {{"id", PageJson::array()},          {"status", PageJson::array()},
+                  {"reason", PageJson::array()},      {"partial", PageJson::array()},
+                  {"steps", PageJson::array()},       {"setup_seconds", PageJson::array()},
                   {"run_seconds", PageJson::array()}, {"measures", PageJson::object()}};
   const Cases all = view.all();
   for (size_t c = 0; c < all.size(); ++c) {

@@ -50,7 +50,8 @@ std::optional<StabilityRange> stability_range(const CaseRecord& record, bool clo
     out.observed = number_in(cell_in(*predicted, row, "limit_observed"));
     if (observed)
       for (const auto& seen : observed->rows)
-        if (text_in(cell_in(*observed, seen, "contact")) == contact && number_in(cell_in(*observed, seen, "step")) == step)
+        if (text_in(cell_in(*observed, seen, "contact")) == contact &&
+            number_in(cell_in(*observed, seen, "step")) == step)
           one.behaviour = text_in(cell_in(*observed, seen, "behaviour"));
     out.cells.push_back(std::move(one));
   }

@@ -4,9 +4,8 @@
 namespace ricochet::report {
 
 DerivedTable basin_counts(const CaseView& view) {
-  DerivedTable out{"basin_counts",
-                   {"case", "other_case", "cells", "filled", "differ", "same", "undecided", "decided", "share"},
-                   {}};
+  DerivedTable out{
+      "basin_counts", {"case", "other_case", "cells", "filled", "differ", "same", "undecided", "decided", "share"}, {}};
   const Basins basins = basins_of(view.results());
   if (basins.grids.empty()) return out;
   const BasinGrid& first = basins.grids.front();

@@ -17,8 +17,8 @@ DerivedTable effects_said(const CaseView& view) {
       ++rest;
       together += measure.shares[k].share;
     }
-    out.rows.push_back({measure.name, measure.log, effects_sentence(measure), effects_caveats(view, measure), rest,
-                        together});
+    out.rows.push_back(
+        {measure.name, measure.log, effects_sentence(measure), effects_caveats(view, measure), rest, together});
   }
   return out;
 }

@@ -7,9 +7,9 @@ namespace ricochet::report {
 std::vector<DerivedTable> shown_tables(const StudyResults& results) {
   const CaseView view(results);
   std::vector<DerivedTable> out;
-  for (const auto make : {energy_changes, order_lines, work_points, stability_cells, stability_limits,
-                          stability_disagreements, distance_spreads, distance_medians, exponent_methods, basin_counts,
-                          basin_failures, effects_said}) {
+  for (const auto make :
+       {energy_changes, order_lines, work_points, stability_cells, stability_limits, stability_disagreements,
+        distance_spreads, distance_medians, exponent_methods, basin_counts, basin_failures, effects_said}) {
     DerivedTable table = make(view);
     const bool known = std::any_of(results.derived.begin(), results.derived.end(),
                                    [&](const DerivedTable& one) { return one.name == table.name; });

@@ -16,8 +16,8 @@ DerivedTable energy_changes(const CaseView& view);
 /// e = C x^p, with the ends of that line. Axes as in `orders`.
 DerivedTable order_lines(const CaseView& view);
 
-/// Each timed error as a point of work against precision: its floor, time per step, whether it lies on the Pareto fronts
-/// of its scene, or why it has no point.
+/// Each timed error as a point of work against precision: its floor, time per step, whether it lies on the Pareto
+/// fronts of its scene, or why it has no point.
 DerivedTable work_points(const CaseView& view);
 
 /// Each step of each contact state with what was predicted and observed of it.
@@ -27,8 +27,8 @@ DerivedTable stability_limits(const CaseView& view);
 /// Ranges of neighbouring steps where prediction and observation differ.
 DerivedTable stability_disagreements(const CaseView& view);
 
-/// Distances to the reference over values and starts: median, what the middle 80 % reach, how many are exactly zero. The
-/// row without a case is the null level.
+/// Distances to the reference over values and starts: median, what the middle 80 % reach, how many are exactly zero.
+/// The row without a case is the null level.
 DerivedTable distance_spreads(const CaseView& view);
 /// The median over the starts at each value of the parameter; rows without a case are the null level.
 DerivedTable distance_medians(const CaseView& view);

@@ -56,8 +56,7 @@ DerivedTable stability_limits(const CaseView& view) {
 }
 
 DerivedTable stability_disagreements(const CaseView& view) {
-  DerivedTable out{
-      "stability_disagreements", {"case", "contact", "from", "to", "steps", "predicted", "observed"}, {}};
+  DerivedTable out{"stability_disagreements", {"case", "contact", "from", "to", "steps", "predicted", "observed"}, {}};
   each_range(view, [&](const StabilityRange& range, const char* contact) {
     for (const Disagreement& one : disagreements(range))
       out.rows.push_back({range.record->id, contact, one.from, one.to, one.steps,
