@@ -291,6 +291,7 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
     const Table* table = find_table(record->tables, "values");
     if (!table) continue;
     const std::vector<Orbit> orbits = orbits_of(*record);
+    if (orbits.empty()) continue;
     OrbitJson one = {{"columns", columns_of(*table)}};
     OrbitJson group = OrbitJson::array(), kind = OrbitJson::array();
     double low = INFINITY, high = -INFINITY;

@@ -5,8 +5,16 @@ namespace ricochet::report {
 
 Table basin_counts(const CaseView& view) {
   Table out{"basin_counts",
-            "",
-            named_columns({"case", "other_case", "cells", "filled", "differ", "same", "undecided", "decided", "share"}),
+            "One row per case: its grid of basins beside that of the first case.",
+            {{"case", "", "Identity of the case: its row in cases.csv."},
+             {"other_case", "", "The first case of the study, which the grid is compared with."},
+             {"cells", "1", "Cells of the grid."},
+             {"filled", "1", "Cells that take the end of a marched one."},
+             {"differ", "1", "Cells decided in both grids that end elsewhere."},
+             {"same", "1", "Cells decided in both grids that end alike."},
+             {"undecided", "1", "Cells that one of the two leaves undecided."},
+             {"decided", "1", "Cells that both decide."},
+             {"share", "1", "Share of the cells decided in both that differ."}},
             {}};
   const Basins basins = basins_of(view.results());
   if (basins.grids.empty()) return out;
@@ -27,7 +35,12 @@ Table basin_counts(const CaseView& view) {
 }
 
 Table basin_failures(const CaseView& view) {
-  Table out{"basin_failures", "", named_columns({"case", "reason", "cells"}), {}};
+  Table out{"basin_failures",
+            "One row per case and reason: cells whose orbit failed.",
+            {{"case", "", "Identity of the case: its row in cases.csv."},
+             {"reason", "", "What became of the cells."},
+             {"cells", "1", "Cells that it happened to."}},
+            {}};
   for (const BasinGrid& grid : basins_of(view.results()).grids)
     for (const auto& [reason, count] : grid.reasons) out.rows.push_back({grid.record->id, reason, count});
   return out;

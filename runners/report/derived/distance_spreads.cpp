@@ -42,9 +42,18 @@ DistanceTable read_distances(const StudyResults& results) {
 
 Table distance_spreads(const CaseView& view) {
   Table out{"distance_spreads",
-            "",
-            named_columns(
-                {"case", "kind", "reference_case", "count", "zeros", "low", "median", "high", "smallest", "largest"}),
+            "One row per case and kind of distance: the distances to the reference case over all values and starts. "
+            "The row without a case is the null level, of two halves of one orbit.",
+            {{"case", "", "Identity of the case: its row in cases.csv; nothing for the null level."},
+             {"kind", "", "wasserstein or hausdorff."},
+             {"reference_case", "", "The case that distances are taken to."},
+             {"count", "1", "Values and starts that have a distance."},
+             {"zeros", "1", "How many of them are exactly zero."},
+             {"low", "1", "Distance below which a tenth of them lies."},
+             {"median", "1", "Median distance."},
+             {"high", "1", "Distance below which nine tenths of them lie."},
+             {"smallest", "1", "Smallest distance above zero."},
+             {"largest", "1", "Largest distance."}},
             {}};
   if (view.results().kind != "bifurcation") return out;
   const DistanceTable distances = read_distances(view.results());
@@ -66,7 +75,13 @@ Table distance_spreads(const CaseView& view) {
 }
 
 Table distance_medians(const CaseView& view) {
-  Table out{"distance_medians", "", named_columns({"case", "kind", "parameter", "median"}), {}};
+  Table out{"distance_medians",
+            "One row per case, kind of distance and value of the parameter. Rows without a case are the null level.",
+            {{"case", "", "Identity of the case: its row in cases.csv; nothing for the null level."},
+             {"kind", "", "wasserstein or hausdorff."},
+             {"parameter", "that of the parameter", "Value of the swept parameter."},
+             {"median", "1", "Median distance over the starts."}},
+            {}};
   if (view.results().kind != "bifurcation") return out;
   DistanceTable distances = read_distances(view.results());
   for (int k = 0; k < 2; ++k)

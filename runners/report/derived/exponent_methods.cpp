@@ -6,7 +6,13 @@
 namespace ricochet::report {
 
 Table exponent_methods(const CaseView& view) {
-  Table out{"exponent_methods", "", named_columns({"method", "orbits", "all", "marginal"}), {}};
+  Table out{"exponent_methods",
+            "One row per method of exponents: how many orbits it was used for.",
+            {{"method", "", "tangent, tangent+jump or twin."},
+             {"orbits", "1", "Orbits whose exponents come from it."},
+             {"all", "1", "Orbits with exponents, over all methods."},
+             {"marginal", "1", "Orbits of all methods that have a root on the unit circle by themselves."}},
+            {}};
   if (view.results().kind != "bifurcation") return out;
   std::map<std::string, size_t> counts;
   size_t all = 0, marginal = 0;

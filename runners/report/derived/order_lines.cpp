@@ -4,6 +4,7 @@
 
 #include "runners/report/derived/shown_tables.hpp"
 #include "runners/report/evidence_rows.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -61,9 +62,21 @@ Cases cases_along(const CaseView& view, const std::string& refined) {
 Table order_lines(const CaseView& view) {
   const EvidenceRows errors(view.results(), "errors", {"error"}),
       orders(view.results(), "orders", {"refined", "error"});
-  Table out{"order_lines", "", named_columns(orders.axes()), {}};
-  const char* const more[] = {"refined", "error", "order", "from", "to", "error_from", "error_to"};
-  for (const char* name : more) out.columns.push_back({name, "", ""});
+  Table out{"order_lines",
+            "One row per line of a convergence figure: the longest run of points above their floor within a factor of "
+            "two of e = C x^p.",
+            {},
+            {}};
+  for (const Column& column : axis_columns(view.results(), orders.axes())) out.columns.push_back(column);
+  for (Column column :
+       std::initializer_list<Column>{{"refined", "", "step or elements: what the line runs along."},
+                                     {"error", "", "Name of the error."},
+                                     {"order", "1", "The fitted power p."},
+                                     {"from", "that of what is refined", "First abscissa of the line."},
+                                     {"to", "that of what is refined", "Last abscissa of the line."},
+                                     {"error_from", "that of the error", "Height of the line at its first abscissa."},
+                                     {"error_to", "that of the error", "Height of the line at its last abscissa."}})
+    out.columns.push_back(std::move(column));
   for (const std::string refined : {"step", "elements"}) {
     std::vector<std::string> method = view.varying();
     std::erase(method, refined);

@@ -20,6 +20,8 @@
     copy() { return new Interval(this.low, this.high); }
   }
 
+  // Powers of ten to the last bit, which Math.pow does not give.
+  const ten = (k) => Number("1e" + k);
   // Rounded outwards to a round step of about five ticks, at least `least` wide.
   function roundOutwards({ low, high }, least) {
     if (high - low < least) {
@@ -27,14 +29,14 @@
       low = middle - 0.5 * least;
       high = middle + 0.5 * least;
     }
-    const raw = (high - low) / 5, decade = Math.pow(10, Math.floor(Math.log10(raw)));
+    const raw = (high - low) / 5, decade = ten(Math.floor(Math.log10(raw)));
     const step = decade * ([1, 2, 5].find((factor) => factor * decade >= raw) || 10);
     return new Interval(step * Math.floor(low / step + 1e-9), step * Math.ceil(high / step - 1e-9));
   }
   // Rounded outwards to whole decades; needs 0 < low.
   function wholeDecades(interval) {
     const low = Math.floor(Math.log10(interval.low) + 1e-9), high = Math.ceil(Math.log10(interval.high) - 1e-9);
-    return new Interval(Math.pow(10, low), Math.pow(10, high <= low ? low + 1 : high));
+    return new Interval(ten(low), ten(high <= low ? low + 1 : high));
   }
   // The intervals of small multiples, made equal so that they compare; one whose largest magnitude is over 4 times the median one keeps its own, so
   // that it does not flatten the others.
