@@ -11,6 +11,7 @@
 #include "runners/report/orbit_data.hpp"
 #include "runners/report/orbits.hpp"
 #include "runners/report/page.hpp"
+#include "runners/store/record_values.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
 using namespace ricochet;
@@ -289,8 +290,8 @@ TEST_CASE("what the script knows of an orbit is its row of values", "[report]") 
   const Json& one = data["cases"][record.id];
   const Table& table = record.tables[0];
   for (size_t row = 0; row < table.rows.size(); ++row) {
-    CHECK(one["columns"]["parameter"][row] == table.rows[row][0]);
-    CHECK(one["columns"]["evidence"][row] == table.rows[row][21]);
+    CHECK(one["columns"]["parameter"][row] == json_of(table.rows[row][0]));
+    CHECK(one["columns"]["evidence"][row] == json_of(table.rows[row][21]));
     CHECK(one["from"][row].get<double>() < table.rows[row][0].number().value());
     CHECK(one["to"][row].get<double>() > table.rows[row][0].number().value());
   }
