@@ -59,6 +59,11 @@ std::string unit_of(const ParameterSpec& spec) {
   return !number ? "" : spec.unit.empty() ? "1" : spec.unit;
 }
 
+// Plugins declare their parameters without a full stop.
+std::string sentence(const std::string& text) {
+  return text.empty() || text.ends_with('.') ? text : text + '.';
+}
+
 // What the plugins of a role say of one of their parameters, each by its name where they say different things.
 Column parameter_meaning(const std::string& column, const std::string& role, const std::string& key, const Study& study,
                          const Registry& registry) {
@@ -77,15 +82,15 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
   Column out = axis_meaning(column, study.resolved);
   if (said.empty()) return out;
   out.unit = unit_of(*said.front().second);
-  out.text = said.front().second->text;
+  out.text = sentence(said.front().second->text);
   const bool same = std::all_of(said.begin(), said.end(), [&](const auto& one) {
-    return one.second->text == out.text && unit_of(*one.second) == out.unit;
+    return sentence(one.second->text) == out.text && unit_of(*one.second) == out.unit;
   });
   if (same) return out;
   out.text.clear();
   for (const auto& [name, spec] : said)
     out.text += (out.text.empty() ? "" : " ") + name + (unit_of(*spec) == out.unit ? "" : " (" + unit_of(*spec) + ")") +
-                ": " + spec->text;
+                ": " + sentence(spec->text);
   return out;
 }
 
