@@ -188,7 +188,7 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
   if (left_out()) return;
   const StudyResults results = synthetic::basins(40, 0.2);
   StudyResults filled = synthetic::basins(20);
-  filled.derived[0].columns.push_back("marched");
+  filled.derived[0].columns.push_back({"marched", "", ""});
   for (size_t row = 0; row < filled.derived[0].rows.size(); ++row) filled.derived[0].rows[row].push_back(row % 4 == 0);
   std::vector<Page> pages = {page_of("basins", results), page_of("filled", filled)};
   pages[1].controls = false;
@@ -214,7 +214,7 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
   }
   const auto counts = report::basin_counts(report::CaseView(results)).rows[1];
   CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),
-             counts[4].dump() + " of " + counts[7].dump() + " cells that both decide differ"));
+             counts[4].text() + " of " + counts[7].text() + " cells that both decide differ"));
   CHECK(says(basins.at("charts")[0].at("views")[0].at("notes"), "the support passes the <stop>"));
   CHECK(basins.at("charts")[0].at("views")[0].at("xAxis")[0].at("name") == "factor of initial.displacement");
   const Json& cell = basins.at("cell");

@@ -80,7 +80,7 @@ void check_work(const StudyResults& results, const Json& page) {
   for (const char* id : {"work-precision", "steps-precision", "step-cost"}) CHECK(has_figure(page, id));
   const Json& work = figure(page, "work-precision");
   size_t rows = 0, drawn = 0, marks = 0;
-  for (const auto& row : derived_table(results, "work_precision").rows) rows += !row[8].is_null();
+  for (const auto& row : derived_table(results, "work_precision").rows) rows += !row[8].is_nothing();
   for (size_t v = 0; v < work.at("views").size(); ++v) {
     drawn += items_of(work, v, is_curve).size();
     marks += items_of(work, v, is_mark).size();

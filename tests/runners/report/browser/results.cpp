@@ -89,7 +89,7 @@ void check_errors(const Ran& ran, const Json& page) {
   const Table& errors = stored_table(ran.results, "errors");
   const Json& steps = figure(page, "error-step");
   const auto kind =
-      static_cast<size_t>(std::find(errors.columns.begin(), errors.columns.end(), "error") - errors.columns.begin());
+      find_column(errors.columns, "error").value();
   for (size_t v = 0; v < steps.at("views").size(); ++v) {
     std::multiset<double> values = numbers_in(
         errors, "value", [&](const auto& row) { return row[kind] == steps.at("views")[v].get<std::string>(); });
