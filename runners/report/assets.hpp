@@ -3,11 +3,9 @@
 
 namespace ricochet::report {
 
-/// The files that every report inlines, carried inside the program (see echarts.cmake).
-std::string_view page_style();
-std::string_view page_script();
-/// What page_script() needs of diagrams; goes before it.
-std::string_view dynamics_script();
+/// A file that reports inline, carried inside the program (see echarts.cmake): "page.css", "script/page.js",
+/// "figures/tip.js". Empty for a name that it does not carry.
+std::string_view asset(std::string_view name);
 
 /// The minified chart library, or nothing when the program was built without it.
 std::string_view chart_library();

@@ -11,14 +11,14 @@ namespace ricochet::report {
 namespace {
 
 constexpr size_t most_labels = 250;
-constexpr std::array colours = {"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00",
-                                "#6A3D9A", "#8C6D31", "#F0E442", "#44AA99", "#882255", "#999933"};
+constexpr std::array attractor_colours = {"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00",
+                                          "#6A3D9A", "#8C6D31", "#F0E442", "#44AA99", "#882255", "#999933"};
 
 /// How a label sorts: attractors by number before everything else.
 using Rank = std::pair<long long, std::string>;
 constexpr long long no_attractor = 1'000'000'000;
 
-struct Cell {
+struct PlacedCell {
   const CaseRecord* record;
   double x, y;
   Rank rank;
@@ -36,10 +36,10 @@ Rank rank_of(const TableReader& rows, size_t row) {
   return {no_attractor + static_cast<long long>(group), regime_groups[group].name};
 }
 
-std::vector<Cell> cells_of(const StudyResults& results) {
+std::vector<PlacedCell> cells_of(const StudyResults& results) {
   std::map<std::string, const CaseRecord*> by_id;
   for (const CaseRecord& record : results.cases) by_id[record.id] = &record;
-  std::vector<Cell> out;
+  std::vector<PlacedCell> out;
   const auto read = [&](const Table& table, const CaseRecord* record) {
     const TableReader rows(table);
     for (size_t row = 0; row < rows.size(); ++row) {
@@ -85,10 +85,10 @@ std::map<long long, std::string> attractor_names(const StudyResults& results) {
 Basins basins_of(const StudyResults& results) {
   Basins out;
   if (results.kind != "basins") return out;
-  const std::vector<Cell> cells = cells_of(results);
+  const std::vector<PlacedCell> cells = cells_of(results);
   std::set<double> xs, ys;
   std::set<Rank> ranks;
-  for (const Cell& cell : cells) {
+  for (const PlacedCell& cell : cells) {
     xs.insert(cell.x);
     ys.insert(cell.y);
     ranks.insert(cell.rank);
@@ -111,7 +111,7 @@ Basins basins_of(const StudyResults& results) {
       const auto said = names.find(rank.first);
       out.labels.push_back({"attractor " + std::to_string(rank.first) +
                                 (said == names.end() || said->second.empty() ? "" : " (" + said->second + ")"),
-                            colours[attractor++ % colours.size()], true});
+                            attractor_colours[attractor++ % attractor_colours.size()], true});
     }
   }
   std::map<const CaseRecord*, size_t> place;
@@ -119,13 +119,13 @@ Basins basins_of(const StudyResults& results) {
     return static_cast<size_t>(std::lower_bound(list.begin(), list.end(), value) - list.begin());
   };
   std::set<const CaseRecord*> with_cells;
-  for (const Cell& cell : cells) with_cells.insert(cell.record);
+  for (const PlacedCell& cell : cells) with_cells.insert(cell.record);
   for (const CaseRecord& record : results.cases)
     if (with_cells.contains(&record)) {
       place[&record] = out.grids.size();
       out.grids.push_back({&record, std::vector<std::uint8_t>(xs.size() * ys.size(), BasinGrid::absent), 0, {}});
     }
-  for (const Cell& cell : cells) {
+  for (const PlacedCell& cell : cells) {
     BasinGrid& grid = out.grids[place.at(cell.record)];
     const std::uint8_t label = index.at(cell.rank);
     grid.cells[at(out.ys, cell.y) * xs.size() + at(out.xs, cell.x)] = label;

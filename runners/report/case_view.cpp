@@ -11,7 +11,7 @@
 namespace ricochet::report {
 namespace {
 
-constexpr const char* colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"};
+constexpr const char* mass_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"};
 constexpr std::string_view roles[] = {"mass", "contact", "time"};
 
 bool contains(const std::vector<std::string>& list, std::string_view item) {
@@ -154,7 +154,7 @@ std::string CaseView::mass_label(const CaseRecord& record) const {
 
 std::string CaseView::colour(const CaseRecord& record) const {
   const auto found = std::find(masses_.begin(), masses_.end(), mass_label(record));
-  return colours[static_cast<size_t>(found - masses_.begin()) % std::size(colours)];
+  return mass_colours[static_cast<size_t>(found - masses_.begin()) % std::size(mass_colours)];
 }
 
 std::vector<std::string> CaseView::varying_without(const std::vector<std::string>& excluded) const {

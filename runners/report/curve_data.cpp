@@ -71,23 +71,24 @@ std::optional<nlohmann::ordered_json> CurveData::series(const CaseRecord& record
   if (!xs || !ys || xs->empty() || xs->size() != ys->size()) return std::nullopt;
   const bool thin = ys->size() > limit_;
   const std::string x_key = record.id + "/" + x + (thin ? "@" + y : ""), y_key = record.id + "/" + y;
-  if (!blocks_.contains(y_key)) {
+  const std::string type = ":f64";
+  if (!blocks_.contains(y_key + type)) {
     if (thin) {
       std::vector<double> some_x, some_y;
       for (const size_t i : keep_extremes(*ys, limit_)) {
         some_x.push_back((*xs)[i]);
         some_y.push_back((*ys)[i]);
       }
-      blocks_[x_key] = base64_doubles(some_x);
-      blocks_[y_key] = base64_doubles(some_y);
+      blocks_[x_key + type] = base64_doubles(some_x);
+      blocks_[y_key + type] = base64_doubles(some_y);
       ++thinned_;
       longest_ = std::max(longest_, ys->size());
     } else {
-      if (!blocks_.contains(x_key)) blocks_[x_key] = base64_doubles(*xs);
-      blocks_[y_key] = base64_doubles(*ys);
+      if (!blocks_.contains(x_key + type)) blocks_[x_key + type] = base64_doubles(*xs);
+      blocks_[y_key + type] = base64_doubles(*ys);
     }
   }
-  return nlohmann::ordered_json{{"x", x_key}, {"y", y_key}};
+  return nlohmann::ordered_json::array({x_key, y_key});
 }
 
 void CurveData::put(const std::string& key, const std::string& type, std::span<const unsigned char> bytes) {

@@ -24,16 +24,16 @@ std::vector<size_t> keep_extremes(std::span<const double> values, size_t limit);
 /// The column of a curve, nothing where there is none (a refused case has no curve).
 std::optional<std::span<const double>> curve_column(const Curve& curve, std::string_view name);
 
-/// The curves that charts refer to, each written into the page once, whatever the number of charts that show it.
+/// The long columns of numbers that the page carries, each written once, whatever the number of charts that show it.
 class CurveData {
  public:
   /// `limit`: largest number of samples of one series that the page carries.
   explicit CurveData(size_t limit) : limit_(limit) {}
 
-  /// A reference {"x": key, "y": key} that the page's script replaces by points; nothing when the record has no such
-  /// column.
+  /// The names [x, y] of the blocks of both columns; nothing when the record has no such column.
   std::optional<nlohmann::ordered_json> series(const CaseRecord& record, const std::string& x, const std::string& y);
-  /// Adds a block of little-endian numbers of `type` (f32, u8, u16, u32); the page's script finds it as "key:type".
+  /// Adds a block of little-endian numbers of `type` (f32, f64, u8, u16, u32); the page's script finds it as
+  /// "key:type".
   void put(const std::string& key, const std::string& type, std::span<const unsigned char> bytes);
   /// Numbers in single precision.
   void put_floats(const std::string& key, std::span<const double> values);

@@ -5,6 +5,7 @@
 
 #include "runners/report/dynamics_report.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/interval.hpp"
 #include "runners/report/orbits.hpp"
 #include "runners/table/table_reader.hpp"
 

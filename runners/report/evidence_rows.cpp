@@ -11,12 +11,12 @@ namespace ricochet::report {
 namespace {
 
 /// As the axes of a case are written (see CaseView::text).
-std::string text_of(const Cell& cell) {
+std::string cell_words(const Cell& cell) {
   const auto number = cell.whole() ? std::nullopt : cell.number();
   return number ? exact_text(*number) : cell.text();
 }
 
-void extend(std::string& key, std::string_view column, const std::string& text) {
+void extend_key(std::string& key, std::string_view column, const std::string& text) {
   if (text.empty()) return;
   key += column;
   key += '\x1e' + text + '\x1f';
@@ -34,18 +34,22 @@ EvidenceRows::EvidenceRows(const StudyResults& results, std::string_view table, 
       axes_.push_back(column.name);
   for (size_t row = 0; row < size(); ++row) {
     std::string key;
-    for (const std::string& column : axes_) extend(key, column, text(row, column));
-    for (const std::string& column : keys_) extend(key, column, text(row, column));
+    for (const std::string& column : axes_) extend_key(key, column, text(row, column));
+    for (const std::string& column : keys_) extend_key(key, column, text(row, column));
     places_.emplace(std::move(key), row);
   }
 }
 
 std::string EvidenceRows::text(size_t row, std::string_view column) const {
-  return text_of(rows_->cell(row, rows_->column_if_any(column)));
+  return cell_words(rows_->cell(row, rows_->column_if_any(column)));
 }
 
 std::optional<double> EvidenceRows::number(size_t row, std::string_view column) const {
   return rows_->number(row, rows_->column_if_any(column));
+}
+
+Cell EvidenceRows::value(size_t row, std::string_view column) const {
+  return rows_->cell(row, rows_->column_if_any(column));
 }
 
 bool EvidenceRows::flag(size_t row, std::string_view column) const {
@@ -65,8 +69,8 @@ std::optional<size_t> EvidenceRows::find(const CaseRecord& record, const std::ve
                                          const std::vector<std::string>& but) const {
   std::string key;
   for (const std::string& column : axes_)
-    if (std::find(but.begin(), but.end(), column) == but.end()) extend(key, column, CaseView::text(record, column));
-  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend(key, keys_[k], keys[k]);
+    if (std::find(but.begin(), but.end(), column) == but.end()) extend_key(key, column, CaseView::text(record, column));
+  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend_key(key, keys_[k], keys[k]);
   const auto found = places_.find(key);
   return found == places_.end() ? std::nullopt : std::optional(found->second);
 }

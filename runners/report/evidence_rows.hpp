@@ -21,6 +21,8 @@ class EvidenceRows {
   /// The cell as text, "" for null and for a column that the table does not have.
   std::string text(size_t row, std::string_view column) const;
   std::optional<double> number(size_t row, std::string_view column) const;
+  /// The cell itself, nothing for a column that the table does not have.
+  Cell value(size_t row, std::string_view column) const;
   bool flag(size_t row, std::string_view column) const;
   /// Distinct texts of a column, in order of appearance.
   std::vector<std::string> values(std::string_view column) const;

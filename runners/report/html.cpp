@@ -128,6 +128,14 @@ std::string share_text(double share) {
   return number_text(100 * share, 3) + " %";
 }
 
+std::string status_mark(const std::string& status) {
+  if (status == "done") return "✓";
+  if (status == "refused") return "⊘";
+  if (status == "diverged") return "✕";
+  if (status == "failed") return "!";
+  return "?";
+}
+
 std::string count_text(size_t count, std::string_view singular, std::string_view plural) {
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }

@@ -28,6 +28,9 @@ std::string percent_text(double ratio);
 /// A share in per cent to three significant digits, however small: 0.05 → "5 %", 2.4e-9 → "2.4e-7 %".
 std::string share_text(double share);
 
+/// Legend symbol of a status: ✓ done, ⊘ refused, ✕ diverged, ! failed; a question mark for an unknown one.
+std::string status_mark(const std::string& status);
+
 /// "1 case", "3 cases".
 std::string count_text(size_t count, std::string_view singular, std::string_view plural);
 

@@ -10,7 +10,6 @@
 #include <numeric>
 #include <set>
 
-#include "runners/report/options.hpp"
 #include "runners/report/orbits.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -49,9 +48,14 @@ std::vector<Rows> rows_by_orbit(const NumberTable& table, const std::vector<Orbi
   return out;
 }
 
-Interval extent(const std::vector<double>& values) {
-  Interval out = Interval::nothing();
-  for (const double value : values) out.include(value);
+/// What finite values reach; nothing where there are none.
+struct Extent {
+  double low = INFINITY, high = -INFINITY;
+};
+Extent extent(const std::vector<double>& values) {
+  Extent out;
+  for (const double value : values)
+    if (std::isfinite(value)) out = {std::min(out.low, value), std::max(out.high, value)};
   return out;
 }
 
@@ -95,8 +99,8 @@ std::optional<Section> section_of(const CaseRecord& record) {
   if (!out.u || !out.v) return std::nullopt;
   const std::vector<Orbit> orbits = orbits_of(record);
   out.rows = rows_by_orbit(*table, orbits);
-  const Interval us = extent(*out.u), vs = extent(*out.v);
-  const auto cell = [](double value, const Interval& range) {
+  const Extent us = extent(*out.u), vs = extent(*out.v);
+  const auto cell = [](double value, const Extent& range) {
     return range.high > range.low ? std::llround((value - range.low) / (range.high - range.low) * cells_across) : 0LL;
   };
   for (size_t o = 0; o < orbits.size(); ++o) {
@@ -124,11 +128,13 @@ void put_orbits(CurveData& curves, const std::string& key, const std::vector<std
   curves.put(key, width == 2 ? "u16" : "u32", bytes);
 }
 
+using OrbitJson = nlohmann::ordered_json;
+
 /// Columns of a case's `values` for the page's script: {"name": [cells]}, without columns that say nothing.
-Json columns_of(const Table& table) {
-  Json out = Json::object();
+OrbitJson columns_of(const Table& table) {
+  OrbitJson out = OrbitJson::object();
   for (size_t c = 0; c < table.columns.size(); ++c) {
-    Json column = Json::array();
+    OrbitJson column = OrbitJson::array();
     bool says = false;
     for (const auto& row : table.rows) {
       says = says || !row[c].text().empty();
@@ -155,7 +161,7 @@ std::map<std::tuple<std::string, double, std::string>, std::string> attractors_o
 }
 
 /// Half-way to the neighbours of the same start.
-void put_intervals(const std::vector<Orbit>& orbits, bool logarithmic, Json& into) {
+void put_intervals(const std::vector<Orbit>& orbits, bool logarithmic, OrbitJson& into) {
   std::map<std::string, std::vector<size_t>> by_start;
   for (size_t o = 0; o < orbits.size(); ++o) by_start[orbits[o].start].push_back(o);
   std::vector<double> from(orbits.size()), to(orbits.size());
@@ -272,22 +278,22 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
       kept, count);
 }
 
-Json orbit_data(const CaseView& view) {
+OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   const StudyResults& results = view.results();
   const auto attractors = attractors_of(results);
   const Quantity parameter = swept_parameter(results);
-  Json groups = Json::array(), kinds = Json::array();
+  OrbitJson groups = OrbitJson::array(), kinds = OrbitJson::array();
   for (const RegimeGroup& group : regime_groups) groups.push_back({group.name, group.colour});
-  for (const StartKind& kind : start_kinds) kinds.push_back(kind.name);
-  Json out = {
-      {"study", results.name}, {"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
-  Json cases = Json::object();
+  for (const StartKind& kind : start_kinds) kinds.push_back({kind.name, kind.symbol});
+  OrbitJson out = {{"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
+  OrbitJson cases = OrbitJson::object();
   for (const CaseRecord* record : view.all()) {
     const Table* table = find_table(record->tables, "values");
     if (!table) continue;
     const std::vector<Orbit> orbits = orbits_of(*record);
-    Json one = {{"label", view.label(*record)}, {"partial", is_partial(*record)}, {"columns", columns_of(*table)}};
-    Json group = Json::array(), kind = Json::array();
+    if (orbits.empty()) continue;
+    OrbitJson one = {{"columns", columns_of(*table)}};
+    OrbitJson group = OrbitJson::array(), kind = OrbitJson::array();
     double low = INFINITY, high = -INFINITY;
     for (const Orbit& orbit : orbits) {
       group.push_back(regime_group(orbit));
@@ -297,18 +303,23 @@ Json orbit_data(const CaseView& view) {
     }
     one["group"] = std::move(group);
     one["kind"] = std::move(kind);
-    put_intervals(orbits, logarithmic_sweep({low, high}), one);
+    put_intervals(orbits, logarithmic_sweep(low, high), one);
     if (!attractors.empty()) {
-      Json names = Json::array();
+      OrbitJson names = OrbitJson::array();
       for (const Orbit& orbit : orbits) {
         const auto found = attractors.find({record->id, orbit.parameter, orbit.start});
-        names.push_back(found == attractors.end() ? Json(nullptr) : Json(found->second));
+        names.push_back(found == attractors.end() ? OrbitJson(nullptr) : OrbitJson(found->second));
       }
       one["columns"]["attractor"] = std::move(names);
     }
+    if (const NumberTable* points = find_table(record->numbers, "points"))
+      if (const auto* u = points->numbers("tip_displacement"))
+        if (const Extent reach = extent(*u); reach.low <= reach.high) one["extent"] = {reach.low, reach.high};
     cases[record->id] = std::move(one);
   }
+  if (cases.empty()) return nullptr;
   out["cases"] = std::move(cases);
+  out["said"] = {put_points(view, curves), put_portraits(view, curves)};
   return out;
 }
 

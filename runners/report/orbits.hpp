@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "runners/report/case_view.hpp"
-#include "runners/report/options.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -59,7 +58,7 @@ size_t regime_group(std::string_view regime, std::optional<int> period);
 /// Kinds of starts, told apart by symbols; random states share one.
 struct StartKind {
   const char* name;
-  const char* symbol;  ///< as LegendEntry has it
+  const char* symbol;  ///< as the page's legends have it
 };
 inline constexpr std::array<StartKind, 5> start_kinds = {{{"from rest", "circle"},
                                                           {"from the scene's state", "diamond"},
@@ -72,8 +71,8 @@ size_t start_kind(std::string_view start);
 std::vector<std::string> starts_in(const Cases& cases);
 
 /// Whether a sweep is drawn on a logarithmic axis: values above zero over a factor of fifty.
-inline bool logarithmic_sweep(const Interval& range) {
-  return range.low > 0 && range.high >= 50 * range.low;
+inline bool logarithmic_sweep(double low, double high) {
+  return low > 0 && high >= 50 * low;
 }
 
 /// The parameter that a study of kind `bifurcation` sweeps.

@@ -1,7 +1,5 @@
 #include "runners/report/stability_rows.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -78,22 +76,18 @@ Cases stability_cases(const CaseView& view, bool closed) {
   return out;
 }
 
-std::vector<std::string> disagreements(const StabilityRange& range) {
-  std::vector<std::string> out;
-  for (size_t i = 0; i < range.cells.size();) {
-    if (!range.cells[i].disagrees()) {
+std::vector<Disagreement> disagreements(const StabilityRange& range) {
+  std::vector<Disagreement> out;
+  const std::vector<StabilityCell>& cells = range.cells;
+  for (size_t i = 0; i < cells.size();) {
+    if (!cells[i].disagrees()) {
       ++i;
       continue;
     }
     size_t end = i;
-    const bool predicted = range.cells[i].predicted_unstable();
-    while (end < range.cells.size() && range.cells[end].disagrees() &&
-           range.cells[end].predicted_unstable() == predicted)
-      ++end;
-    const std::string from = number_text(range.cells[i].step, 3), to = number_text(range.cells[end - 1].step, 3);
-    out.push_back(fmt::format("h = {} s{}: predicted {}, observed {}", from,
-                              end - i > 1 ? fmt::format(" to {} s ({} steps)", to, end - i) : "",
-                              predicted ? "unstable" : "stable", predicted ? "stable" : "unstable"));
+    const bool predicted = cells[i].predicted_unstable();
+    while (end < cells.size() && cells[end].disagrees() && cells[end].predicted_unstable() == predicted) ++end;
+    out.push_back({cells[i].step, cells[end - 1].step, end - i, predicted});
     i = end;
   }
   return out;

@@ -38,8 +38,14 @@ Cases stability_cases(const CaseView& view, bool closed);
 /// Columns of the contact law.
 std::vector<std::string> contact_columns(const CaseView& view);
 
-/// How the cells of a range disagree: "h = 1e-4 s to 1e-3 s (3 steps): predicted stable, observed unstable". Empty
-/// where they agree.
-std::vector<std::string> disagreements(const StabilityRange& range);
+/// Neighbouring steps at which prediction and observation differ in the same way.
+struct Disagreement {
+  double from = 0, to = 0;  ///< s
+  size_t steps = 0;
+  bool predicted_unstable = false;
+};
+
+/// How the cells of a range disagree; empty where they agree.
+std::vector<Disagreement> disagreements(const StabilityRange& range);
 
 }  // namespace ricochet::report

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "runners/report/html.hpp"
-#include "runners/report/options.hpp"
+#include "runners/report/template.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -18,17 +18,7 @@ const std::set<std::string> aside = {
     "projection_energy",   "kernel_energy",     "active_set_changes", "complementarity_residual",
     "drift_per_impact",    "first_impact",      "first_release"};
 
-struct Column {
-  std::string header, tooltip, classes;
-};
-
-std::string cell_number(double value, const std::string& classes, int digits = 5) {
-  if (!std::isfinite(value)) return fmt::format("<td class=\"number absent{}\">–</td>", classes);
-  return fmt::format("<td class=\"number{}\" data-value=\"{}\" title=\"{}\">{}</td>", classes, exact_text(value),
-                     exact_text(value), number_text(value, digits));
-}
-
-std::string spaced(std::string name) {
+std::string words_of(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
@@ -48,21 +38,103 @@ std::vector<std::string> measures_present(const CaseView& view) {
   return out;
 }
 
-std::string header_cell(const Column& column) {
-  return fmt::format(
-      "<th scope=\"col\" class=\"{}\" title=\"{}\" aria-sort=\"none\"><button type=\"button\">{}</button></th>",
-      column.classes, escape(column.tooltip), escape(column.header));
+Fill header_fill(const std::string& header, const std::string& tooltip, const std::string& classes) {
+  Fill out;
+  out.set("header", header);
+  out.set("tooltip", tooltip);
+  out.set("classes", classes);
+  return out;
 }
 
-std::string glossary(const std::vector<std::string>& measures) {
-  std::string rows;
-  for (const std::string& name : measures)
-    if (const MeasureInfo* info = measure_info(name))
-      rows +=
-          fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(with_unit({spaced(name), info->unit})), escape(info->text));
-  return rows.empty() ? ""
-                      : "<details><summary>What the measures mean</summary><dl class=\"glossary\">\n" + rows +
-                            "</dl></details>\n";
+Fill text_fill(const std::string& text, const std::string& classes) {
+  Fill out;
+  out.set("text", text);
+  out.set("classes", classes);
+  return out;
+}
+
+/// A number that sorts as it is, shown shorter.
+Fill number_fill(double value, const std::string& text, const std::string& classes) {
+  if (!std::isfinite(value)) return text_fill("–", "number absent" + classes);
+  Fill out = text_fill(text, "number" + classes);
+  out.set("value", exact_text(value));
+  return out;
+}
+
+Fill case_columns(const CaseView& view, const std::vector<std::string>& measures) {
+  Fill out{Fill::type::list};
+  out << header_fill("case", "Identity of the case: its row in cases.csv and its file in curves/", "text extra");
+  for (const std::string& column : view.results().columns)
+    out << header_fill(with_unit({column, axis_unit(column)}), "Axis of the study",
+                       view.varies(column) ? "axis" : "axis extra");
+  out << header_fill("status", "done, refused (does not apply), diverged or failed", "text");
+  out << header_fill("reason", "Why a case has no result", "text");
+  out << header_fill("operator", "How the matrices were stored and solved", "text extra");
+  out << header_fill("steps", "Number of time steps marched", "number");
+  out << header_fill("set-up (s)", "Time before the first step", "number extra");
+  out << header_fill("run (s)", "Time of marching", "number");
+  for (const std::string& name : measures) {
+    const MeasureInfo* info = measure_info(name);
+    out << header_fill(with_unit({words_of(name), info ? info->unit : ""}), info ? info->text : "",
+                       aside.contains(name) ? "number extra" : "number");
+  }
+  return out;
+}
+
+Fill case_cells(const CaseView& view, const CaseRecord& record, const std::vector<std::string>& measures) {
+  Fill out{Fill::type::list};
+  out << text_fill(record.id, "text extra");
+  bool first = true;
+  for (const std::string& column : view.results().columns) {
+    const std::string text = CaseView::text(record, column), extra = view.varies(column) ? "" : " extra";
+    const auto number = CaseView::number(record, column);
+    Fill cell = number ? number_fill(*number, text, extra) : text_fill(text.empty() ? "–" : text, "text" + extra);
+    if (first) cell.set("swatch", view.colour(record));
+    first = false;
+    out << cell;
+  }
+  out << text_fill(status_mark(record.status) + " " + record.status, "status " + record.status);
+  out << text_fill(record.reason, "reason");
+  out << text_fill(record.operator_name, "text extra");
+  const auto timed = [&](double value, const std::string& classes) {
+    Fill cell = number_fill(value, number_text(value, 5), classes);
+    cell.set("title", exact_text(value));
+    return cell;
+  };
+  if (record.status == "refused") {
+    for (const char* extra : {"", " extra", ""}) out << text_fill("–", std::string("number absent") + extra);
+  } else {
+    out << number_fill(static_cast<double>(record.steps), std::to_string(record.steps), "");
+    out << timed(record.setup_seconds, " extra");
+    out << timed(record.run_seconds, "");
+  }
+  for (const std::string& name : measures) {
+    const std::string extra = aside.contains(name) ? " extra" : "";
+    const auto value = CaseView::measure(record, name);
+    if (!value || !std::isfinite(*value)) {
+      out << text_fill("–", "number absent" + extra);
+      continue;
+    }
+    // Ratios are near 1, where what counts is far behind the point.
+    const MeasureInfo* info = measure_info(name);
+    Fill cell = number_fill(*value, number_text(*value, info && std::string_view(info->unit) == "1" ? 9 : 5), extra);
+    cell.set("title", exact_text(*value));
+    out << cell;
+  }
+  return out;
+}
+
+/// Entries of lists that cases carry, each once with the cases that have it.
+template <class Entry, class List>
+std::vector<std::pair<Entry, Cases>> grouped(const CaseView& view, List list) {
+  std::vector<std::pair<Entry, Cases>> out;
+  for (const CaseRecord* record : view.all())
+    for (const Entry& entry : list(*record)) {
+      auto found = std::find_if(out.begin(), out.end(), [&](const auto& g) { return g.first == entry; });
+      if (found == out.end()) found = out.insert(out.end(), {entry, {}});
+      found->second.push_back(record);
+    }
+  return out;
 }
 
 }  // namespace
@@ -71,122 +143,85 @@ std::string case_table_html(const CaseView& view) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
-
-  std::vector<Column> columns = {
-      {"case", "Identity of the case: its row in cases.csv and its file in curves/", "text extra"}};
-  for (const std::string& column : results.columns)
-    columns.push_back(
-        {with_unit({column, axis_unit(column)}), "Axis of the study", view.varies(column) ? "axis" : "axis extra"});
-  columns.push_back({"status", "done, refused (does not apply), diverged or failed", "text"});
-  columns.push_back({"reason", "Why a case has no result", "text"});
-  columns.push_back({"operator", "How the matrices were stored and solved", "text extra"});
-  columns.push_back({"steps", "Number of time steps marched", "number"});
-  columns.push_back({"set-up (s)", "Time before the first step", "number extra"});
-  columns.push_back({"run (s)", "Time of marching", "number"});
-  for (const std::string& name : measures) {
-    const MeasureInfo* info = measure_info(name);
-    columns.push_back({with_unit({spaced(name), info ? info->unit : ""}), info ? info->text : "",
-                       aside.contains(name) ? "number extra" : "number"});
-  }
-
-  std::string out =
-      "<div class=\"controls\"><label>Filter <input type=\"search\" id=\"filter\" placeholder=\"words, all must "
-      "appear\"></label>";
+  Fill with, statuses{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
   for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const size_t count = view.with_status(status).size())
-      out += fmt::format(
-          "<label class=\"status {0}\"><input type=\"checkbox\" data-status=\"{0}\" checked> {1} {0} ({2})</label>",
-          status, status_mark(status), count);
-  out +=
-      "<label><input type=\"checkbox\" id=\"all-columns\"> all columns</label><span id=\"shown\" "
-      "role=\"status\"></span></div>\n";
-  const std::vector<std::string> constants = view.constants();
-  if (!constants.empty())
-    out += fmt::format("<p class=\"fine\">The same in every case: {}.</p>\n",
-                       escape(fmt::format("{}", fmt::join(constants, " · "))));
-
-  out += "<div class=\"scroll tall\"><table class=\"cases\" id=\"cases\"><thead><tr>";
-  for (const Column& column : columns) out += header_cell(column);
-  out += "</tr></thead>\n<tbody>\n";
+    if (const size_t count = view.with_status(status).size()) {
+      Fill one;
+      one.set("status", status);
+      one.set("mark", status_mark(status));
+      one.set("count", std::to_string(count));
+      statuses << one;
+    }
   for (const CaseRecord& record : results.cases) {
-    out += fmt::format("<tr data-status=\"{}\"><td class=\"text extra\">{}</td>", escape(record.status),
-                       escape(record.id));
-    bool first = true;
-    for (const std::string& column : results.columns) {
-      const std::string text = CaseView::text(record, column), extra = view.varies(column) ? "" : " extra";
-      const std::string mark =
-          first ? fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", view.colour(record)) : "";
-      first = false;
-      if (const auto number = CaseView::number(record, column))
-        out += fmt::format("<td class=\"number{}\" data-value=\"{}\">{}{}</td>", extra, exact_text(*number), mark,
-                           escape(text));
-      else
-        out += fmt::format("<td class=\"text{}\">{}{}</td>", extra, mark, text.empty() ? "–" : escape(text));
-    }
-    out += fmt::format(
-        "<td class=\"status {0}\">{1} {0}</td><td class=\"reason\">{2}</td><td class=\"text extra\">{3}</td>",
-        escape(record.status), status_mark(record.status), escape(record.reason), escape(record.operator_name));
-    if (record.status == "refused")
-      out +=
-          "<td class=\"number absent\">–</td><td class=\"number absent extra\">–</td><td class=\"number "
-          "absent\">–</td>";
-    else
-      out += fmt::format("<td class=\"number\" data-value=\"{0}\">{0}</td>", record.steps) +
-             cell_number(record.setup_seconds, " extra") + cell_number(record.run_seconds, "");
-    for (const std::string& name : measures) {
-      const std::string extra = aside.contains(name) ? " extra" : "";
-      const auto value = CaseView::measure(record, name);
-      // Ratios are near 1, where what counts is far behind the point.
-      const MeasureInfo* info = measure_info(name);
-      const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
-      out += value ? cell_number(*value, extra, digits) : fmt::format("<td class=\"number absent{}\">–</td>", extra);
-    }
-    out += "</tr>\n";
+    Fill row;
+    row.set("status", record.status);
+    row.set("cells", case_cells(view, record, measures));
+    rows << row;
   }
-  return out + "</tbody></table></div>\n" + glossary(measures);
+  with.set("statuses", statuses);
+  with.set("columns", case_columns(view, measures));
+  with.set("rows", rows);
+  const std::vector<std::string> constants = view.constants();
+  if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
+  bool any = false;
+  for (const std::string& name : measures)
+    if (const MeasureInfo* info = measure_info(name)) {
+      Fill entry;
+      entry.set("name", with_unit({words_of(name), info->unit}));
+      entry.set("text", info->text);
+      entries << entry;
+      any = true;
+    }
+  if (any) {
+    Fill glossary;
+    glossary.set("entries", entries);
+    with.set("glossary", glossary);
+  }
+  return filled("cases", with);
 }
 
 std::string left_out_html(const CaseView& view) {
-  std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;
-  for (const CaseRecord* record : view.all())
-    for (const auto& entry : record->left_out) {
-      auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == entry; });
-      if (found == groups.end()) found = groups.insert(groups.end(), {entry, {}});
-      found->second.push_back(record);
-    }
-  if (groups.empty()) return "<p>Nothing was left out.</p>\n";
-  std::string out =
-      "<table class=\"plain\"><thead><tr><th scope=\"col\">left out</th><th scope=\"col\">because</th><th "
-      "scope=\"col\">in</th></tr></thead><tbody>\n";
-  for (const auto& [entry, cases] : groups)
-    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", escape(entry.first), escape(entry.second),
-                       escape(view.describe(cases)));
-  return out + "</tbody></table>\n";
+  Fill with, entries{Fill::type::list};
+  const auto groups = grouped<std::pair<std::string, std::string>>(
+      view, [](const CaseRecord& r) -> const auto& { return r.left_out; });
+  for (const auto& [entry, cases] : groups) {
+    Fill one;
+    one.set("item", entry.first);
+    one.set("reason", entry.second);
+    one.set("cases", view.describe(cases));
+    entries << one;
+  }
+  with.set("any", groups.empty() ? Fill::type::bool_false : Fill::type::bool_true);
+  with.set("entries", entries);
+  return filled("left_out", with);
 }
 
 std::string notes_html(const CaseView& view) {
-  std::vector<std::pair<std::string, Cases>> groups;
-  for (const CaseRecord* record : view.all())
-    for (const std::string& note : record->notes) {
-      auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == note; });
-      if (found == groups.end()) found = groups.insert(groups.end(), {note, {}});
-      found->second.push_back(record);
-    }
+  Fill with, entries{Fill::type::list};
+  const auto groups = grouped<std::string>(
+      view, [](const CaseRecord& r) -> const auto& { return r.notes; });
   if (groups.empty()) return "";
-  std::string out = "<h3>Notes</h3>\n<ul>\n";
-  for (const auto& [note, cases] : groups)
-    out += fmt::format("<li>{} <span class=\"fine\">({})</span></li>\n", escape(note), escape(view.describe(cases)));
-  return out + "</ul>\n";
+  for (const auto& [note, cases] : groups) {
+    Fill one;
+    one.set("note", note);
+    one.set("cases", view.describe(cases));
+    entries << one;
+  }
+  with.set("entries", entries);
+  return filled("notes", with);
 }
 
 std::string environment_html(const CaseView& view) {
-  std::string out = "<table class=\"plain environment\"><tbody>\n";
-  for (const auto& [name, value] : view.results().environment.entries)
-    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value));
-  out += "</tbody></table>\n";
-  const std::string study = view.results().study.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  return out + "<details><summary>The study, every default written out</summary><pre>" + escape(study) +
-         "</pre></details>\n";
+  Fill with, entries{Fill::type::list};
+  for (const auto& [name, value] : view.results().environment.entries) {
+    Fill one;
+    one.set("name", name);
+    one.set("value", value);
+    entries << one;
+  }
+  with.set("entries", entries);
+  with.set("study", view.results().study.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return filled("environment", with);
 }
 
 }  // namespace ricochet::report

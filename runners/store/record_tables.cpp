@@ -8,11 +8,6 @@
 namespace ricochet {
 namespace {
 
-Column measure_column(const std::string& name) {
-  if (const MeasureInfo* info = measure_info(name)) return {name, info->unit, info->text};
-  return {name, "", "A measure of the case that the program does not describe."};
-}
-
 std::vector<Column> measure_columns(const StudyResults& results) {
   std::vector<Column> columns;
   for (const std::string& name : standing_measures(results.kind)) columns.push_back(measure_column(name));
@@ -65,6 +60,11 @@ void write_rows(const NumberTable& table, const std::vector<Column>& columns, co
 }
 
 }  // namespace
+
+Column measure_column(const std::string& name) {
+  if (const MeasureInfo* info = measure_info(name)) return {name, info->unit, info->text};
+  return {name, "", "A measure of the case that the program does not describe."};
+}
 
 Table cases_table(const StudyResults& results) {
   const std::vector<Column> measures = measure_columns(results);

@@ -10,6 +10,9 @@
 /// What the records of a study hold, as tables.
 namespace ricochet {
 
+/// What is known of a measure, as a column.
+Column measure_column(const std::string& name);
+
 /// cases: case, every axis, status, reason, steps, setup_seconds, run_seconds, then every measure (those of the kind,
 /// in their order, then any other in the order met). A cell is nothing where a case has no such value. The status of a
 /// case that is still running is `partial`.

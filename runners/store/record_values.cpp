@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "runners/study/axis_meaning.hpp"
 
@@ -68,7 +69,12 @@ void append_rows(const StudyResults& results, const CaseRecord& record, const Ta
 
 Table table_of_cases(const StudyResults& results, std::string name, std::string text,
                      const std::vector<Column>& columns) {
-  return {std::move(name), std::move(text), joined(place_columns(results), columns), {}};
+  std::vector<Column> place = place_columns(results);
+  for (const Column& column : columns)
+    if (find_column(place, column.name))
+      throw std::logic_error("the table " + name + " has a column \"" + column.name +
+                             "\", which is what an axis of the study is called");
+  return {std::move(name), std::move(text), joined(std::move(place), columns), {}};
 }
 
 Table table_of_cases(const StudyResults& results, const Table& own) {

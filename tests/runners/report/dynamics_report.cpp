@@ -1,16 +1,18 @@
-// The sections of kinds `bifurcation` and `basins`: what is drawn, told and found again is what the cases left.
+// The sections of kinds `bifurcation` and `basins`: what is told and written for the page is what the cases left.
 #include "runners/report/dynamics_report.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstring>
 #include <set>
 
+#include "runners/report/basin_data.hpp"
 #include "runners/report/basins.hpp"
+#include "runners/report/derived/shown_tables.hpp"
 #include "runners/report/orbit_data.hpp"
 #include "runners/report/orbits.hpp"
 #include "runners/report/page.hpp"
+#include "runners/store/record_values.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
 using namespace ricochet;
@@ -42,26 +44,6 @@ std::vector<Number> numbers_of(const CurveData& curves, const std::string& key) 
   const std::vector<unsigned char> bytes = bytes_of(curves, key);
   std::vector<Number> out(bytes.size() / sizeof(Number));
   std::memcpy(out.data(), bytes.data(), out.size() * sizeof(Number));
-  return out;
-}
-
-const Figure& find(const std::vector<Figure>& figures, const std::string& id) {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.id == id; });
-  REQUIRE(found != figures.end());
-  return *found;
-}
-
-bool has_null(const Json& value) {
-  if (value.is_null()) return true;
-  if (value.is_number_float()) return !std::isfinite(value.get<double>());
-  return value.is_structured() && std::any_of(value.begin(), value.end(), [](const Json& v) { return has_null(v); });
-}
-
-/// Series of the first view whose data is of a kind.
-std::vector<Json> sweeps(const Chart& chart, const std::string& kind) {
-  std::vector<Json> out;
-  for (const Json& series : chart.views.at(0).option.at("series"))
-    if (series.at("data").is_object() && series["data"].value("sweep", "") == kind) out.push_back(series);
   return out;
 }
 
@@ -180,87 +162,7 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
   for (const auto& [o, count] : samples) CHECK(count == 201);
 }
 
-TEST_CASE("a diagram shares one horizontal axis with its exponents, regimes and verdicts", "[report]") {
-  const StudyResults results = synthetic::dynamics();
-  const CaseView view(results);
-  CurveData curves(1000);
-  const std::vector<Figure> figures = diagram_figures(view, curves);
-  const Figure& figure = find(figures, "diagram");
-  CHECK(figure.linked);
-  CHECK(figure.views == std::vector<std::string>{"side by side", "overlaid", "by start"});
-  REQUIRE(figure.charts.size() == 2 + 1 + 6);
-  for (const Chart& chart : figure.charts) {
-    REQUIRE(chart.views.size() == 1);
-    const Json& option = chart.views[0].option;
-    CHECK_FALSE(has_null(option));
-    REQUIRE(option["xAxis"].size() == 4);
-    for (const Json& axis : option["xAxis"]) {
-      CHECK(axis["min"] == option["xAxis"][0]["min"]);
-      CHECK(axis["max"] == option["xAxis"][0]["max"]);
-    }
-    CHECK(option["dataZoom"][0]["xAxisIndex"] == Json({0, 1, 2, 3}));
-    for (const Json& grid : option["grid"]) CHECK(grid["left"] == option["grid"][0]["left"]);
-  }
-  // Side by side: colour is the regime; overlaid: the case.
-  for (const Json& series : sweeps(figure.charts[0], "points"))
-    CHECK(series["color"] == regime_groups[series["data"]["group"].get<size_t>()].colour);
-  std::set<std::string> colours;
-  for (const Json& series : sweeps(figure.charts[2], "points")) colours.insert(series["color"].get<std::string>());
-  CHECK(colours.size() == 2);
-  CHECK(!sweeps(figure.charts[0], "exponents").empty());
-  CHECK(sweeps(figure.charts[0], "exponents").size() == sweeps(figure.charts[0], "whiskers").size());
-  CHECK(!sweeps(figure.charts[0], "cells").empty());
-  CHECK(!sweeps(figure.charts[0], "marks").empty());
-  CHECK_THAT(figure.charts[0].notes.at(0), Contains("refused") && Contains("the support passes the <stop>"));
-  CHECK_THAT(figure.caption, Contains("by tangent+jump") && Contains("marginal root"));
-  // Every regime and start that is drawn can be found in the legend.
-  std::set<std::string> legend;
-  for (const LegendEntry& entry : figure.legend) legend.insert(entry.name);
-  for (const Chart& chart : figure.charts)
-    for (const Json& series : chart.views[0].option["series"])
-      if (series.contains("tags"))
-        for (const Json& tag : series["tags"]) CHECK(legend.contains(tag.get<std::string>()));
-}
-
-TEST_CASE("colours of regimes do not depend on the order of values or cases", "[report]") {
-  synthetic::DynamicsShape shape;
-  StudyResults forward = synthetic::dynamics(shape), backward = forward;
-  std::reverse(backward.cases.begin(), backward.cases.end());
-  for (CaseRecord& record : backward.cases)
-    for (Table& table : record.tables) std::reverse(table.rows.begin(), table.rows.end());
-  std::vector<std::pair<std::string, std::string>> legends[2];
-  for (int k = 0; k < 2; ++k) {
-    CurveData curves(1000);
-    const CaseView view(k == 0 ? forward : backward);
-    const Figure figure = diagram_figures(view, curves).front();
-    for (const LegendEntry& entry : figure.legend)
-      if (entry.heading == "Regime" || entry.heading == "Start") legends[k].emplace_back(entry.name, entry.colour);
-  }
-  CHECK(legends[0] == legends[1]);
-}
-
-TEST_CASE("without exponents, verdicts or a second case their panels and views are absent", "[report]") {
-  synthetic::DynamicsShape shape;
-  shape.exponents = false;
-  shape.portraits = false;
-  shape.refused = false;
-  shape.starts = {"rest"};
-  shape.methods.resize(1);
-  StudyResults results = synthetic::dynamics(shape);
-  results.derived.clear();
-  CurveData curves(1000);
-  const CaseView view(results);
-  const Figure figure = diagram_figures(view, curves).front();
-  CHECK(figure.views == std::vector<std::string>{"diagram"});
-  REQUIRE(figure.charts.size() == 1);
-  CHECK(figure.charts[0].views[0].option["xAxis"].size() == 2);
-  CHECK(figure.charts[0].notes.empty());
-  CHECK_THAT(figure.caption, !Contains("exponent"));
-  CHECK(distance_figures(view).empty());
-  CHECK(dynamics_answer_html(view).find("robust") == std::string::npos);
-}
-
-TEST_CASE("nothing is drawn of cases that left nothing", "[report]") {
+TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   StudyResults results = synthetic::dynamics();
   for (CaseRecord& record : results.cases) {
     record.tables.clear();
@@ -271,26 +173,25 @@ TEST_CASE("nothing is drawn of cases that left nothing", "[report]") {
   results.derived.clear();
   CurveData curves(1000);
   const CaseView view(results);
-  CHECK(diagram_figures(view, curves).empty());
+  CHECK(orbit_data(view, curves).is_null());
+  CHECK(curves.blocks().empty());
+  CHECK(shown_tables(results).empty());
   CHECK(dynamics_answer_html(view).empty());
   const std::string page = render_page(results, "/* charts */", "6");
   CHECK_THAT(page, Contains("No case has finished with a result"));
-  // Values without their sections still make a page.
-  StudyResults bare = synthetic::dynamics();
-  for (CaseRecord& record : bare.cases) record.numbers.clear();
-  CHECK_THAT(render_page(bare, "/* charts */", "6"), Contains("data-figure=\"diagram\""));
 }
 
 TEST_CASE("what the script knows of an orbit is its row of values", "[report]") {
   const StudyResults results = synthetic::dynamics();
-  const Json data = orbit_data(CaseView(results));
-  CHECK(data["parameter"] == Json({"support.amplitude", "m"}));
+  CurveData curves(1000);
+  const nlohmann::ordered_json data = orbit_data(CaseView(results), curves);
+  CHECK(data["parameter"] == nlohmann::ordered_json({"support.amplitude", "m"}));
   const CaseRecord& record = results.cases[1];
-  const Json& one = data["cases"][record.id];
+  const nlohmann::ordered_json& one = data["cases"][record.id];
   const Table& table = record.tables[0];
   for (size_t row = 0; row < table.rows.size(); ++row) {
-    CHECK(one["columns"]["parameter"][row] == table.rows[row][0]);
-    CHECK(one["columns"]["evidence"][row] == table.rows[row][21]);
+    CHECK(one["columns"]["parameter"][row] == json_of(table.rows[row][0]));
+    CHECK(one["columns"]["evidence"][row] == json_of(table.rows[row][21]));
     CHECK(one["from"][row].get<double>() < table.rows[row][0].number().value());
     CHECK(one["to"][row].get<double>() > table.rows[row][0].number().value());
   }
@@ -325,29 +226,6 @@ TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {
   CHECK_THAT(html, Contains("<h3>Located changes</h3>") && Contains("grazing"));
 }
 
-TEST_CASE("distances are medians of the table, with the null level behind them", "[report]") {
-  synthetic::DynamicsShape shape;
-  shape.methods = {{"three-level", 0.5}, {"three-level", 0.25}, {"three-level", 0.3}, {"three-level", 0.4}};
-  const StudyResults results = synthetic::dynamics(shape);
-  const std::vector<Figure> figures = distance_figures(CaseView(results));
-  const Figure& against = find(figures, "distance-time-beta");
-  REQUIRE(against.charts.size() == 1);
-  std::vector<double> medians;
-  for (const Json& series : against.charts[0].views[0].option["series"])
-    if (series.value("symbolSize", 0) == 7)
-      for (const Json& item : series["data"]) medians.push_back(item["value"][1].get<double>());
-  // The cases' distances are as 1 : 2 : 3, in the order 0.25, 0.3, 0.4; so are their medians.
-  REQUIRE(medians.size() == 3);
-  CHECK(medians[1] == Approx(2 * medians[0]));
-  CHECK(medians[2] == Approx(3 * medians[0]));
-  CHECK_THAT(against.charts[0].views[0].notes.at(0), Contains("Null level: median 0.01"));
-  const Figure& along = find(figures, "distance");
-  CHECK(along.linked);
-  for (const Figure& figure : figures)
-    for (const Chart& chart : figure.charts)
-      for (const ChartView& one : chart.views) CHECK_FALSE(has_null(one.option));
-}
-
 TEST_CASE("images of basins hold every cell, and their difference counts those that moved", "[report]") {
   const StudyResults results = synthetic::basins(40, 0.2);
   const Basins basins = basins_of(results);
@@ -368,10 +246,12 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(differ > 0);
   const CaseView view(results);
   CurveData curves(1000);
-  const Figure figure = basin_figures(view, curves).front();
-  REQUIRE(figure.charts.size() == 2);
-  CHECK_THAT(figure.charts[1].views[1].notes.at(0),
-             Contains(std::to_string(differ) + " of " + std::to_string(both) + " cells that both decide differ"));
+  const nlohmann::ordered_json data = basin_data(view, curves);
+  CHECK(data["grids"] == nlohmann::ordered_json({"full", "poor"}));
+  const Table counts = basin_counts(view);
+  REQUIRE(counts.rows.size() == 2);
+  CHECK(counts.rows[1][4] == differ);
+  CHECK(counts.rows[1][7] == both);
   CHECK(bytes_of(curves, "poor/cells:u8") == basins.grids[1].cells);
   const std::string html = basins_html(view);
   CHECK_THAT(html, Contains("3 attractors") && Contains("a smooth boundary is not excluded") && Contains("33.3 %"));
@@ -389,10 +269,7 @@ TEST_CASE("cells that were not marched themselves are said", "[report]") {
   cells.columns.push_back({"marched", "", ""});
   for (size_t row = 0; row < cells.rows.size(); ++row) cells.rows[row].push_back(row % 4 == 0);
   CHECK(basins_of(results).grids[0].filled == 285);  // three quarters of 20 × 19
-  CurveData curves(1000);
-  const CaseView view(results);
-  const Figure figure = basin_figures(view, curves).front();
-  CHECK_THAT(figure.charts[0].notes.at(0), Contains("285 of 380 cells take the end of a marched one"));
+  CHECK(basin_counts(CaseView(results)).rows[0][3] == 285);
 }
 
 TEST_CASE("cases that are still being worked on are said to be", "[report]") {
@@ -401,7 +278,7 @@ TEST_CASE("cases that are still being worked on are said to be", "[report]") {
   results.cases[1].partial = true;
   const std::string page = render_page(results, "/* charts */", "6");
   CHECK_THAT(page, Contains("<strong>One case is still being worked on.</strong>"));
-  CHECK_THAT(page, Contains("<em>(partial)</em>") && Contains("beta 0.25 (partial)"));
+  CHECK_THAT(page, Contains("<em>(partial)</em>") && Contains("\"partial\":[false,true]"));
 }
 
 TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") {

@@ -1,12 +1,12 @@
-// The report's evidence: what is drawn and told is what the derived tables hold.
+// The report's evidence: what is told is what the derived tables hold.
 #include "runners/report/evidence.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
-#include <set>
+#include <random>
 
+#include "runners/report/derived/shown_tables.hpp"
 #include "runners/report/evidence_rows.hpp"
 #include "runners/report/work_precision.hpp"
 #include "tests/runners/report/evidence_results.hpp"
@@ -20,55 +20,8 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-const Figure& find(const std::vector<Figure>& figures, const std::string& id) {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.id == id; });
-  REQUIRE(found != figures.end());
-  return *found;
-}
-
-using Accept = std::function<bool(const Json& series)>;
-
-/// Points of the series that `accept` takes, over the charts of a figure in one view.
-std::vector<Json> points(const Figure& figure, size_t view, const Accept& accept) {
-  std::vector<Json> out;
-  for (const Chart& chart : figure.charts)
-    for (const Json& series : chart.views.at(view).option.at("series"))
-      if (accept(series))
-        for (const Json& item : series.at("data")) out.push_back(item);
-  return out;
-}
-
-bool is_curve(const Json& series) {
-  return series.at("type") == "line" && series.value("symbolSize", Json()) == 8;
-}
-bool is_mark(const Json& series) {
-  return series.at("type") == "scatter";
-}
-Accept named(const std::string& name) {
-  return [name](const Json& series) { return series.at("name") == name; };
-}
-
-/// Every number of a page's options is one: NaN would be written as null.
-bool has_null(const Json& value) {
-  if (value.is_null()) return true;
-  if (value.is_number_float()) return !std::isfinite(value.get<double>());
-  return value.is_structured() && std::any_of(value.begin(), value.end(), [](const Json& v) { return has_null(v); });
-}
-
-std::vector<Figure> all_figures(const CaseView& view) {
-  std::vector<Figure> out;
-  for (const auto maker : {error_figures, work_precision_figures, effects_figures})
-    for (Figure& figure : maker(view)) out.push_back(std::move(figure));
-  return out;
-}
-
 const Table& table(const StudyResults& results, const std::string& name) {
   return *std::find_if(results.derived.begin(), results.derived.end(), [&](const auto& t) { return t.name == name; });
-}
-
-size_t unfinished(const StudyResults& results) {
-  return static_cast<size_t>(
-      std::count_if(results.cases.begin(), results.cases.end(), [](const auto& r) { return r.status != "done"; }));
 }
 
 }  // namespace
@@ -76,7 +29,7 @@ size_t unfinished(const StudyResults& results) {
 TEST_CASE("without derived tables there is no evidence", "[report]") {
   const StudyResults results = synthetic::results();
   const CaseView view(results);
-  CHECK(all_figures(view).empty());
+  for (const Table& one : shown_tables(results)) CHECK(one.name == "energy_changes");
   CHECK(orders_html(view).empty());
   CHECK(work_precision_html(view).empty());
   CHECK(effects_html(view).empty());
@@ -96,87 +49,6 @@ TEST_CASE("rows are found by the axes of a case", "[report]") {
   }
   CHECK(errors.text(0, "no such column").empty());
   CHECK(EvidenceRows(results, "no such table").empty());
-}
-
-TEST_CASE("every error is a point, every case without one a mark", "[report]") {
-  const StudyResults results = synthetic::comparison();
-  const CaseView view(results);
-  const auto figures = error_figures(view);
-  const Figure& figure = find(figures, "error-step");
-  REQUIRE(figure.views == std::vector<std::string>{"tip-linf", "energy", "impact-times"});
-  CHECK(figures.size() == 1);  // one mesh: nothing to draw against elements
-  size_t drawn = 0;
-  for (size_t v = 0; v < figure.views.size(); ++v) {
-    drawn += points(figure, v, is_curve).size();
-    CHECK(points(figure, v, is_mark).size() == unfinished(results));
-  }
-  CHECK(drawn == table(results, "errors").rows.size());
-  for (const Json& item : points(figure, 0, is_curve)) {
-    // Grey exactly where the error is at or below its floor, and the tooltip says so.
-    const bool below = item.at("value")[1].get<double>() <= 3e-5;
-    CHECK(item.contains("itemStyle") == below);
-    CHECK(contains(item.at("text"), "at or below the floor") == below);
-  }
-  CHECK(points(figure, 0, named("error floor")).size() == 6);
-  CHECK(points(figure, 2, named("error floor")).empty());  // ten decades below
-  for (const Chart& chart : figure.charts)
-    for (const ChartView& one : chart.views) CHECK_FALSE(has_null(one.option));
-}
-
-TEST_CASE("slope lines have the fitted order and end on points", "[report]") {
-  const StudyResults results = synthetic::comparison({1e-3, 5e-4, 2.5e-4, 1.25e-4}, {10, 20, 40, 80});
-  const CaseView view(results);
-  const EvidenceRows orders(results, "orders");
-  size_t lines = 0;
-  for (const Figure& figure : error_figures(view))
-    for (const Chart& chart : figure.charts)
-      for (const ChartView& one : chart.views) {
-        std::set<double> sizes;
-        for (const Json& series : one.option.at("series"))
-          if (is_curve(series))
-            for (const Json& item : series.at("data")) sizes.insert(item.at("value")[0].get<double>());
-        for (const Json& series : one.option.at("series")) {
-          if (!series.contains("endLabel")) continue;
-          ++lines;
-          const Json &from = series.at("data")[0].at("value"), &to = series.at("data")[1].at("value");
-          const double slope = std::log(to[1].get<double>() / from[1].get<double>()) /
-                               std::log(to[0].get<double>() / from[0].get<double>());
-          const double said = std::stod(series.at("endLabel").at("formatter").get<std::string>());
-          // The label has three digits.
-          CHECK(slope == Approx(figure.id == "error-step" ? said : -said).epsilon(1e-2));
-          CHECK(sizes.count(from[0].get<double>()));
-          CHECK(sizes.count(to[0].get<double>()));
-          CHECK(contains(series.at("data")[0].at("text"), "order "));
-        }
-      }
-  CHECK(lines > 30);
-}
-
-TEST_CASE("errors against elements are those of the smallest step", "[report]") {
-  const StudyResults results = synthetic::comparison({1e-3, 1e-4}, {10, 20, 40});
-  const CaseView view(results);
-  const auto figures = error_figures(view);
-  std::multiset<double> drawn, expected;
-  for (const Json& item : points(find(figures, "error-elements"), 0, is_curve))
-    drawn.insert(item.at("value")[1].get<double>());
-  for (const CaseRecord& record : results.cases)
-    if (CaseView::number(record, "step") == 1e-4)
-      if (const auto value = CaseView::measure(record, "error.tip-linf")) expected.insert(*value);
-  CHECK(drawn == expected);
-}
-
-TEST_CASE("charts of evidence hold at most eight methods", "[report]") {
-  const StudyResults results = synthetic::comparison({1e-3, 1e-4}, {10, 20, 40, 80, 160});
-  const CaseView view(results);
-  const std::vector<Figure> figures = all_figures(view);
-  for (const char* id : {"error-step", "work-precision"})
-    for (const Chart& chart : find(figures, id).charts) {
-      std::set<std::string> names;
-      for (const Json& series : chart.views.at(0).option.at("series")) names.insert(series.at("name"));
-      names.erase("error floor");
-      names.erase("Pareto front");
-      CHECK(names.size() <= 8);
-    }
 }
 
 TEST_CASE("the Pareto front is what nothing beats", "[report]") {
@@ -205,47 +77,6 @@ TEST_CASE("the Pareto front is what nothing beats", "[report]") {
     }
     for (size_t k = 1; k < front.size(); ++k) CHECK(all[front[k - 1]].known() <= all[front[k]].known());
   }
-}
-
-TEST_CASE("work and precision: points, spreads, gutter", "[report]") {
-  const StudyResults results = synthetic::comparison();
-  const CaseView view(results);
-  const auto figures = work_precision_figures(view);
-  REQUIRE(figures.size() == 3);
-  const Figure& figure = find(figures, "work-precision");
-  size_t rows = 0;
-  for (const auto& row : table(results, "work_precision").rows) rows += !row[8].is_nothing();
-  size_t drawn = 0, marks = 0;
-  for (size_t v = 0; v < figure.views.size(); ++v) {
-    drawn += points(figure, v, is_curve).size();
-    marks += points(figure, v, is_mark).size();
-  }
-  CHECK(drawn == rows);
-  CHECK(drawn + marks == table(results, "work_precision").rows.size());  // nothing vanishes
-  for (const Json& item : points(figure, 0, is_mark)) {
-    CHECK(item.at("value")[0].is_string());  // a slot of the gutter, no error that could be read off
-    CHECK(contains(item.at("text"), ": "));
-  }
-  // Finished, but without this error: said in the gutter and below.
-  size_t no_such = 0;
-  for (const Json& item : points(figure, 2, is_mark)) no_such += contains(item.at("text"), "no such error");
-  CHECK(no_such == 4);
-  for (const Chart& chart : figure.charts) {
-    const auto& notes = chart.views[2].notes;
-    CHECK(std::any_of(notes.begin(), notes.end(),
-                      [](const auto& n) { return contains(n, "4 finished cases: no such"); }));
-    CHECK(chart.notes.size() == 2);  // one refusal, one divergence
-  }
-  // Bars from the fastest to the slowest repeat: two ends and a gap per point.
-  const auto bars = points(figure, 0, [](const Json& series) {
-    return series.at("type") == "line" && series.at("symbol") == "rect" && series.at("symbolSize").is_array();
-  });
-  CHECK(bars.size() == 3 * points(figure, 0, is_curve).size());
-  for (const Figure& one : figures)
-    for (const Chart& chart : one.charts) {
-      CHECK(chart.views.size() == one.views.size());
-      for (const ChartView& v : chart.views) CHECK_FALSE(has_null(v.option));
-    }
 }
 
 TEST_CASE("the cheapest method is the one that a search over all cases finds", "[report]") {
@@ -320,27 +151,14 @@ TEST_CASE("effects are sentences and bars", "[report]") {
       "from the time scheme."));
   CHECK(contains(html, "7 of 36 cases have no value (6 refused, 1 diverged); what they would be is estimated"));
   CHECK(contains(html, "One level only, so no share: contact."));
-  const auto figures = effects_figures(view);
-  REQUIRE(figures.size() == 1);
-  REQUIRE(figures[0].charts.size() == 2);
-  for (const Chart& chart : figures[0].charts) {
-    double sum = 0;
-    for (const Json& series : chart.views.at(0).option.at("series"))
-      if (series.at("type") == "bar")
-        for (const Json& item : series.at("data")) sum += item.at("value")[0].get<double>();
-    CHECK(sum == Approx(100));
-    CHECK_FALSE(has_null(chart.views[0].option));
-  }
 }
 
-TEST_CASE("a measure without shares says so and draws nothing", "[report]") {
+TEST_CASE("a measure without shares says so", "[report]") {
   StudyResults results = synthetic::comparison();
   for (Table& t : results.derived)
     if (t.name == "effects")
       for (auto& row : t.rows) row[2] = row[3] = row[4] = 0.0;
-  const CaseView view(results);
-  CHECK(effects_figures(view).empty());
-  CHECK(contains(effects_html(view), "No shares for energy end."));
+  CHECK(contains(effects_html(CaseView(results)), "No shares for energy end."));
 }
 
 TEST_CASE("orders are written with two decimals", "[report]") {

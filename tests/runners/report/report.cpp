@@ -10,7 +10,7 @@ using namespace ricochet;
 
 namespace {
 
-bool contains(const std::string& page, const std::string& text) {
+bool page_contains(const std::string& page, const std::string& text) {
   return page.find(text) != std::string::npos;
 }
 
@@ -27,13 +27,13 @@ const std::string no_library = "/* charts */";  // stands for the library where 
 TEST_CASE("the page forbids the network and asks nothing of it", "[report]") {
   for (const std::string& library : {std::string(), no_library}) {
     const std::string page = report::render_page(synthetic::results(), library, "6");
-    CHECK(contains(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
-    CHECK(!contains(page, "connect-src"));
-    CHECK(!contains(page, "http:"));
-    CHECK(!contains(page, "https:"));
-    CHECK(!contains(page, " src="));
-    CHECK(!contains(page, "@import"));
-    CHECK(!contains(page, "url("));
+    CHECK(page_contains(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
+    CHECK(!page_contains(page, "connect-src"));
+    CHECK(!page_contains(page, "http:"));
+    CHECK(!page_contains(page, "https:"));
+    CHECK(!page_contains(page, " src="));
+    CHECK(!page_contains(page, "@import"));
+    CHECK(!page_contains(page, "url("));
   }
 }
 
@@ -41,30 +41,31 @@ TEST_CASE("every case is a row, whatever became of it", "[report]") {
   const StudyResults results = synthetic::results();
   const std::string page = report::render_page(results, "", "");
   CHECK(count(page, "<tr data-status=") == results.cases.size());
-  for (const char* status : {"refused", "diverged"}) CHECK(contains(page, "<tr data-status=\"" + std::string(status)));
-  CHECK(contains(page, "use beta ≥ 1/4 &amp; gamma ≥ 1/2"));
-  CHECK(contains(page, "the energy passed 1e9 J at step 77: &quot;no bound&quot; holds"));
+  for (const char* status : {"refused", "diverged"})
+    CHECK(page_contains(page, "<tr data-status=\"" + std::string(status)));
+  CHECK(page_contains(page, "use beta ≥ 1/4 &amp; gamma ≥ 1/2"));
+  CHECK(page_contains(page, "the energy passed 1e9 J at step 77: &quot;no bound&quot; holds"));
 }
 
 TEST_CASE("a page without the library says so and keeps its tables", "[report]") {
   const std::string page = report::render_page(synthetic::results(), "", "");
-  CHECK(contains(page, "built without the chart library"));
-  CHECK(contains(page, "npm ci"));
-  CHECK(!contains(page, "<section class=\"figure\""));
-  CHECK(contains(page, "id=\"cases\""));
-  CHECK(contains(page, "<h2>Answer</h2>"));
+  CHECK(page_contains(page, "built without the chart library"));
+  CHECK(page_contains(page, "npm ci"));
+  CHECK(!page_contains(page, "<section class=\"figure\""));
+  CHECK(page_contains(page, "id=\"cases\""));
+  CHECK(page_contains(page, "<h2>Answer</h2>"));
 }
 
 TEST_CASE("partial results are said plainly", "[report]") {
   StudyResults results = synthetic::results();
   results.expected_cases = static_cast<int>(results.cases.size());
-  CHECK(!contains(report::render_page(results, "", ""), "Partial results"));
+  CHECK(!page_contains(report::render_page(results, "", ""), "Partial results"));
   results.expected_cases += 12;
-  CHECK(contains(report::render_page(results, "", ""), "Partial results: 36 of 48 cases so far."));
+  CHECK(page_contains(report::render_page(results, "", ""), "Partial results: 36 of 48 cases so far."));
   results.cases.clear();
   const std::string empty = report::render_page(results, no_library, "6");
-  CHECK(contains(empty, "Partial results: 0 of 48 cases so far."));
-  CHECK(contains(empty, "No case has run yet."));
+  CHECK(page_contains(empty, "Partial results: 0 of 48 cases so far."));
+  CHECK(page_contains(empty, "No case has run yet."));
 }
 
 TEST_CASE("nothing that a study says can leave its place in the page", "[report]") {
@@ -81,28 +82,28 @@ TEST_CASE("nothing that a study says can leave its place in the page", "[report]
     if (record.status != "done") record.reason = attack;
   }
   const std::string page = report::render_page(results, "var s = '</script><!--';", attack);
-  CHECK(!contains(page, "<script>alert"));
-  CHECK(!contains(page, "<!--"));
-  CHECK(!contains(page, "\xff"));
+  CHECK(!page_contains(page, "<script>alert"));
+  CHECK(!page_contains(page, "<!--"));
+  CHECK(!page_contains(page, "\xff"));
   // Own script, two blocks of data, the library: four pairs, and no other.
   CHECK(count(page, "</script") == 4);
   CHECK(count(page, "<script") == 4);
-  CHECK(contains(page, "var s = '<\\/script><\\!--';"));
+  CHECK(page_contains(page, "var s = '<\\/script><\\!--';"));
 }
 
 TEST_CASE("a kind without figures of its own still has its tables", "[report]") {
   StudyResults results = synthetic::results();
   results.kind = "stability";
   const std::string page = report::render_page(results, no_library, "6");
-  CHECK(!contains(page, "<section class=\"figure\""));
+  CHECK(!page_contains(page, "<section class=\"figure\""));
   CHECK(count(page, "<tr data-status=") == results.cases.size());
 }
 
 TEST_CASE("what was left out is grouped over the cases", "[report]") {
   const std::string page = report::render_page(synthetic::results(), "", "");
   CHECK(count(page, "no damping is given") == 1);
-  CHECK(contains(page, "all 36 cases"));
-  CHECK(contains(page, "9 of 36 cases (mass singular; mass.velocity P0)"));
+  CHECK(page_contains(page, "all 36 cases"));
+  CHECK(page_contains(page, "9 of 36 cases (mass singular; mass.velocity P0)"));
 }
 
 TEST_CASE("results without a single curve or measure make a page", "[report]") {
@@ -114,8 +115,8 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
     record.reason = "it went wrong";
   }
   const std::string page = report::render_page(results, no_library, "6");
-  CHECK(contains(page, "No case has finished with a result"));
-  CHECK(!contains(page, "nan"));
+  CHECK(page_contains(page, "No case has finished with a result"));
+  CHECK(!page_contains(page, "nan"));
 }
 
 TEST_CASE("rendering the same results twice gives the same bytes", "[report]") {

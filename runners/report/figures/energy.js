@@ -1,0 +1,4 @@
+ricochet.figure("energy", (data) => ricochet.overTime(data, {
+  id: "energy", title: "Energy against time", column: "energy", quantity: ["energy E", "J"], scales: ["value", "ratio", "change"], fromZero: true, withStops: false,
+  caption: "Mechanical energy ½vᵀMv + ½qᵀKq plus that stored in compliant contacts, at the time where each scheme's velocity stands (the end of a step, or its middle).",
+}));

@@ -1,0 +1,78 @@
+// The panel beside the page that shows what a click chose: an orbit, or a cell of an image.
+{
+  let panel = null, charts = [], shown = null;
+  const element = (name, classes, text) => { const e = document.createElement(name); if (classes) e.className = classes; if (text !== undefined) e.textContent = text; return e; };
+
+  function close() {
+    charts.forEach((chart) => chart.dispose());
+    charts = [];
+    if (panel) panel.remove();
+    panel = shown = null;
+  }
+  function button(text, label, action) {
+    const out = element("button", "", text);
+    out.type = "button";
+    out.setAttribute("aria-label", label);
+    out.addEventListener("click", action);
+    return out;
+  }
+  // An empty panel under a title; `keys` stand beside it, `what` is what it shows.
+  function open(what, label, colour, title, keys) {
+    close();
+    panel = element("aside", "orbit");
+    panel.setAttribute("aria-label", label);
+    panel.tabIndex = -1;
+    const head = element("div", "orbit-head"), words = element("h3", "", title), swatch = element("span", "swatch"), beside = element("span", "orbit-keys");
+    swatch.style.background = colour;
+    words.prepend(swatch);
+    for (const key of keys) beside.appendChild(key);
+    beside.appendChild(button("×", "close", close));
+    head.append(words, beside);
+    panel.appendChild(head);
+    document.body.appendChild(panel);
+    shown = what;
+    return panel;
+  }
+  const say = (text) => panel.appendChild(element("p", "fine", text));
+  const command = (text) => panel.appendChild(element("pre", "", text));
+  function list(facts) {
+    const out = element("dl", "glossary");
+    for (const [name, value] of facts) out.append(element("dt", "", name), element("dd", "", value));
+    panel.appendChild(out);
+  }
+  function plot(x, y, series, classes) {
+    const { shown: number, escape } = ricochet.format, box = element("div", classes);
+    const axis = (name, vertical) => ({
+      type: "value", scale: true, name, nameLocation: "middle", nameGap: vertical ? 48 : 24, splitNumber: 4, axisLine: { show: true, onZero: false, lineStyle: { color: ricochet.faint } },
+      axisLabel: { fontSize: 10, color: ricochet.ink, hideOverlap: true, formatter: (v) => number(v) }, nameTextStyle: { fontSize: 11, color: ricochet.ink }, splitLine: { lineStyle: { color: "#ececec" } },
+    });
+    panel.appendChild(box);
+    const chart = echarts.init(box, null, { renderer: "canvas" });
+    chart.setOption({
+      animation: false, backgroundColor: "#fff", grid: { left: 62, right: 14, top: 10, bottom: 38 },
+      tooltip: { trigger: "item", confine: true, formatter: (p) => escape(x) + " = " + number(p.value[0], 7) + "<br>" + escape(y) + " = " + number(p.value[1], 7) },
+      dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true), series,
+    });
+    charts.push(chart);
+  }
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(); });
+
+  // What lies under the mouse, where the chart library knows nothing of it.
+  let tip = null;
+  function hover(html, where) {
+    if (!html) { if (tip) tip.remove(); tip = null; return; }
+    if (!tip) { tip = element("div", "orbit-tip"); document.body.appendChild(tip); }
+    tip.innerHTML = html;
+    tip.style.left = Math.max(0, Math.min(where[0] + 14, window.innerWidth - 300)) + "px";
+    tip.style.top = Math.max(0, Math.min(where[1] + 14, window.innerHeight - 140)) + "px";
+  }
+
+  const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
+  // Words of a command that speaks of a case of this study.
+  function commandOf(study, id) {
+    const folder = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/" : "results/" + study;
+    return "ricochet point " + quoted(folder) + " " + quoted(id);
+  }
+
+  ricochet.sidePanel = { open, close, say, command, list, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown };
+}

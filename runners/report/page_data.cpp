@@ -1,0 +1,160 @@
+#include "runners/report/page_data.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "runners/report/basin_data.hpp"
+#include "runners/report/curve_data.hpp"
+#include "runners/report/derived/shown_tables.hpp"
+#include "runners/report/orbit_data.hpp"
+#include "runners/report/orbits.hpp"
+#include "runners/store/record_tables.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet::report {
+namespace {
+
+using PageJson = nlohmann::ordered_json;
+
+PageJson column_json(const Column& column) {
+  return {{"name", column.name}, {"unit", column.unit}, {"text", column.text}};
+}
+
+/// Words are written once each, numbers as they are.
+PageJson packed(PageJson cells) {
+  const bool words =
+      std::all_of(cells.begin(), cells.end(), [](const PageJson& c) { return c.is_string() || c.is_null(); });
+  if (!words || cells.empty()) return cells;
+  PageJson list = PageJson::array(), at = PageJson::array();
+  std::map<std::string, int> places;
+  for (const PageJson& cell : cells) {
+    if (cell.is_null()) {
+      at.push_back(-1);
+      continue;
+    }
+    const auto [place, fresh] = places.emplace(cell.get<std::string>(), static_cast<int>(list.size()));
+    if (fresh) list.push_back(cell);
+    at.push_back(place->second);
+  }
+  return {{"words", std::move(list)}, {"at", std::move(at)}};
+}
+
+PageJson table_json(const Table& table) {
+  PageJson columns = PageJson::array(), cells = PageJson::array();
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    columns.push_back(column_json(table.columns[c]));
+    PageJson column = PageJson::array();
+    for (const auto& row : table.rows) column.push_back(c < row.size() ? json_of(row[c]) : PageJson());
+    cells.push_back(packed(std::move(column)));
+  }
+  return {{"columns", std::move(columns)}, {"rows", table.rows.size()}, {"cells", std::move(cells)}};
+}
+
+PageJson axes_json(const CaseView& view) {
+  PageJson out = PageJson::array();
+  for (const std::string& column : view.results().columns) {
+    PageJson texts = PageJson::array(), numbers = PageJson::array(), at = PageJson::array();
+    std::map<std::string, int> places;
+    for (const CaseRecord* record : view.all()) {
+      std::string text = CaseView::text(*record, column);
+      if (text.empty()) {
+        at.push_back(-1);
+        continue;
+      }
+      const auto [place, fresh] = places.emplace(text, static_cast<int>(texts.size()));
+      if (fresh) {
+        const auto number = CaseView::number(*record, column);
+        texts.push_back(std::move(text));
+        numbers.push_back(number ? PageJson(*number) : PageJson());
+      }
+      at.push_back(place->second);
+    }
+    out.push_back({{"name", column},
+                   {"unit", axis_unit(column)},
+                   {"texts", std::move(texts)},
+                   {"numbers", std::move(numbers)},
+                   {"at", std::move(at)}});
+  }
+  return out;
+}
+
+PageJson cases_json(const CaseView& view) {
+  PageJson out = {{"id", PageJson::array()},          {"status", PageJson::array()},
+                  {"reason", PageJson::array()},      {"partial", PageJson::array()},
+                  {"steps", PageJson::array()},       {"setup_seconds", PageJson::array()},
+                  {"run_seconds", PageJson::array()}, {"measures", PageJson::object()}};
+  const Cases all = view.all();
+  for (size_t c = 0; c < all.size(); ++c) {
+    const CaseRecord& record = *all[c];
+    out["id"].push_back(record.id);
+    out["status"].push_back(record.status);
+    out["reason"].push_back(record.reason);
+    out["partial"].push_back(record.partial);
+    out["steps"].push_back(record.steps);
+    out["setup_seconds"].push_back(record.setup_seconds);
+    out["run_seconds"].push_back(record.run_seconds);
+    for (const auto& [name, value] : record.measures) {
+      PageJson& column = out["measures"][name];
+      if (column.is_null()) column = PageJson(all.size(), nullptr);
+      column[c] = value;
+    }
+  }
+  return out;
+}
+
+PageJson measures_json(const PageJson& cases) {
+  PageJson out = PageJson::array();
+  for (const auto& [name, column] : cases["measures"].items()) out.push_back(column_json(measure_column(name)));
+  return out;
+}
+
+PageJson tables_json(const CaseView& view, const Drawn& drawn) {
+  PageJson out = PageJson::object();
+  const auto add = [&](const Table& table) {
+    if (std::find(drawn.tables.begin(), drawn.tables.end(), table.name) != drawn.tables.end())
+      out[table.name] = table_json(table);
+  };
+  for (const Table& table : view.results().derived) add(table);
+  for (const Table& table : shown_tables(view.results())) add(table);
+  return out;
+}
+
+PageJson own_json(const CaseView& view, const Drawn& drawn) {
+  PageJson out = PageJson::object();
+  for (const CaseRecord* record : view.all())
+    for (const std::string_view name : drawn.own_tables)
+      if (const Table* table = find_table(record->tables, name))
+        out[std::string(name)][record->id] = table_json(*table);
+  return out;
+}
+
+PageJson curves_json(const CaseView& view, const Drawn& drawn, CurveData& curves) {
+  PageJson out = PageJson::object();
+  for (const CaseRecord* record : view.all())
+    for (const std::string_view column : drawn.curves)
+      if (auto names = curves.series(*record, "t", std::string(column)))
+        out[record->id][std::string(column)] = std::move(*names);
+  return out;
+}
+
+}  // namespace
+
+PageData page_data(const CaseView& view, const Drawn& drawn) {
+  const StudyResults& results = view.results();
+  size_t series = 0;
+  for (const CaseRecord& record : results.cases)
+    if (!record.curve.columns.empty()) series += drawn.curves.size() + 1;
+  CurveData curves(sample_limit(series));
+  PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
+  out["axes"] = axes_json(view);
+  out["cases"] = cases_json(view);
+  out["measures"] = measures_json(out["cases"]);
+  out["tables"] = tables_json(view, drawn);
+  out["own"] = own_json(view, drawn);
+  out["curves"] = curves_json(view, drawn, curves);
+  if (drawn.orbits) out["orbits"] = orbit_data(view, curves);
+  if (drawn.basins) out["basins"] = basin_data(view, curves);
+  return {std::move(out), curves.blocks(), curves.thinning()};
+}
+
+}  // namespace ricochet::report

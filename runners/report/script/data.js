@@ -1,0 +1,82 @@
+// What the page holds of the results: cases, tables, curves, and large columns of numbers as little-endian bytes in base64.
+{
+  const types = { f32: Float32Array, f64: Float64Array, u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
+
+  class PageData {
+    constructor(page, blocks) {
+      this.page = page;
+      this.blocks = blocks;
+      this.decoded = new Map();
+      this.tables = new Map();
+      this.study = page.study;
+      this.cases = page.cases.id.map((id, index) => this.caseOf(index));
+      this.byId = new Map(this.cases.map((one) => [one.id, one]));
+    }
+    caseOf(index) {
+      const { cases } = this.page, values = {}, measures = {};
+      for (const axis of this.page.axes) {
+        const at = axis.at[index];
+        if (at >= 0) values[axis.name] = { text: axis.texts[at], number: axis.numbers[at] };
+      }
+      for (const [name, column] of Object.entries(cases.measures)) if (column[index] !== null) measures[name] = column[index];
+      return { index, id: cases.id[index], status: cases.status[index], reason: cases.reason[index], partial: cases.partial[index], values, measures };
+    }
+
+    // Rows of a derived table as objects; none where the results have no such table.
+    rows(name) {
+      if (!this.tables.has(name)) this.tables.set(name, rowsOf((this.page.tables || {})[name]));
+      return this.tables.get(name);
+    }
+    // Rows of a table that a case left by itself.
+    ownRows(name, id) {
+      const key = name + "/" + id;
+      if (!this.tables.has(key)) this.tables.set(key, rowsOf(((this.page.own || {})[name] || {})[id]));
+      return this.tables.get(key);
+    }
+    // Finds the row of a table with a case's axes and the values of further columns. `but`: axes that are not looked at.
+    finder(name, columns, but = []) {
+      const rows = this.rows(name), places = new Map();
+      const axes = this.page.axes.map((axis) => axis.name).filter((axis) => rows.length && axis in rows[0] && !but.includes(axis));
+      // Texts and numbers of a case and of a row are told alike, whatever digits they are written with.
+      const part = (value) => (value === null || value === undefined || value === "" ? "" : String(value));
+      for (const row of rows) {
+        const key = axes.map((axis) => part(row[axis])).concat(columns.map((column) => part(row[column]))).join("\u001f");
+        if (!places.has(key)) places.set(key, row);
+      }
+      return (one, wanted) => {
+        const own = axes.map((axis) => (one.values[axis] ? part(one.values[axis].number === null ? one.values[axis].text : one.values[axis].number) : ""));
+        return places.get(own.concat(wanted.map(part)).join("\u001f"));
+      };
+    }
+
+    // A block of numbers; null where the page has none of the name.
+    block(name) {
+      if (!this.decoded.has(name)) {
+        const type = Object.keys(types).find((one) => this.blocks[name + ":" + one] !== undefined);
+        if (!type) return null;
+        const binary = atob(this.blocks[name + ":" + type]), bytes = new Uint8Array(binary.length);
+        for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+        this.decoded.set(name, new types[type](bytes.buffer));   // as every browser's machine has them
+      }
+      return this.decoded.get(name);
+    }
+    // Columns of a case's curve, {x, y}; null where it has none.
+    curve(one, column) {
+      const names = ((this.page.curves || {})[one.id] || {})[column];
+      return names ? { x: this.block(names[0]), y: this.block(names[1]) } : null;
+    }
+  }
+
+  function rowsOf(table) {
+    if (!table) return [];
+    const names = table.columns.map((column) => column.name), rows = [];
+    for (let r = 0; r < table.rows; ++r) {
+      const row = {};
+      names.forEach((name, c) => { const column = table.cells[c]; row[name] = column.words ? (column.at[r] < 0 ? null : column.words[column.at[r]]) : column[r]; });
+      rows.push(row);
+    }
+    return rows;
+  }
+
+  ricochet.PageData = PageData;
+}

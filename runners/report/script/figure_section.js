@@ -1,0 +1,60 @@
+// A figure as a part of the page: heading, caption, choice of views, legend, and a place for each of its charts with what is said below it.
+{
+  const { escape } = ricochet.format;
+  const shapes = {
+    circle: '<circle cx="15" cy="6" r="4"', rect: '<rect x="11" y="2" width="8" height="8"', roundRect: '<rect x="11" y="2" width="8" height="8"', triangle: '<path d="M15 1 L20 10 L10 10 Z"',
+    arrow: '<path d="M15 1 L20 10 L10 10 Z"', "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"', cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"', diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
+  };
+
+  function legend(entries) {
+    if (entries.length < 2) return "";
+    let out = '<div class="legend" role="group" aria-label="Show or hide curves">', heading = "";
+    for (const entry of entries) {
+      if ((entry.heading || "") !== heading) {
+        out += (heading ? '<span class="line"></span>' : "") + '<span class="heading">' + escape(entry.heading) + "</span>";
+        heading = entry.heading;
+      }
+      const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' + (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
+      const mark = shapes[entry.symbol] ? shapes[entry.symbol] + ' fill="' + entry.colour + '"/>' : "";
+      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" + escape(entry.name) + "</button>";
+    }
+    return out + "</div>";
+  }
+  function controls(figure) {
+    let out = "";
+    if (figure.views.length > 1)
+      out += '<span class="choice" role="group" aria-label="Scale of the vertical axis">' +
+        figure.views.map((name, v) => '<button type="button" data-view="' + v + '" aria-pressed="' + (v === 0) + '">' + escape(name) + "</button>").join("") + "</span>";
+    if (figure.charts.length > 1) out += '<label title="Off: the same vertical scale in all charts, so that they compare"><input type="checkbox" data-own> each chart its own scale</label>';
+    if (figure.charts.length > 12) out += '<label>Show <input type="search" data-facets placeholder="words of a chart\'s title"></label>';
+    return '<div class="controls">' + out + "</div>";
+  }
+  function classes({ charts, linked, overTime }) {
+    if (linked && !overTime) return charts.length === 1 ? "grid single broad" : "grid stacked";
+    if (charts.length === 1) return "grid single";
+    const out = charts.length > 12 ? "grid many" : charts.length === 2 ? "grid pair" : "grid";
+    return charts.some((chart) => chart.title.length > 40) ? out + " long-titles" : out;
+  }
+  const notes = (list) => (list.length ? '<ul class="notes">' + list.map((note) => "<li>" + escape(note) + "</li>").join("") + "</ul>" : "");
+  function place(figure, chart, index) {
+    const apart = chart.only !== undefined, wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only), title = escape(chart.title);
+    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") + (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + "><figcaption><span>" + title + "</span>";
+    if (chart.views.length) out += '<span class="export"><button type="button" data-export="svg">SVG</button><button type="button" data-export="png">PNG</button></span>';
+    out += "</figcaption>";
+    if (chart.views.length)
+      out += '<div class="chart" data-chart="' + index + '"' + (chart.height ? ' style="height:' + chart.height + 'px"' : "") + ' role="img" aria-label="' + escape(figure.title) + ": " + title + '"></div>';
+    else out += '<p class="nothing">No curve: no case of this chart has one.</p>';
+    chart.views.forEach((view, v) => { if (view.notes.length) out += '<div data-notes="' + (apart ? "" : v) + '"' + (v > 0 ? " hidden" : "") + ">" + notes(view.notes) + "</div>"; });
+    return out + notes(chart.notes) + "</figure>";
+  }
+
+  ricochet.figureSection = (figure) => {
+    const section = document.createElement("section");
+    section.className = "figure";
+    section.id = "figure-" + figure.id;
+    section.dataset.figure = figure.id;
+    section.innerHTML = "<h3>" + escape(figure.title) + '</h3><p class="caption">' + escape(figure.caption) + "</p>" + controls(figure) + legend(figure.legend) +
+      '<div class="' + classes(figure) + '">' + figure.charts.map((chart, index) => place(figure, chart, index)).join("") + "</div>";
+    return section;
+  };
+}

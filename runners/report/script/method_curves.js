@@ -1,0 +1,54 @@
+// Cases as curves along an axis, in facets of at most eight curves: first by what must not share a chart, then by what is no method, then by methods
+// other than the mass matrix. Colour is the mass matrix; where a study has one mass only, it is the curve.
+{
+  const mostCurves = 8;
+  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31"];
+
+  // Of the columns, those that become facets so that no chart has more curves than a reader can tell apart.
+  function facetColumns(view, cases, columns, apart) {
+    const { roleOf } = ricochet, facets = columns.filter((column) => apart.includes(column));
+    const isMethod = (column) => ["mass", "contact", "time"].includes(roleOf(column));
+    const candidates = columns.filter((column) => !apart.includes(column) && roleOf(column) !== "mass");
+    for (const column of candidates.filter((one) => !isMethod(one)).concat(candidates.filter(isMethod))) {
+      const most = Math.max(0, ...view.group(cases, facets).map((facet) => view.group(facet.cases, columns).length));
+      if (most <= mostCurves) break;
+      facets.push(column);
+    }
+    return facets;
+  }
+
+  class MethodCurves {
+    constructor(view, cases, along, apart = [], ignored = []) {
+      const { roleOf, numberOf } = ricochet;
+      this.byMass = view.masses.length > 1;
+      const others = view.varying.filter((column) => column !== along && !ignored.includes(column)), facets = facetColumns(view, cases, others, apart);
+      const curveColumns = others.filter((column) => !facets.includes(column)), notMass = others.filter((column) => roleOf(column) !== "mass"), names = [];
+      // Columns whose values tell a case of a facet apart.
+      this.said = [along].concat(curveColumns);
+      this.facets = view.group(cases, facets).map((group) => {
+        const styles = view.group(group.cases, notMass);
+        const curves = view.group(group.cases, others).map((one) => {
+          const first = one.cases[0], name = view.label(first, curveColumns) || view.massLabel(first) || "cases";
+          // Without masses to tell apart, a name has its colour in every chart.
+          if (!names.includes(name)) names.push(name);
+          const rank = names.indexOf(name);
+          return {
+            name, colour: this.byMass ? view.colour(first) : colours[rank % colours.length], style: this.byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
+            cases: one.cases.slice().sort((a, b) => (numberOf(a, along) || 0) - (numberOf(b, along) || 0)),
+          };
+        });
+        return { title: group.label || "all cases", cases: group.cases, curves };
+      });
+    }
+    legend() {
+      const out = new Map();
+      for (const facet of this.facets)
+        for (const { name, colour, style } of facet.curves) if (!out.has(name)) out.set(name, { name, colour, dash: ricochet.svgDash(style), symbol: ricochet.symbol(style) });
+      return Array.from(out.values());
+    }
+    // What the colours mean, for a caption.
+    colours() { return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix)."; }
+  }
+
+  Object.assign(ricochet, { MethodCurves, facetColumns, mostCurves });
+}

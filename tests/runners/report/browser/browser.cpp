@@ -1,0 +1,155 @@
+#include "tests/runners/report/browser/browser.hpp"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "runners/report/page.hpp"
+
+namespace ricochet::browser {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path source = RICOCHET_SOURCE_DIR "/tests/runners/report/browser";
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string chart_library_file() {
+  const std::string text = content(RICOCHET_SOURCE_DIR "/runners/report/node_modules/echarts/dist/echarts.min.js");
+  INFO("`npm ci` in runners/report brings the chart library (tests/run.sh does it)");
+  REQUIRE(!text.empty());
+  return text;
+}
+
+/// The probe goes before everything else of the page, so that it hears of every error.
+std::string with_probe(const Page& page) {
+  std::string out = page.html, asked = Json{{"controls", page.controls}, {"numbers", page.numbers}}.dump();
+  for (size_t at = 0; (at = asked.find('"', at)) != std::string::npos; at += 6) asked.replace(at, 1, "&quot;");
+  const size_t html = out.find("<html lang=\"en\">");
+  REQUIRE(html != std::string::npos);
+  out.replace(html, 16, "<html lang=\"en\" data-asked=\"" + asked + "\">");
+  const size_t head = out.find("<title>");
+  REQUIRE(head != std::string::npos);
+  return out.insert(head, "<script>" + content(source / "probe.js") + "</script>");
+}
+
+}  // namespace
+
+Page page_of(const std::string& name, const StudyResults& results) {
+  return {name, report::render_page(results, chart_library_file(), "6")};
+}
+
+bool left_out() {
+  const char* said = std::getenv("RICOCHET_WITHOUT_BROWSER");
+  if (!said || std::string(said) != "1") return false;
+  WARN("RICOCHET_WITHOUT_BROWSER is set: no report was opened in a browser");
+  return true;
+}
+
+Json read_back(const std::string& folder, const std::vector<Page>& pages) {
+  const fs::path here = fs::path(RICOCHET_BINARY_DIR) / "browser" / folder;
+  fs::remove_all(here);
+  fs::create_directories(here);
+  Json names = Json::array();
+  for (const Page& page : pages) {
+    names.push_back(page.name);
+    std::ofstream(here / (page.name + ".html"), std::ios::binary) << with_probe(page);
+  }
+  std::string gallery = content(source / "gallery.html");
+  gallery.replace(gallery.find("PAGES"), 5, names.dump());
+  std::ofstream(here / "gallery.html", std::ios::binary) << gallery;
+  const std::string command =
+      "sh '" + (source / "open.sh").string() + "' '" + (here / "gallery.html").string() + "' '" + here.string() + "'";
+  INFO("what the browser left is in " << here);
+  const int status = std::system(command.c_str());
+  REQUIRE(WIFEXITED(status));
+  REQUIRE(WEXITSTATUS(status) == 0);
+  const std::string dom = content(here / "dom.html"), opening = "id=\"said\">";
+  const size_t from = dom.find(opening), to = dom.find("</script>", from);
+  REQUIRE(from != std::string::npos);
+  const std::string said = dom.substr(from + opening.size(), to - from - opening.size());
+  REQUIRE(!said.empty());
+  Json out = Json::parse(said);
+  for (const Page& page : pages) {
+    INFO("page " << page.name);
+    REQUIRE(out.at(page.name).at("errors") == Json::array());
+  }
+  return out;
+}
+
+bool has_figure(const Json& page, const std::string& id) {
+  return std::any_of(page.at("figures").begin(), page.at("figures").end(),
+                     [&](const Json& f) { return f.at("id") == id; });
+}
+
+const Json& figure(const Json& page, const std::string& id) {
+  for (const Json& one : page.at("figures"))
+    if (one.at("id") == id) return one;
+  FAIL("no figure " << id);
+  static const Json none;
+  return none;
+}
+
+std::vector<Json> series_of(const Json& figure, size_t view, const Accept& accept) {
+  std::vector<Json> out;
+  for (const Json& chart : figure.at("charts"))
+    if (view < chart.at("views").size())
+      for (const Json& series : chart.at("views")[view].at("series"))
+        if (accept(series)) out.push_back(series);
+  return out;
+}
+
+std::vector<Json> items_of(const Json& figure, size_t view, const Accept& accept) {
+  std::vector<Json> out;
+  for (const Json& series : series_of(figure, view, accept))
+    for (const Json& item : series.at("data")) out.push_back(item);
+  return out;
+}
+
+bool is_curve(const Json& series) {
+  return series.at("type") == "line" && series.value("symbolSize", Json()) == 8;
+}
+bool is_mark(const Json& series) {
+  return series.at("type") == "scatter";
+}
+Accept named(const std::string& name) {
+  return [name](const Json& series) { return series.at("name") == name; };
+}
+
+bool says(const Json& texts, const std::string& part) {
+  return std::any_of(texts.begin(), texts.end(),
+                     [&](const Json& text) { return text.get<std::string>().find(part) != std::string::npos; });
+}
+
+void require_works(const Json& page, size_t cases) {
+  REQUIRE(!page.at("figures").empty());
+  for (const Json& one : page.at("figures")) {
+    INFO("figure " << one.at("id"));
+    for (const Json& chart : one.at("charts")) {
+      INFO("chart " << chart.at("title"));
+      for (const Json& view : chart.at("views"))
+        // A curve across half of a small chart colours hundreds of pixels, a lone mark about 60.
+        if (!view.at("series").empty()) CHECK(view.at("coloured") > 40);
+    }
+    for (const char* what : {"hidden", "linked", "aligned", "reset"})
+      if (one.contains(what)) CHECK(one.at(what) == true);
+    if (one.at("linked_along") == true) CHECK(one.contains("linked"));
+    CHECK(one.at("anchored") == true);
+    CHECK(one.at("svg") > 5000);  // axes and their labels alone are about this many bytes
+    CHECK(one.at("png") > 20000);
+    CHECK(one.at("tooltip").get<std::string>().find(" = ") != std::string::npos);
+  }
+  CHECK(page.at("table").at("rows") == cases);
+  CHECK(page.at("table").at("sorts") == true);
+  CHECK(page.at("table").at("filtered") == 0);
+  CHECK(page.at("table").at("restored") == cases);
+}
+
+}  // namespace ricochet::browser

@@ -1,0 +1,228 @@
+// Figures of kinds `bifurcation` and `basins`, read back from the browser.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "runners/report/basins.hpp"
+#include "runners/report/derived/shown_tables.hpp"
+#include "runners/report/orbits.hpp"
+#include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/synthetic_dynamics.hpp"
+
+using namespace ricochet;
+using namespace ricochet::browser;
+using Catch::Matchers::Contains;
+using report::regime_groups;
+
+namespace {
+
+/// Sources of marks drawn by hand in a chart.
+std::vector<Json> sources(const Json& chart, const std::string& what) {
+  std::vector<Json> out;
+  for (const Json& source : chart.at("views").at(0).at("sources"))
+    if (source.at("what") == what && source.at("count") > 0) out.push_back(source);
+  return out;
+}
+size_t count_of(const std::vector<Json>& list) {
+  size_t out = 0;
+  for (const Json& one : list) out += one.at("count").get<size_t>();
+  return out;
+}
+
+/// One horizontal axis for the diagram, its exponents, regimes and verdicts.
+void check_diagram(const StudyResults& results, const Json& page) {
+  const Json& diagram = figure(page, "diagram");
+  CHECK(diagram.at("linked_along") == true);
+  CHECK(diagram.at("views") == Json({"side by side", "overlaid", "by start"}));
+  const Json& charts = diagram.at("charts");
+  REQUIRE(charts.size() == 2 + 1 + 6);
+  for (const Json& chart : charts) {
+    REQUIRE(chart.at("views").size() == 1);
+    const Json& view = chart.at("views")[0];
+    REQUIRE(view.at("xAxis").size() == 4);
+    for (const Json& axis : view["xAxis"]) {
+      CHECK(axis["min"] == view["xAxis"][0]["min"]);
+      CHECK(axis["max"] == view["xAxis"][0]["max"]);
+    }
+    CHECK(view["dataZoom"][0]["xAxisIndex"] == Json({0, 1, 2, 3}));
+    for (const Json& grid : view["grid"]) CHECK(grid["left"] == view["grid"][0]["left"]);
+  }
+  // Side by side: colour is the regime; overlaid: the case.
+  for (const Json& source : sources(charts[0], "points"))
+    CHECK(source["colour"] == regime_groups[source["group"].get<size_t>()].colour);
+  std::set<std::string> colours;
+  for (const Json& source : sources(charts[2], "points")) colours.insert(source["colour"].get<std::string>());
+  CHECK(colours.size() == 2);
+  // As many points overlaid, and by start, as side by side.
+  const size_t points = count_of(sources(charts[0], "points")) + count_of(sources(charts[1], "points"));
+  size_t by_start = 0;
+  for (size_t c = 3; c < charts.size(); ++c) by_start += count_of(sources(charts[c], "points"));
+  CHECK(count_of(sources(charts[2], "points")) == points);
+  CHECK(by_start == points);
+  // An exponent and its interval per orbit that has one; a cell of the band per orbit.
+  for (size_t c = 0; c < 2; ++c) {
+    const auto orbits = report::orbits_of(results.cases[c]);
+    const auto with = std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return !o.exponents.empty(); });
+    CHECK(count_of(sources(charts[c], "exponents")) == static_cast<size_t>(with));
+    CHECK(count_of(sources(charts[c], "whiskers")) == static_cast<size_t>(with));
+    CHECK(count_of(sources(charts[c], "twins")) == static_cast<size_t>(with));
+    size_t cells = 0, failed = 0, changes = 0;
+    for (const Json& series : charts[c].at("views")[0].at("series")) {
+      const std::string name = series.at("name");
+      if (name.rfind("regime ", 0) == 0) cells += series.at("count").get<size_t>();
+      if (name == "not finished") failed += series.at("count").get<size_t>();
+      if (name == "located change") changes += series.at("count").get<size_t>();
+    }
+    CHECK(cells == orbits.size());
+    CHECK(failed ==
+          static_cast<size_t>(std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return !o.done(); })));
+    CHECK(changes == results.cases[c].tables[1].rows.size());
+  }
+  const Json& notes = charts[0].at("views")[0].at("notes");
+  CHECK(says(notes, "refused"));
+  CHECK(says(notes, "the support passes the <stop>"));
+  CHECK_THAT(diagram.at("caption").get<std::string>(),
+             Contains("by tangent+jump") && Contains("marginal root") && Contains("All are in points.csv"));
+  // Every regime and start that is drawn can be found in the legend.
+  std::set<std::string> legend;
+  for (const Json& name : diagram.at("legend")) legend.insert(name.get<std::string>());
+  for (const Json& chart : charts) {
+    for (const Json& series : chart.at("views")[0].at("series"))
+      for (const Json& tag : series.value("tags", Json::array())) CHECK(legend.count(tag.get<std::string>()) == 1);
+    for (const Json& source : chart.at("views")[0].at("sources"))
+      for (const Json& tag : source.at("tags")) CHECK(legend.count(tag.get<std::string>()) == 1);
+  }
+  const Json& panel = diagram.at("panel");
+  for (const char* what : {"opened", "orbit", "closed"}) CHECK(panel.at(what) == true);
+  CHECK(panel.at("facts") > 8);
+  CHECK(panel.at("canvases") > 0);
+  CHECK_THAT(panel.at("command").get<std::string>(), Catch::Matchers::StartsWith("ricochet point ") &&
+                                                         Contains(" thr50 --parameter 0.0") && Contains(" --start "));
+}
+
+std::vector<std::pair<std::string, std::string>> regimes_and_starts(const Json& page) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const Json& entry : figure(page, "diagram").at("entries"))
+    if (entry.value("heading", "") == "Regime" || entry.value("heading", "") == "Start")
+      out.emplace_back(entry.at("name"), entry.at("colour"));
+  return out;
+}
+
+/// Medians of the table, with the null level behind them.
+void check_distances(const Json& page) {
+  const Json& against = figure(page, "distance-time-beta");
+  REQUIRE(against.at("charts").size() == 1);
+  std::vector<double> medians;
+  for (const Json& item : items_of(against, 0, [](const Json& s) { return s.value("symbolSize", Json()) == 7; }))
+    medians.push_back(item.at("value")[1]);
+  // The cases' distances are as 1 : 2 : 3, in the order 0.25, 0.3, 0.4; so are their medians.
+  REQUIRE(medians.size() == 3);
+  CHECK(medians[1] == Approx(2 * medians[0]));
+  CHECK(medians[2] == Approx(3 * medians[0]));
+  CHECK(says(against.at("charts")[0].at("views")[0].at("notes"), "Null level: median 0.01"));
+  CHECK(figure(page, "distance").at("linked_along") == true);
+  for (const Json& series :
+       series_of(figure(page, "distance"), 0, [](const Json& s) { return s.value("symbolSize", Json()) == 4; }))
+    CHECK(series.at("count") > 50);
+  const auto level = series_of(figure(page, "distance"), 0, named("null level"));
+  REQUIRE(level.size() == 1);
+  for (const Json& item : level[0].at("data")) CHECK(item.at("value")[1] == 0.01);
+}
+
+}  // namespace
+
+TEST_CASE("a diagram draws every orbit, and a click on a point opens its own", "[report][browser]") {
+  if (left_out()) return;
+  const StudyResults results = synthetic::dynamics();
+  StudyResults backward = results;
+  std::reverse(backward.cases.begin(), backward.cases.end());
+  for (CaseRecord& record : backward.cases)
+    for (Table& table : record.tables) std::reverse(table.rows.begin(), table.rows.end());
+  synthetic::DynamicsShape little, betas, many;
+  little.exponents = little.portraits = little.refused = false;
+  little.starts = many.starts = {"rest"};
+  little.methods.resize(1);
+  betas.methods = {{"three-level", 0.5}, {"three-level", 0.25}, {"three-level", 0.3}, {"three-level", 0.4}};
+  StudyResults bare = synthetic::dynamics(little), pointless = synthetic::dynamics(), partial = synthetic::dynamics();
+  bare.derived.clear();
+  for (CaseRecord& record : pointless.cases) record.numbers.clear();
+  partial.cases[1].partial = true;
+  many.values = 450;
+  many.kept = 600;
+  many.starts = {"up"};
+  many.methods.resize(1);
+  const StudyResults large = synthetic::dynamics(many);
+  std::vector<Page> pages = {page_of("diagram", results),
+                             page_of("large", large),
+                             page_of("backward", backward),
+                             page_of("bare", bare),
+                             page_of("betas", synthetic::dynamics(betas)),
+                             page_of("pointless", pointless),
+                             page_of("partial", partial)};
+  for (size_t k = 2; k < pages.size(); ++k) pages[k].controls = false;
+  const Json said = read_back("dynamics", pages);
+
+  require_works(said.at("diagram"), results.cases.size());
+  check_diagram(results, said.at("diagram"));
+  check_distances(said.at("betas"));
+  require_works(said.at("large"), 1);
+  CHECK(figure(said.at("large"), "diagram").at("panel").at("orbit") == true);
+  CHECK(regimes_and_starts(said.at("backward")) ==
+        regimes_and_starts(said.at("diagram")));  // whatever the order of values or cases
+
+  // Without exponents, verdicts or a second case their panels and views are absent.
+  const Json& alone = figure(said.at("bare"), "diagram");
+  CHECK(alone.at("views") == Json({"diagram"}));
+  REQUIRE(alone.at("charts").size() == 1);
+  CHECK(alone.at("charts")[0].at("views")[0].at("xAxis").size() == 2);
+  CHECK(alone.at("charts")[0].at("views")[0].at("notes").empty());
+  CHECK_THAT(alone.at("caption").get<std::string>(), !Contains("exponent"));
+  CHECK_FALSE(has_figure(said.at("bare"), "distance"));
+  // Values without their sections still make a figure; a case that is still worked on is said to be.
+  CHECK(has_figure(said.at("pointless"), "diagram"));
+  CHECK_THAT(figure(said.at("partial"), "diagram").at("charts")[1].at("title").get<std::string>(),
+             Contains("beta 0.25 (partial)"));
+}
+
+TEST_CASE("images of basins draw every cell and their differences, and a click opens a cell", "[report][browser]") {
+  if (left_out()) return;
+  const StudyResults results = synthetic::basins(40, 0.2);
+  StudyResults filled = synthetic::basins(20);
+  filled.derived[0].columns.push_back("marched");
+  for (size_t row = 0; row < filled.derived[0].rows.size(); ++row) filled.derived[0].rows[row].push_back(row % 4 == 0);
+  std::vector<Page> pages = {page_of("basins", results), page_of("filled", filled)};
+  pages[1].controls = false;
+  const Json said = read_back("basins", pages);
+
+  require_works(said.at("basins"), results.cases.size());
+  const Json& basins = figure(said.at("basins"), "basins");
+  REQUIRE(basins.at("charts").size() == 2);
+  CHECK(basins.at("views") == Json({"basins", "difference"}));
+  // One series per end that a case has, in the colour of the legend.
+  const report::Basins grids = report::basins_of(results);
+  for (size_t c = 0; c < 2; ++c) {
+    const Json& series = basins.at("charts")[c].at("views")[0].at("series");
+    size_t drawn = 0;
+    for (size_t k = 0; k < grids.labels.size(); ++k) {
+      if (std::find(grids.grids[c].cells.begin(), grids.grids[c].cells.end(), k) == grids.grids[c].cells.end())
+        continue;
+      REQUIRE(drawn < series.size());
+      CHECK(series[drawn].at("name") == grids.labels[k].name);
+      CHECK(series[drawn++].at("color") == grids.labels[k].colour);
+    }
+    CHECK(series.size() == drawn);
+  }
+  const auto counts = report::basin_counts(report::CaseView(results)).rows[1];
+  CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),
+             counts[4].dump() + " of " + counts[7].dump() + " cells that both decide differ"));
+  CHECK(says(basins.at("charts")[0].at("views")[0].at("notes"), "the support passes the <stop>"));
+  CHECK(basins.at("charts")[0].at("views")[0].at("xAxis")[0].at("name") == "factor of initial.displacement");
+  const Json& cell = basins.at("cell");
+  CHECK(cell.at("opened") == true);
+  CHECK(cell.at("cell") == true);
+  CHECK(cell.at("lines") == 2);  // one per case
+  CHECK_THAT(cell.at("command").get<std::string>(), Catch::Matchers::StartsWith("ricochet point ") &&
+                                                        Contains(" --cell=" + cell.at("wanted").get<std::string>()));
+  CHECK(says(figure(said.at("filled"), "basins").at("charts")[0].at("views")[0].at("notes"),
+             "285 of 380 cells take the end of a marched one"));
+}

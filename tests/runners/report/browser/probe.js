@@ -1,0 +1,161 @@
+// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works the page's controls, and posts
+// all of it to the page around the frame.
+(() => {
+  "use strict";
+  const errors = [];
+  window.addEventListener("error", (e) => errors.push(String(e.message)));
+  window.addEventListener("unhandledrejection", (e) => errors.push(String(e.reason)));
+  document.addEventListener("securitypolicyviolation", (e) => errors.push("policy: " + e.violatedDirective + " " + e.blockedURI));
+  const all = (selector, from) => Array.from((from || document).querySelectorAll(selector));
+  const mostItems = 3000;   // of a series that are read back one by one
+
+  // Pixels with a hue: grey is axes and text.
+  function coloured(slot) {
+    const layers = all("canvas", slot.element), canvas = layers[0];
+    if (!canvas || !canvas.width || !canvas.height) return 0;
+    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }), context = copy.getContext("2d", { willReadFrequently: true });
+    for (const layer of layers) context.drawImage(layer, 0, 0);
+    const data = context.getImageData(0, 0, copy.width, copy.height).data;
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 0 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count;
+    return count;
+  }
+
+  // ---- what the library holds ---------------------------------------------------------------------------------------
+  const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
+  const itemOf = (item) => (Array.isArray(item) ? { value: item } : pick(item, ["value", "text", "itemStyle", "symbolSize", "mark"]));
+  function seriesOf(series, model) {
+    const out = pick(series, ["type", "name", "tags", "symbol", "symbolSize", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]);
+    out.count = model.getData().count();
+    out.data = series.data.length <= mostItems ? series.data.map(itemOf) : [];
+    if (series.endLabel && series.endLabel.show) out.endLabel = series.endLabel.formatter;
+    if (series.markLine) out.markLine = series.markLine.data;
+    if (series.markArea) out.markArea = series.markArea.data;
+    return out;
+  }
+  function sourceOf(source) {
+    const out = Object.assign(pick(source, ["what", "id", "group", "tags", "colour", "grid"]), { count: source.values ? source.values.length / 2 : source.ends.length / 3 });
+    return Object.assign(out, source.what === "points" ? {} : { values: Array.from(source.values || source.ends) });
+  }
+  function readBack(figure, slot) {
+    const view = figure.viewOf(slot), out = { coloured: 0, notes: [], series: [], sources: view.sources ? view.sources().map(sourceOf) : [] };
+    if (!slot.chart) return out;
+    slot.chart.getZr().flush();
+    const option = slot.chart.getOption(), axis = (one) => pick(one, ["name", "type", "min", "max", "gridIndex", "data", "show"]);
+    if (!option || !option.series) return out;
+    out.coloured = coloured(slot);
+    out.xAxis = option.xAxis.map(axis);
+    out.yAxis = option.yAxis.map(axis);
+    out.grid = option.grid.map((grid) => pick(grid, ["left", "right", "top", "height"]));
+    out.dataZoom = option.dataZoom.map((zoom) => pick(zoom, ["id", "xAxisIndex", "filterMode"]));
+    option.series.forEach((series, k) => out.series.push(seriesOf(series, slot.chart.getModel().getSeriesByIndex(k))));
+    return out;
+  }
+  const notesIn = (figure, index, view) => all("figure", figure.section)[index] ? all(":scope > ul.notes li, :scope > div[data-notes]:not([hidden]) li", all("figure", figure.section)[index]).map((li) => li.textContent) : [];
+
+  // ---- what the page does -------------------------------------------------------------------------------------------
+  function checkLegend(figure, first, out) {
+    const buttons = all(".legend button", figure.section), legend = buttons[0];
+    if (!legend) return;
+    legend.click();
+    const name = legend.dataset.name, named = (one) => one.name === name || (one.tags || []).includes(name);
+    out.hidden = figure.slots.every((s) => !s.chart || !figure.visible(s) || s.drawn.series.filter(named).every((one) => s.chart.getOption().legend[0].selected[one.name] === false));
+    legend.click();
+    if (!first || !figure.viewOf(first).sources) return;
+    // Without any entry of the legend nothing coloured is left, and with all of them everything is back.
+    const full = coloured(first), redraw = () => { figure.draw(first); first.chart.getZr().flush(); };
+    buttons.forEach((b) => figure.hidden.add(b.dataset.name));
+    redraw();
+    out.hidden = out.hidden && coloured(first) < full / 10;
+    figure.hidden.clear();
+    redraw();
+    out.hidden = out.hidden && coloured(first) === full;
+  }
+  function checkZoom(figure, first, last, out) {
+    const range = first.chart.getOption().xAxis[0], low = range.min || 0, wide = range.max - low, from = low + 0.25 * wide, to = low + 0.5 * wide;
+    first.chart.dispatchAction({ type: "dataZoom", dataZoomId: "along-x", startValue: from, endValue: to });
+    const zoom = last.chart.getOption().dataZoom[0], axes = last.chart.getOption().xAxis, pixel = (k) => last.chart.convertToPixel({ xAxisIndex: k }, from);
+    out.linked = Math.abs(zoom.startValue - from) < 1e-6 * wide && Math.abs(zoom.endValue - to) < 1e-6 * wide;
+    out.aligned = axes.every((axis, k) => Math.abs(pixel(k) - pixel(0)) < 0.5);
+    figure.reset();
+    out.reset = last.chart.getOption().dataZoom[0].start === 0 && last.chart.getOption().dataZoom[0].end === 100;
+  }
+  // A click on a drawn point opens that very orbit.
+  function checkPanel(figure, slot, view) {
+    const source = view.sources().find((one) => one.what === "points" && one.values.length), middle = source.orbits.length >> 1, parameter = source.values[2 * middle];
+    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [parameter, source.values[2 * middle + 1]]));
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown();
+    const out = { opened: Boolean(panel), orbit: Boolean(shown) && shown.id === source.id && ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
+      canvases: panel ? all("canvas", panel).length : 0, command: panel ? panel.querySelector("pre").textContent : "", facts: panel ? all("dt", panel).length : 0 };
+    ricochet.sidePanel.close();
+    return Object.assign(out, { closed: !ricochet.sidePanel.panel() });
+  }
+  // A click in an image of basins opens the cell that lies there.
+  function checkCell(figure, slot) {
+    const { xs, ys } = ricochet.data.page.basins, column = xs.length >> 1, row = ys.length >> 2;
+    figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [xs[column], ys[row]]));
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown();
+    const out = { opened: Boolean(panel), cell: Boolean(shown) && shown.column === column && shown.row === row, command: panel ? panel.querySelector("pre").textContent : "", lines: panel ? all("p", panel).length : 0, wanted: xs[column] + "," + ys[row] };
+    ricochet.sidePanel.close();
+    return out;
+  }
+  function checkFigure(figure, controls) {
+    const { description } = figure, views = Math.max(1, all("[data-view]", figure.section).length);
+    const out = { id: description.id, title: description.title, caption: figure.section.querySelector(".caption").textContent, views: description.views, linked_along: Boolean(description.linked),
+      legend: all(".legend button[aria-pressed=true]", figure.section).map((b) => b.dataset.name), entries: description.legend.map((entry) => pick(entry, ["name", "colour", "symbol", "heading"])),
+      charts: description.charts.map((chart) => Object.assign(pick(chart, ["title", "only"]), { views: [] })) };
+    const links = all("nav a").map((a) => a.getAttribute("href"));
+    out.anchored = links.includes("#" + figure.section.id);
+    for (let view = 0; view < views; ++view) {
+      if (view > 0) figure.show(view);
+      figure.drawAll();
+      for (const slot of figure.slots) if (figure.visible(slot)) out.charts[slot.index].views.push(Object.assign(readBack(figure, slot), { notes: notesIn(figure, slot.index) }));
+    }
+    description.charts.forEach((chart, index) => { if (!chart.views.length) out.charts[index].notes = notesIn(figure, index); });
+    if (views > 1) figure.show(0);
+    if (!controls) return out;
+    const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart), first = seen[0], last = seen[seen.length - 1];
+    checkLegend(figure, first, out);
+    if (description.linked && first) checkZoom(figure, first, last, out);
+    if (!first) return out;
+    out.svg = ricochet.picture(figure, first, "svg").size;
+    out.png = ricochet.picture(figure, first, "png").size;
+    const option = figure.option(first), sample = option.series.find((s) => s.data.length);
+    const item = sample && sample.data[0], value = item && (Array.isArray(item) ? item : item.value);
+    out.tooltip = sample ? option.tooltip.formatter([{ value, seriesName: sample.name, marker: "", data: {} }]) : "";
+    if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
+    if (description.id === "basins") out.cell = checkCell(figure, first);
+    return out;
+  }
+  function checkTable() {
+    const table = document.getElementById("cases");
+    if (!table) return null;
+    const body = table.tBodies[0], order = () => Array.from(body.rows, (r) => r.cells[0].textContent).join(), visible = () => Array.from(body.rows).filter((r) => !r.hidden).length;
+    const words = document.getElementById("filter"), say = (text) => { words.value = text; words.dispatchEvent(new Event("input")); };
+    let sorts = body.rows.length < 2;
+    for (const header of all("thead button", table)) {
+      header.click();
+      const up = order();
+      header.click();
+      sorts = sorts || up !== order();
+    }
+    say("no row says this");
+    const filtered = visible();
+    say("");
+    return { rows: body.rows.length, sorts, filtered, restored: visible() };
+  }
+  // Numbers written as the page writes them, for comparison with the program's own.
+  function checkWords(given) {
+    const { text, exact } = ricochet.format, { roundOutwards, wholeDecades, Interval } = ricochet;
+    return given.map(([low, high]) => ({ text: text(low), exact: exact(low), round: pick(roundOutwards(new Interval(low, high), 0), ["low", "high"]), decades: low > 0 ? pick(wholeDecades(new Interval(low, high)), ["low", "high"]) : null }));
+  }
+
+  window.addEventListener("load", () => {
+    const asked = JSON.parse(document.documentElement.dataset.asked);
+    let out = null;
+    try {
+      out = { figures: ricochet.figures.map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+    } catch (e) { errors.push(String((e && e.stack) || e)); }
+    parent.postMessage(JSON.stringify(Object.assign({ errors }, out)), "*");
+  });
+})();

@@ -1,0 +1,204 @@
+// Every kind of study, run by the command: what its report draws is what its tables hold.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "runners/run/derive.hpp"
+#include "runners/report/basins.hpp"
+#include "runners/report/orbits.hpp"
+#include "runners/store/store.hpp"
+#include "tests/runners/report/browser/browser.hpp"
+
+using namespace ricochet;
+using namespace ricochet::browser;
+using report::CaseView;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ran {
+  StudyResults results;
+  Page page;
+};
+
+/// Runs a study of tests/runners/report/studies.
+Ran run(const std::string& kind) {
+  const fs::path out = fs::path(RICOCHET_BINARY_DIR) / "browser" / "studies" / kind;
+  fs::remove_all(out);
+  fs::create_directories(out.parent_path());
+  const std::string command = std::string(RICOCHET_COMMAND) +
+                              " run '" RICOCHET_SOURCE_DIR "/tests/runners/report/studies/" + kind + ".json' --out '" +
+                              out.string() + "' >'" + out.string() + ".txt' 2>&1";
+  INFO(command);
+  REQUIRE(std::system(command.c_str()) != -1);
+  REQUIRE(fs::exists(out / "report.html"));
+  std::ifstream file(out / "report.html", std::ios::binary);
+  return {with_tables(Store(out, false).load()), {kind, {std::istreambuf_iterator<char>(file), {}}}};
+}
+
+const Table& stored_table(const StudyResults& results, const std::string& name) {
+  const auto found =
+      std::find_if(results.derived.begin(), results.derived.end(), [&](const auto& t) { return t.name == name; });
+  REQUIRE(found != results.derived.end());
+  return *found;
+}
+/// Numbers of a column of a table, in the rows that `accept` takes.
+std::multiset<double> numbers_in(const Table& from, const std::string& name,
+                                 const std::function<bool(const Row&)>& accept) {
+  const auto place = find_column(from.columns, name);
+  REQUIRE(place);
+  std::multiset<double> out;
+  for (const auto& row : from.rows)
+    if (accept(row) && row[*place].number()) out.insert(*row[*place].number());
+  return out;
+}
+std::multiset<double> heights(const std::vector<Json>& items) {
+  std::multiset<double> out;
+  for (const Json& item : items)
+    if (item.at("value")[1].is_number()) out.insert(item.at("value")[1].get<double>());
+  return out;
+}
+
+void check_trajectory(const Ran& ran, const Json& page) {
+  std::multiset<double> ratios, changes;
+  size_t samples = 0, drawn = 0;
+  for (const CaseRecord& record : ran.results.cases) {
+    if (!record.curve.columns.empty()) samples += record.curve.columns[0].size();
+    if (record.status != "done") continue;
+    if (const auto ratio = CaseView::measure(record, "energy_ratio")) {
+      ratios.insert(*ratio);
+      if (*ratio != 1) changes.insert(std::abs(*ratio - 1));
+    }
+  }
+  const Json& energy = figure(page, "final-energy-step");
+  for (size_t v = 0; v < energy.at("views").size(); ++v) {
+    if (energy.at("views")[v] == "E(T) / E(0)") CHECK(heights(items_of(energy, v, is_curve)) == ratios);
+    if (energy.at("views")[v] == "|E(T) / E(0) − 1|") CHECK(heights(items_of(energy, v, is_curve)) == changes);
+  }
+  for (const Json& series : series_of(figure(page, "tip"), 0,
+                                      [](const Json& s) { return s.at("type") == "line" && s.at("name") != "stops"; }))
+    drawn += series.at("count").get<size_t>();
+  CHECK(drawn == samples);
+}
+
+void check_errors(const Ran& ran, const Json& page) {
+  const Table& errors = stored_table(ran.results, "errors");
+  const Json& steps = figure(page, "error-step");
+  const auto kind =
+      static_cast<size_t>(std::find(errors.columns.begin(), errors.columns.end(), "error") - errors.columns.begin());
+  for (size_t v = 0; v < steps.at("views").size(); ++v) {
+    std::multiset<double> values = numbers_in(
+        errors, "value", [&](const auto& row) { return row[kind] == steps.at("views")[v].get<std::string>(); });
+    values.erase(0.0);  // said below the chart: a logarithmic axis has no place for it
+    CHECK(heights(items_of(steps, v, is_curve)) == values);
+  }
+  for (const Json& series : series_of(steps, 0, [](const Json& s) { return s.contains("endLabel"); }))
+    CHECK(series.at("data").size() == 2);
+}
+
+void check_work(const Ran& ran, const Json& page) {
+  const Table &work = stored_table(ran.results, "work_precision"), &points = stored_table(ran.results, "work_points");
+  const Json& times = figure(page, "work-precision");
+  size_t drawn = 0, marks = 0, on_front = 0;
+  for (size_t v = 0; v < times.at("views").size(); ++v) {
+    drawn += items_of(times, v, is_curve).size();
+    marks += items_of(times, v, is_mark).size();
+    for (const Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
+  }
+  CHECK(drawn + marks == work.rows.size());
+  const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
+  CHECK(on_front == static_cast<size_t>(std::count_if(points.rows.begin(), points.rows.end(),
+                                                      [&](const auto& row) { return row[at("on_front")] == true; })));
+  CHECK(on_front > 0);
+}
+
+void check_stability(const Ran& ran, const Json& page) {
+  const Table& cells = stored_table(ran.results, "stability_cells");
+  const Json& radii = figure(page, "spectral-radius");
+  size_t closed = 0;
+  for (const Json& chart : radii.at("charts"))
+    if (chart.at("title").get<std::string>().rfind("closed", 0) == 0)
+      for (const Json& series : chart.at("views")[0].at("series"))
+        if (series.at("name") != "unit circle" && series.at("type") == "line")
+          for (const Json& item : series.at("data")) closed += item.at("value")[1].is_number();
+  CHECK(closed == numbers_in(cells, "radius", [](const auto& row) { return row[1] == true; }).size());
+  CHECK(closed > 0);
+  const Json& map = figure(page, "stability-map-time-beta");
+  for (const Json& chart : map.at("charts")) {
+    size_t areas = 0, marks = 0;
+    for (const Json& series : chart.at("views")[0].at("series")) {
+      if (series.contains("markArea")) areas += series.at("markArea").size();
+      if (series.at("type") == "scatter") marks += series.at("count").get<size_t>();
+    }
+    CHECK(areas == marks);
+    CHECK(areas > 0);
+  }
+}
+
+void check_bifurcation(const Ran& ran, const Json& page) {
+  const Json& diagram = figure(page, "diagram");
+  for (size_t c = 0; c < ran.results.cases.size(); ++c) {
+    const auto orbits = report::orbits_of(ran.results.cases[c]);
+    size_t cells = 0;
+    std::multiset<double> drawn, stored;
+    for (const Json& series : diagram.at("charts")[c].at("views")[0].at("series"))
+      if (series.at("name").get<std::string>().rfind("regime ", 0) == 0) cells += series.at("count").get<size_t>();
+    CHECK(cells == orbits.size());
+    for (const Json& source : diagram.at("charts")[c].at("views")[0].at("sources"))
+      if (source.at("what") == "exponents")
+        for (size_t k = 1; k < source.at("values").size(); k += 2) drawn.insert(source.at("values")[k].get<double>());
+    for (const auto& orbit : orbits)
+      if (!orbit.exponents.empty()) stored.insert(orbit.exponents[0].value);
+    CHECK(drawn == stored);
+  }
+  const Table& spreads = stored_table(ran.results, "distance_spreads");
+  const Json& against = figure(page, "distance-time-beta");
+  const std::string reference = spreads.rows[0][2].text();
+  auto medians = numbers_in(spreads, "median", [&](const auto& row) {
+    return row[1] == "wasserstein" && !row[0].text().empty() && row[0].text() != reference;
+  });
+  medians.erase(0.0);
+  CHECK(heights(items_of(against, 0, [](const Json& s) { return s.value("symbolSize", Json()) == 7; })) == medians);
+}
+
+void check_basins(const Ran& ran, const Json& page) {
+  const report::Basins grids = report::basins_of(ran.results);
+  const Json& basins = figure(page, "basins");
+  REQUIRE(basins.at("charts").size() == grids.grids.size());
+  for (size_t c = 0; c < grids.grids.size(); ++c) {
+    std::set<int> labels(grids.grids[c].cells.begin(), grids.grids[c].cells.end());
+    labels.erase(report::BasinGrid::absent);
+    CHECK(basins.at("charts")[c].at("views")[0].at("series").size() == labels.size());
+  }
+  for (const auto& row : stored_table(ran.results, "basin_differences").rows)
+    CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),
+               row[3].text() + " of " + row[2].text() + " cells that both decide differ"));
+}
+
+}  // namespace
+
+TEST_CASE("reports of studies of every kind draw what their tables hold", "[report][browser]") {
+  if (left_out()) return;
+  std::map<std::string, Ran> ran;
+  std::vector<Page> pages;
+  for (const char* kind : {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"}) {
+    INFO(kind);
+    pages.push_back(ran.emplace(kind, run(kind)).first->second.page);
+  }
+  const Json said = read_back("results", pages);
+  for (const auto& [kind, one] : ran) {
+    INFO(kind);
+    require_works(said.at(kind), one.results.cases.size());
+  }
+  check_trajectory(ran.at("trajectory"), said.at("trajectory"));
+  check_errors(ran.at("convergence"), said.at("convergence"));
+  check_errors(ran.at("work-precision"), said.at("work-precision"));
+  check_work(ran.at("work-precision"), said.at("work-precision"));
+  check_stability(ran.at("stability"), said.at("stability"));
+  check_bifurcation(ran.at("bifurcation"), said.at("bifurcation"));
+  check_basins(ran.at("basins"), said.at("basins"));
+}

@@ -1,0 +1,219 @@
+// Figures of trajectories, read back from the browser.
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/page.hpp"
+#include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/synthetic.hpp"
+
+using namespace ricochet;
+using namespace ricochet::browser;
+using Catch::Matchers::Contains;
+using report::CaseView;
+
+namespace {
+
+/// A penalty against stiffness, and a rigid law without one.
+StudyResults stiffnesses() {
+  StudyResults results;
+  results.kind = "trajectory";
+  results.columns = {"mass", "contact", "contact.stiffness", "step"};
+  const auto add = [&](const char* contact, std::optional<double> stiffness, double ratio) {
+    CaseRecord record;
+    record.id = contact + std::to_string(stiffness.value_or(0));
+    record.axes = {{"mass", "consistent"}, {"contact", contact}, {"step", 1e-5}};
+    if (stiffness) record.axes.emplace_back("contact.stiffness", *stiffness);
+    record.status = "done";
+    record.measures = {{"energy_start", 1}, {"energy_end", ratio}, {"energy_ratio", ratio}};
+    results.cases.push_back(record);
+  };
+  for (const double stiffness : {1e3, 1e6, 1e9}) add("penalty", stiffness, 1 - 1 / stiffness);
+  add("signorini", {}, 0.7);
+  return results;
+}
+
+std::vector<std::pair<double, double>> some_numbers() {
+  std::vector<std::pair<double, double>> out = {{0.003, 0.2}, {1e-7, 0.25}, {12000, 1e5}, {0.0005, 0.1}};
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> exponent(-12, 12), sign(-1, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const double a = sign(random) * std::pow(10, exponent(random)), b = sign(random) * std::pow(10, exponent(random));
+    out.emplace_back(std::min(a, b), std::max(a, b));
+  }
+  return out;
+}
+
+void check_facets(const StudyResults& results, const Json& page) {
+  const CaseView view(results);
+  for (const char* id : {"final-energy-step", "energy", "tip", "force", "penetration-step"})
+    CHECK(has_figure(page, id));
+  const Json& energy = figure(page, "energy");
+  CHECK(energy.at("charts").size() == 12);  // 4 masses × 3 time methods
+  CHECK(energy.at("views").size() == 3);
+  CHECK(energy.at("linked_along") == true);
+  size_t with_curves = 0;
+  for (const Json& chart : energy.at("charts")) {
+    if (chart.at("views").empty()) {
+      CHECK(!chart.at("notes").empty());  // an empty place says why
+      continue;
+    }
+    ++with_curves;
+    CHECK(chart.at("views").size() == energy.at("views").size());
+    size_t lines = 0;
+    for (const Json& series : chart.at("views")[0].at("series")) lines += series.at("type") == "line";
+    CHECK(lines == 3);
+  }
+  CHECK(with_curves == 10);
+  // Every curve that the cases have is drawn, sample by sample.
+  size_t samples = 0, stored = 0;
+  for (const Json& series : series_of(energy, 0, [](const Json& s) { return s.at("type") == "line"; }))
+    samples += series.at("count").get<size_t>();
+  for (const CaseRecord& record : results.cases)
+    if (!record.curve.columns.empty()) stored += record.curve.columns[0].size();
+  CHECK(samples == stored);
+  std::set<std::string> colours, drawn;
+  for (const CaseRecord& record : results.cases) colours.insert(view.colour(record));
+  CHECK(colours.size() == view.masses().size());
+  for (const Json& series : series_of(figure(page, "final-energy-step"), 0, is_curve)) drawn.insert(series.at("color"));
+  CHECK(drawn == colours);
+}
+
+void check_axes(const Json& page) {
+  for (const Json& one : page.at("figures"))
+    for (const Json& chart : one.at("charts"))
+      for (const Json& view : chart.at("views")) {
+        if (view.at("series").empty()) continue;
+        const Json& axis = view.at("yAxis")[0];
+        INFO(one.at("id") << " " << chart.at("title"));
+        const bool from_zero = axis.at("min") <= 0.0 && axis.at("max") >= 0.0;
+        if (axis.at("type") == "value")
+          CHECK(from_zero == (axis.at("name").get<std::string>().find("not from 0") == std::string::npos));
+        CHECK(axis.at("min").get<double>() < axis.at("max").get<double>());
+      }
+  const Json& first = figure(page, "energy").at("charts")[0].at("views")[0].at("yAxis")[0];
+  CHECK(first.at("min") == 0.0);
+  CHECK(first.at("max") >= 3.612908);
+  CHECK(first.at("name") == "energy E (J)");
+  // Both stops are lines across the tip's charts.
+  for (const Json& series : series_of(figure(page, "tip"), 0, named("stops"))) {
+    REQUIRE(series.at("markLine").size() == 2);
+    CHECK(series.at("markLine")[0].at("yAxis") == -0.1);
+    CHECK(series.at("markLine")[1].at("yAxis") == 0.1);
+  }
+}
+
+void check_zeros(const Json& page) {
+  const Json& chart = figure(page, "penetration-step").at("charts")[0];
+  REQUIRE(chart.at("views").size() == 1);
+  const auto count = [&](const std::string& name) {
+    size_t n = 0;
+    for (const Json& series : chart.at("views")[0].at("series"))
+      if (series.at("name") == name && series.at("type") == "line") n += series.at("data").size();
+    return n;
+  };
+  CHECK(count("consistent · beta 0.25") == 3);
+  CHECK(count("singular, velocity P1 · beta 0.25") == 0);
+  CHECK(says(chart.at("views")[0].at("notes"), "Exactly 0"));
+}
+
+void check_unfinished(const StudyResults& results, const Json& page) {
+  const CaseView view(results);
+  size_t marks = 0, gutter = 0;
+  for (const Json& chart : figure(page, "energy").at("charts"))
+    if (!chart.at("views").empty())
+      for (const Json& series : chart.at("views")[0].at("series"))
+        if (is_mark(series)) {
+          ++marks;
+          CHECK(series.at("data")[0].at("value")[1] <= chart.at("views")[0].at("yAxis")[0].at("max"));
+          CHECK_THAT(series.at("data")[0].at("text").get<std::string>(),
+                     Catch::Matchers::StartsWith("diverged at t = "));
+        }
+  CHECK(marks == view.with_status("diverged").size());
+  for (const Json& series : series_of(figure(page, "final-energy-step"), 0, is_mark)) {
+    gutter += series.at("data").size();
+    CHECK(series.at("yAxisIndex") == 1);
+  }
+  CHECK(gutter == view.with_status("diverged").size() + view.with_status("refused").size());
+}
+
+}  // namespace
+
+TEST_CASE("figures of trajectories draw what the cases hold", "[report][browser]") {
+  if (left_out()) return;
+  const StudyResults results = synthetic::results();
+  synthetic::Shape shape;
+  shape.repeat = 6;
+  const StudyResults large = synthetic::results(shape), stiff = stiffnesses();
+  REQUIRE(large.cases.size() > 200);
+  Page first = page_of("trajectory", results), second = page_of("large", large), third = page_of("stiffness", stiff);
+  first.numbers = some_numbers();
+  second.controls = false;
+  const Json pages = read_back("trajectory", {first, second, third});
+
+  const Json& page = pages.at("trajectory");
+  require_works(page, results.cases.size());
+  check_facets(results, page);
+  check_axes(page);
+  check_zeros(page);
+  check_unfinished(results, page);
+
+  // A large study keeps every case within its facets.
+  for (const char* id : {"final-energy-step", "final-energy-support-amplitude"})
+    for (const Json& chart : figure(pages.at("large"), id).at("charts")) {
+      std::set<std::string> names;
+      for (const Json& series : chart.at("views")[0].at("series")) names.insert(series.at("name"));
+      CHECK(names.size() <= 8);
+    }
+
+  // A method without the parameter on the axis is drawn across.
+  const Json& against = figure(pages.at("stiffness"), "final-energy-contact-stiffness");
+  REQUIRE(against.at("charts").size() == 1);
+  CHECK(items_of(against, 0, named("penalty")).size() == 3);
+  const auto across = items_of(against, 0, named("signorini"));
+  REQUIRE(across.size() == 2);
+  CHECK(across[0].at("value")[1] == across[1].at("value")[1]);
+  CHECK(across[0].at("value")[0] < 1e4);
+  CHECK(across[1].at("value")[0] > 1e8);
+
+  // Rounded intervals contain what they round; numbers are written as the tables write them.
+  for (size_t i = 0; i < first.numbers.size(); ++i) {
+    const auto [low, high] = first.numbers[i];
+    const Json& said = page.at("words")[i];
+    const double slack =
+        1e-8 * (high - low);  // the step is rounded with a relative slack of 1e-9, of at most ten steps
+    CHECK(said.at("round").at("low").get<double>() <= low + slack);
+    CHECK(said.at("round").at("high").get<double>() >= high - slack);
+    CHECK(said.at("round").at("high").get<double>() - said.at("round").at("low").get<double>() <= 2 * (high - low));
+    CHECK(said.at("text") == report::number_text(low));
+    CHECK(said.at("exact") == report::exact_text(low));
+  }
+  CHECK(page.at("words")[0].at("decades").at("low") == 1e-3);
+  CHECK(page.at("words")[0].at("decades").at("high") == 1);
+}
+
+TEST_CASE("a hundred thousand samples per curve are drawn", "[report][browser]") {
+  if (left_out()) return;
+  synthetic::Shape shape;
+  shape.samples = 100000;
+  StudyResults results = synthetic::results(shape);
+  results.cases.resize(3);  // one chart per figure: what is new here is the length
+  const Json pages =
+      read_back("long", {page_of("long", results), {"tables", report::render_page(synthetic::results(), "", "")}});
+  require_works(pages.at("long"), results.cases.size());
+  for (const Json& series :
+       series_of(figure(pages.at("long"), "energy"), 0, [](const Json& s) { return s.at("type") == "line"; })) {
+    CHECK(series.at("count") == 100001);
+    CHECK(series.at("sampling") == "minmax");
+  }
+  CHECK_THAT(figure(pages.at("long"), "energy").at("caption").get<std::string>(),
+             Contains("the smallest and the largest of each pixel are drawn"));
+  // The tables alone work too.
+  const Json& tables = pages.at("tables");
+  CHECK(tables.at("figures").empty());
+  CHECK(tables.at("canvases") == 0);
+  CHECK(tables.at("table").at("rows") == synthetic::results().cases.size());
+  CHECK(tables.at("table").at("sorts") == true);
+}
