@@ -18,6 +18,7 @@
 #include "runners/run/progress.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/stop_signal.hpp"
+#include "runners/run/study_cases.hpp"
 #include "runners/run/summary.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
@@ -29,56 +30,6 @@ namespace ricochet {
 namespace {
 
 constexpr int kStoreUnusable = 5;
-
-StudyResults header(const Study& study) {
-  StudyResults results;
-  results.study = study.resolved;
-  results.name = study.name;
-  results.question = study.question;
-  results.kind = study.kind;
-  results.columns = study.columns;
-  results.axes = study.axes;
-  results.expected_cases = static_cast<int>(study.cases.size());
-  return results;
-}
-
-CaseRecord excluded_record(const StudyCase& study_case) {
-  CaseRecord record;
-  record.id = study_case.id;
-  record.axes = study_case.axes;
-  record.status = "refused";
-  record.reason = "excluded: " + *study_case.excluded;
-  return record;
-}
-
-std::vector<ExpectedCase> expected_cases(const StudyRunner& runner, const Study& study) {
-  Fingerprints fingerprints(study.kind, program_hash());
-  std::vector<ExpectedCase> expected;
-  for (const StudyCase& study_case : study.cases)
-    expected.push_back({study_case.id, fingerprints.of(study_case, runner.libraries(study_case))});
-  return expected;
-}
-
-/// Splits what is missing: excluded cases get their record, the others wait. Returns the ids that are new.
-std::set<std::string> find_missing(const Study& study, const std::map<std::string, std::string>& fingerprints,
-                                   const std::set<std::string>& settled, std::vector<CaseRecord>& excluded,
-                                   std::vector<PendingCase>& pending) {
-  std::set<std::string> missing;
-  for (const StudyCase& study_case : study.cases) {
-    if (settled.count(study_case.id) != 0 || !missing.insert(study_case.id).second) continue;
-    if (study_case.excluded)
-      excluded.push_back(excluded_record(study_case));
-    else
-      pending.push_back({&study_case, 0, fingerprints.at(study_case.id)});
-  }
-  return missing;
-}
-
-const StudyCase* find_case(const Study& study, const std::string& id) {
-  const auto found =
-      std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
-  return found == study.cases.end() ? nullptr : &*found;
-}
 
 /// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
 void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
@@ -107,7 +58,7 @@ class FolderRun {
   int run() {
     const std::vector<ExpectedCase> expected = expected_cases(runner_, study_);
     for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
-    kept_ = settled_ = store_.begin(header(study_), expected);
+    kept_ = settled_ = store_.begin(results_header(study_), expected);
     take_over();
     announce();
     if (runner_.cases.open) open();
