@@ -9,6 +9,8 @@
 
 using namespace ricochet;
 using namespace ricochet::tests;
+
+namespace sweep_study_tests {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
@@ -280,3 +282,5 @@ TEST_CASE("Steps per period are an axis that excludes may name") {
   for (const StudyCase& one : study.cases) excluded += one.excluded ? 1 : 0;
   CHECK(excluded == 2);
 }
+
+}  // namespace sweep_study_tests
