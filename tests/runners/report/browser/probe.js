@@ -114,9 +114,11 @@
     description.charts.forEach((chart, index) => { if (!chart.views.length) out.charts[index].notes = notesIn(figure, index); });
     if (views > 1) figure.show(0);
     if (!controls) return out;
-    const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart), first = seen[0], last = seen[seen.length - 1];
+    const seen = figure.slots.filter((slot) => figure.visible(slot) && slot.chart), first = seen[0];
     checkLegend(figure, first, out);
-    if (description.linked && first) checkZoom(figure, first, last, out);
+    // A chart whose curves all ended early has a shorter axis of its own.
+    const end = (slot) => slot.chart.getOption().xAxis[0].max;
+    if (description.linked && first) checkZoom(figure, first, seen.filter((slot) => end(slot) === end(first)).pop(), out);
     if (!first) return out;
     out.svg = ricochet.picture(figure, first, "svg").size;
     out.png = ricochet.picture(figure, first, "png").size;
