@@ -108,21 +108,15 @@ void check_work(const Ran& ran, const Json& page) {
     marks += items_of(times, v, is_mark).size();
     for (const Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
   }
-<<<<<<< HEAD
-  CHECK(drawn + marks == work.rows.size());
-  const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
-=======
   // A kind of error that no case has is no view.
-  const auto kind =
-      static_cast<size_t>(std::find(work.columns.begin(), work.columns.end(), "error") - work.columns.begin());
+  const std::size_t kind = find_column(work.columns, "error").value();
   CHECK(drawn + marks == static_cast<size_t>(std::count_if(work.rows.begin(), work.rows.end(), [&](const auto& row) {
           const Json views = times.at("views");
-          return std::find(views.begin(), views.end(), row[kind].template get<std::string>()) != views.end();
+          return std::find(views.begin(), views.end(), row[kind].text()) != views.end();
         })));
   const auto at = [&](const char* name) {
-    return static_cast<size_t>(std::find(points.columns.begin(), points.columns.end(), name) - points.columns.begin());
+    return find_column(points.columns, name).value();
   };
->>>>>>> figures
   CHECK(on_front == static_cast<size_t>(std::count_if(points.rows.begin(), points.rows.end(),
                                                       [&](const auto& row) { return row[at("on_front")] == true; })));
   CHECK(on_front > 0);
