@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -475,7 +473,7 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
       touched_.push_back(lane);
       state.touched_lanes |= 1u << lane;
     } else
-      freeze(lane, "the displacement at a contact point is not finite");
+      freeze(lane, {.cause = EndCause::position_not_finite});
   }
   for (const int lane : touched_) outcome_[static_cast<std::size_t>(lane)] = {};
   ReducedProblem problem;
@@ -505,9 +503,10 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
     if (!outcome.converged || !finite) {
       for (int i = 0; i < points; ++i) state.effort[0].at(i, lane) = 0;
-      freeze(lane, finite ? fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)",
-                                        outcome.residual, outcome.iterations)
-                          : "a contact effort is not finite");
+      freeze(lane, finite ? LaneEnd{.cause = EndCause::law_not_converged,
+                                    .value = outcome.residual,
+                                    .count = outcome.iterations}
+                          : LaneEnd{.cause = EndCause::effort_not_finite});
       continue;
     }
     if (active) state.contact_lanes |= 1u << lane;
@@ -552,20 +551,22 @@ void Marcher::check_lanes() {
     for (std::size_t j = 1; j < blocks_.size() && finite; ++j)
       for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
     if (!finite)
-      freeze(lane, fmt::format("the state is not finite (lanes are checked every {} steps)", check_interval));
+      freeze(lane, {.cause = EndCause::state_not_finite, .count = check_interval});
     else if (beyond_bound(lane, energy))
-      freeze(lane, fmt::format("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", energy,
-                               energy_bound(lane), divergence_factor));
+      freeze(lane, {.cause = EndCause::elastic_energy_beyond,
+                    .value = energy,
+                    .bound = energy_bound(lane),
+                    .factor = divergence_factor});
   }
 }
 
-void Marcher::freeze(int lane, const std::string& cause) {
+void Marcher::freeze(int lane, const LaneEnd& end) {
   LaneStatus& status = status_[static_cast<std::size_t>(lane)];
   if (!status.running) return;
   status.running = false;
   status.step = step_;
   status.time = time();
-  status.cause = cause;
+  status.end = end;
   // At rest in a still frame without stops: the lane stays there, and costs its neighbours nothing.
   frozen_now_ |= 1u << lane;
   clear_lane(lane);

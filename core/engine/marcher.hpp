@@ -3,20 +3,13 @@
 #include <memory>
 #include <optional>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/lane_status.hpp>
 #include <string>
 #include <vector>
 
 namespace ricochet {
 
 class EnergyScale;
-
-/// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
-struct LaneStatus {
-  bool running = true;
-  long long step = 0;  ///< when it stopped
-  double time = 0;
-  std::string cause;
-};
 
 /// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
 struct LaneState {
@@ -120,7 +113,7 @@ class Marcher {
   ContactLaw& law() { return *program_.law; }
 
   /// Stops a lane now, with its cause (used by audits that see more than the loop does).
-  void freeze(int lane, const std::string& cause);
+  void freeze(int lane, const LaneEnd& end);
   /// Energy (J) above which a lane counts as diverged; its own, whoever marches beside it; stated with the cause.
   double energy_bound(int lane) const;
   /// Whether an energy is beyond it; looks again at a load that depends on time before it says so.

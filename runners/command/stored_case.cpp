@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ostream>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/measure/orbits/motion_class.hpp>
 
 #include "runners/store/csv.hpp"
 #include "runners/study/load_study.hpp"
@@ -56,8 +57,10 @@ std::string StoredRows::text(std::size_t row, const std::string& column) const {
 }
 
 std::string StoredRows::regime(std::size_t row) const {
-  const std::string name = text(row, "class"), period = text(row, "period");
-  return name == "periodic" && !period.empty() ? name + " " + period : name;
+  const auto period = cell(row, "period");
+  const auto motion =
+      motion_class(text(row, "class"), period.is_number() ? std::optional(period.get<double>()) : std::nullopt);
+  return motion ? ricochet::text(*motion) : text(row, "class");
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const Arguments& arguments)

@@ -219,6 +219,10 @@ std::vector<GridAxis> grid_axes(const Json& settings) {
   return axes;
 }
 
+bool names_initial_state(const std::string& pointer) {
+  return pointer.starts_with("/scene/initial/");
+}
+
 std::vector<std::string> scene_scalars(const Json& scene) {
   std::vector<std::string> pointers;
   for (const Scalar& scalar : scalars_of(scene)) pointers.push_back(scalar.pointer);

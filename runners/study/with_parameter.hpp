@@ -64,6 +64,8 @@ struct GridAxis {
 };
 /// The two axes of kind `basins`, x then y.
 std::vector<GridAxis> grid_axes(const Json& settings);
+/// Whether a pointer names a coordinate of the initial state: along it the scene, hence what it can end in, stays.
+bool names_initial_state(const std::string& pointer);
 
 /// Every scalar of a scene (with its values, lists included) that may be a parameter, as JSON pointers.
 std::vector<std::string> scene_scalars(const Json& scene);

@@ -53,7 +53,7 @@ class NormWatch final : public StepObserver {
   }
   void step_done(Marcher& marcher) override {
     if (!marcher.status(0).running) return;
-    if (opened_) marcher.freeze(0, "the disturbance has opened the contact");
+    if (opened_) marcher.freeze(0, {.cause = EndCause::contact_opened});
     const auto third = static_cast<std::size_t>(std::min(2LL, 3 * marcher.step() / steps_));
     for (int j = 0; j < marcher.slot_count(); ++j) {
       const double* x = marcher.slot(j);
@@ -182,10 +182,10 @@ ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
   watch.judge(cell);
   const LaneStatus& status = marcher.status(0);
   if (status.running) return cell;
-  cell.behaviour = status.cause.starts_with("the contact law") ? Behaviour::failed : Behaviour::diverged;
+  cell.behaviour = status.end.failed() ? Behaviour::failed : Behaviour::diverged;
   cell.steps = status.step;
   if (cell.first_bad_step < 0) cell.first_bad_step = status.step;
-  cell.cause = fmt::format("step {}: {}", status.step, status.cause);
+  cell.cause = fmt::format("step {}: {}", status.step, text(status.end));
   return cell;
 }
 

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
+#include <ricochet/measure/orbits/random_state.hpp>
+#include <ricochet/measure/stability/contact_compliance.hpp>
+#include <ricochet/measure/stability/grazing.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 #include <set>
 
@@ -14,7 +18,6 @@
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_portraits.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
-#include "runners/kinds/sweep/random_states.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/study/with_parameter.hpp"
@@ -163,6 +166,11 @@ class BifurcationRun {
     record_.notes.push_back(fmt::format(
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
+    // At a depth of a thousandth of the room: whoever compares cases orders them by it.
+    const auto compliance =
+        contact_compliance(*make_law(case_, registry_), case_.contact.parameters, 1e-3 * section_.scale);
+    const double told = compliance.value_or(std::numeric_limits<double>::quiet_NaN());
+    record_.numbers.push_back({"contact_law", {"compliance"}, {{told}}, {}, false});
     analyse_groups();
   }
 
@@ -188,15 +196,6 @@ class BifurcationRun {
     return std::move(record_);
   }
 
-  // The class of a value as far as it decides where to look closer: what does not repeat is one class.
-  std::string rough_class(int task) const {
-    const Orbit& orbit = scheduler_->orbit(task);
-    if (orbit.stage != Orbit::Stage::complete) return "";
-    if (!touches(orbit)) return "no contact";
-    const Recurrence found = find_recurrence(orbit.readings, section_.reading_scale(), recurrence_tolerance);
-    return found.period > 0 ? fmt::format("periodic {}", found.period) : "not periodic";
-  }
-
   void refine(const std::function<void(const MarchedOrbits&)>& keep) {
     const Json& wanted = case_.settings.value("refine", Json(nullptr));
     if (!wanted.is_number() || scheduler_->over_budget()) return;
@@ -211,19 +210,19 @@ class BifurcationRun {
       for (std::size_t s = 0; s < starts_.size(); ++s) {
         std::size_t brackets = 0;
         const Value* before = nullptr;
-        std::string was;
+        MotionClass was;
         for (const Value& value : known_) {
           if (value.tasks[s] < 0) continue;
-          const std::string is = rough_class(value.tasks[s]);
-          if (is.empty()) continue;
-          if (before && was != is && value.value - before->value > tolerance) {
+          const auto is = rough_class(scheduler_->orbit(value.tasks[s]), section_);
+          if (!is) continue;
+          if (before && !(was == *is) && value.value - before->value > tolerance) {
             if (brackets++ < most_brackets)
               middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
             else
               crowded_ = true;
           }
           before = &value;
-          was = is;
+          was = *is;
         }
       }
       if (middles.empty()) return;
@@ -307,7 +306,7 @@ class BifurcationRun {
     ExponentTask task;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!all[i].orbit || all[i].orbit->stage != Orbit::Stage::complete) continue;
+      if (!all[i].complete()) continue;
       task.orbits.push_back(all[i].orbit);
       task.groups.push_back(all[i].group);
       places.push_back(i);
@@ -331,7 +330,7 @@ class BifurcationRun {
     if (crowded_)
       record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
     long long marched = 0, bad = 0;
-    for (const OrbitView& view : all) (view.orbit && view.orbit->stage == Orbit::Stage::complete ? marched : bad) += 1;
+    for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
     record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
     put("orbits", static_cast<double>(marched));
     add_shares(record_, all);
@@ -344,7 +343,7 @@ class BifurcationRun {
                                    marched, scheduler_->count());
     } else if (marched == 0) {
       for (const OrbitView& view : all)
-        if (view.orbit) record_.reason = "no orbit was completed; " + view.orbit->cause;
+        if (view.orbit) record_.reason = "no orbit was completed; " + text(view.orbit->end);
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));
@@ -365,24 +364,7 @@ class BifurcationRun {
       if (!known->second) return std::nullopt;
       return overlap(*known->second, scene.lane);
     };
-    std::optional<double> before;
-    double low = 0;
-    for (std::size_t i = 0; i < values_.size(); i += std::max<std::size_t>(1, (values_.size() - 1) / 16)) {
-      const auto now = excess(values_[i]);
-      if (before && now && (*before < 0) != (*now < 0)) {
-        double left = low, right = values_[i];
-        int steps = 0;
-        for (; steps < 60 && right - left > 1e-12 * std::max(std::abs(left), std::abs(right)); ++steps) {
-          const double middle = 0.5 * (left + right);
-          const auto there = excess(middle);
-          if (!there) break;
-          ((*there < 0) == (*before < 0) ? left : right) = middle;
-        }
-        add_grazing_row(record_, *before < 0, 0.5 * (left + right), left, right, steps);
-      }
-      before = now;
-      low = values_[i];
-    }
+    for (const Grazing& one : find_grazings(values_, excess)) add_grazing_row(record_, one);
   }
 
   void put(const char* name, double value) {

@@ -1,5 +1,6 @@
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 
+#include "runners/kinds/basins/derive_basins.hpp"
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
 
 namespace ricochet {

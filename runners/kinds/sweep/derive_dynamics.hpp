@@ -8,10 +8,10 @@
 /// Clouds of section points live in (tip displacement, tip velocity), each divided by its standard deviation over all
 /// section points of the study and the motions' places half a period later (so that a study of one orbit is measured
 /// against its motion): distances are without unit. Clouds of more than 64 points are thinned evenly to that. See
-/// core/measure/point_clouds.hpp (distances, their null), core/measure/attractors.hpp (what counts as one attractor at
-/// one value) and core/measure/branches.hpp (along the parameter).
+/// core/measure/attractors: point_clouds.hpp (distances, their null), attractors.hpp (what counts as one attractor at one
+/// value), branches.hpp (along the parameter) and basin_grid.hpp.
 ///
-/// *Reference case*: of the cases with a rigid contact (no `contact.stiffness`; else the largest stiffness) the one
+/// *Reference case*: of the cases with the stiffest contact (a rigid one, where there is one; the law tells) the one
 /// with the most steps per period, then the most elements, then the first of the study that has anything to compare
 /// with.
 ///
@@ -35,7 +35,8 @@
 /// sentence. Intervals
 ///               touch: they end half way between two values.
 ///
-/// Of kind `basins`: cells (the cases' rows, `attractor` filled in), attractors (from and to null),
+/// Of kind `basins` (a motion and its mirror image are one attractor): cells (the cases' rows, `attractor` one over all
+/// cases), attractors (from and to null),
 /// basin_fractions      attractor, class, period, cells, fraction, low, high
 /// basin_differences    case, other_case, cells (decided in both), differ, share
 /// basin_uncertainty    boundary_share, exponent, low, high

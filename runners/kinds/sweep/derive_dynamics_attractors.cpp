@@ -40,7 +40,7 @@ struct OwnAttractor {
 /// A motion without contact is the linear response: of one scene there is one, told by its kind.
 SettledSection for_matching(const SettledSection& section, bool linear) {
   if (!linear) return section;
-  return {section.kind, true, {}};
+  return {section.motion, true, {}};
 }
 
 std::vector<OwnAttractor> own_attractors(const Diagram& diagram, const Sections& sections, int value) {
@@ -52,7 +52,7 @@ std::vector<OwnAttractor> own_attractors(const Diagram& diagram, const Sections&
       const Run* run = diagram.run(c, value, s);
       if (!run || !run->decided()) continue;
       starts.push_back(s);
-      decided.push_back(for_matching(sections.at({c, s}), run->regime == "no contact"));
+      decided.push_back(for_matching(sections.at({c, s}), run->motion.regime == Regime::no_contact));
     }
     const std::vector<int> labels = cluster_starts(decided);
     const std::size_t first = out.size();
@@ -80,7 +80,7 @@ void add_distances(const Diagram& diagram, const Sections& sections, int value, 
       Row row = axes_row(*diagram.results, *diagram.cases[c].record);
       row.insert(row.end(), {standard.record->id, one->parameter, diagram.starts[static_cast<std::size_t>(s)]});
       const auto of_other = sections.find({c, s});
-      const Json same = one->decided() && other->decided() ? Json(one->kind == other->kind) : Json(nullptr);
+      const Json same = one->decided() && other->decided() ? Json(one->motion == other->motion) : Json(nullptr);
       if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
           of_other->second.cloud.empty()) {
         row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr, nullptr, same, ""});
@@ -116,7 +116,7 @@ class Following {
     }
     for (std::size_t a = 0; a < own.size(); ++a)
       for (std::size_t b = a + 1; b < own.size(); ++b)
-        if (own[a].owner != own[b].owner && own[a].section.kind == own[b].section.kind) {
+        if (own[a].owner != own[b].owner && own[a].section.motion == own[b].section.motion) {
           std::vector<double>& known = met_[{branch[a], branch[b]}];
           // A dozen values tell; of long branches every eighth one is looked at as well.
           if (known.size() >= kTelling && value % kSparse != 0) continue;
@@ -177,7 +177,8 @@ class Following {
 
 /// Runs of one attractor, and all decided runs beside them.
 struct Extent {
-  int kind = -1, first = -1, last = -1;
+  MotionClass motion;
+  int first = -1, last = -1;
   std::set<std::size_t> cases;
   std::set<int> values;
   int symmetric = 0, asymmetric = 0, unknown = 0;
@@ -189,7 +190,7 @@ std::vector<Extent> extents_of(const Diagram& diagram) {
     for (const Run& run : diagram.cases[c].runs) {
       if (run.attractor == 0) continue;
       Extent& extent = out[static_cast<std::size_t>(run.attractor) - 1];
-      extent.kind = run.kind;
+      extent.motion = run.motion;
       extent.first = extent.first < 0 ? run.value : std::min(extent.first, run.value);
       extent.last = std::max(extent.last, run.value);
       extent.cases.insert(c);
@@ -285,10 +286,9 @@ DerivedTable attractors_table(const Diagram& diagram) {
   const std::vector<Extent> extents = extents_of(diagram);
   for (std::size_t k = 0; k < extents.size(); ++k) {
     const Extent& extent = extents[k];
-    if (extent.kind < 0) continue;
+    if (extent.first < 0) continue;
     const int attractor = static_cast<int>(k) + 1;
-    const std::string& kind = diagram.kind_name(extent.kind);
-    const bool periodic = kind.starts_with("periodic ");
+    const bool periodic = extent.motion.period > 0;
     const double from = diagram.values[static_cast<std::size_t>(extent.first)],
                  to = diagram.values[static_cast<std::size_t>(extent.last)];
     const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), diagram.axes);
@@ -297,10 +297,10 @@ DerivedTable attractors_table(const Diagram& diagram) {
                                   ? "at " + short_number(from)
                                   : fmt::format("{} to {}, {}", short_number(from), short_number(to),
                                                 count_of(extent.values.size(), "value"));
-    table.rows.push_back({attractor, label.label, extent.cases.size(), from, to, periodic ? "periodic" : kind,
-                          periodic ? Json(std::stoi(kind.substr(9))) : Json(nullptr), symmetric_cell(extent),
+    table.rows.push_back({attractor, label.label, extent.cases.size(), from, to, text(extent.motion.regime),
+                          periodic ? Json(extent.motion.period) : Json(nullptr), symmetric_cell(extent),
                           fraction.value, fraction.low, fraction.high, label.presence,
-                          fmt::format("Attractor {} ({}, {}) {}", attractor, kind, range, label.sentence)});
+                          fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
   }
   return table;
 }

@@ -43,13 +43,6 @@ std::string parameter_pointer(const StudyResults& results) {
   return parameter != results.study.end() && parameter->is_object() ? parameter->value("pointer", "") : "";
 }
 
-/// "periodic" with its period; "" for what is no attractor.
-std::string kind_of(const std::string& regime, const std::string& status, std::optional<double> period) {
-  if (status != "done") return "";
-  if (regime == "periodic" && period) return "periodic " + std::to_string(static_cast<int>(*period));
-  return regime == "no contact" || regime == "quasi-periodic" || regime == "chaotic" ? regime : "";
-}
-
 void read_runs(Diagram& diagram, CaseRuns& owner) {
   const DerivedTable& table = *owner.table;
   const auto parameter = column_of(table, "parameter"), start = column_of(table, "start"),
@@ -63,13 +56,10 @@ void read_runs(Diagram& diagram, CaseRuns& owner) {
     run.parameter = *value;
     run.row = r;
     run.start = index_in(diagram.starts, text_of(cell_of(table, r, start)));
-    run.regime = text_of(cell_of(table, r, regime));
     run.status = status ? text_of(cell_of(table, r, status)) : "done";
     const auto repeats = number_of(cell_of(table, r, period));
-    if (const std::string kind = kind_of(run.regime, run.status, repeats); !kind.empty()) {
-      run.kind = index_in(diagram.kinds, kind);
-      owner.any_decided = true;
-    }
+    run.motion = motion_of(text_of(cell_of(table, r, regime)), repeats, run.status);
+    owner.any_decided = owner.any_decided || run.decided();
     if (repeats && *repeats >= 1) run.period = static_cast<int>(*repeats);
     if (const Json cell = cell_of(table, r, symmetric); cell.is_boolean()) run.symmetric = cell.get<bool>();
     run.viscosity = number_of(cell_of(table, r, viscosity));
@@ -94,6 +84,18 @@ void number_values(Diagram& diagram) {
   }
 }
 
+/// Of the contact law of a case. Stores of earlier versions do not hold it: there the axis tells that the penalties of
+/// this tree have, and a case without one is taken for rigid.
+std::optional<double> compliance_of(const CaseRecord& record) {
+  for (const NumberTable& table : record.numbers)
+    if (table.name == "contact_law" && table.rows() == 1) {
+      const double told = table.columns.front().front();
+      return std::isfinite(told) ? std::optional(told) : std::nullopt;
+    }
+  const auto stiffness = number_of(axis_of(record, "contact.stiffness"));
+  return stiffness ? 1 / *stiffness : 0;
+}
+
 CloudPoint scale_of(const Diagram& diagram) {
   ScaleOfPoints scale;
   for (const CaseRuns& owner : diagram.cases) {
@@ -110,8 +112,8 @@ CloudPoint scale_of(const Diagram& diagram) {
 
 /// Points per cycle of a run; 0: it is no cycle.
 int cycle_of(const Run& run) {
-  if (run.regime == "periodic" && run.period > 0) return run.period;
-  return run.regime == "no contact" ? std::max(run.period, 1) : 0;
+  if (run.motion.regime == Regime::periodic) return run.motion.period;
+  return run.motion.regime == Regime::no_contact ? std::max(run.period, 1) : 0;
 }
 
 }  // namespace
@@ -184,6 +186,7 @@ Diagram read_diagram(const StudyResults& results) {
     if (!table) continue;
     diagram.cases.push_back({&record, table, SectionIndex(record, "points", "parameter", "start"), {}, {}});
     records.push_back(&record);
+    diagram.cases.back().compliance = compliance_of(record);
     read_runs(diagram, diagram.cases.back());
   }
   number_values(diagram);
@@ -196,7 +199,7 @@ SettledSection settled_section(const Diagram& diagram, const CaseRuns& owner, co
   const SectionReadings readings =
       owner.sections.read(run.parameter, diagram.starts[static_cast<std::size_t>(run.start)]);
   const int cycle = cycle_of(run);
-  SettledSection out{run.kind, cycle > 0, {}};
+  SettledSection out{run.motion, cycle > 0, {}};
   if (cycle == 0 || diagram.strobed) {
     out.cloud = make_cloud(readings.points, readings.opposite, diagram.scale, cycle);
     return out;
@@ -227,9 +230,8 @@ std::optional<std::size_t> reference_case(const Diagram& diagram) {
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
     if (!diagram.cases[c].any_decided) continue;
     const CaseRecord& record = *diagram.cases[c].record;
-    // A rigid contact has no stiffness: stiffer than any.
-    const double stiffness = number_of(axis_of(record, "contact.stiffness")).value_or(INFINITY);
-    const std::tuple rank(stiffness, number_of(axis_of(record, "steps_per_period")).value_or(0),
+    const double compliance = diagram.cases[c].compliance.value_or(INFINITY);
+    const std::tuple rank(-compliance, number_of(axis_of(record, "steps_per_period")).value_or(0),
                           number_of(axis_of(record, "elements")).value_or(0));
     if (!best || rank > best_rank) {
       best = c;
@@ -246,6 +248,11 @@ std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner
   const Json::json_pointer pointer("/scene/structure/damping/stiffness");
   const Json& study = diagram.results->study;
   return study.contains(pointer) ? number_of(study.at(pointer)) : std::nullopt;
+}
+
+MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status) {
+  if (status != "done") return {Regime::failed};
+  return motion_class(regime, period).value_or(MotionClass{});
 }
 
 const DerivedTable* table_of(const CaseRecord& record, const std::string& name) {

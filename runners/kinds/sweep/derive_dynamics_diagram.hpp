@@ -42,14 +42,14 @@ class SectionIndex {
 struct Run {
   double parameter = 0;
   int value = 0, start = 0;  ///< indices into Diagram::values and Diagram::starts
-  int kind = -1;             ///< index into Diagram::kinds; < 0: undecided or failed, and never an attractor
-  int period = 0;            ///< of a periodic run
-  std::string regime, status;
+  MotionClass motion;        ///< of a march that came to its end, else failed
+  int period = 0;            ///< of what repeats, be it without contact; 0: nothing does
+  std::string status;
   std::optional<bool> symmetric;
   std::optional<double> viscosity;  ///< alpha_equivalent, s
   int attractor = 0;                ///< from 1; 0: none
   std::size_t row = 0;              ///< of the case's table
-  bool decided() const { return kind >= 0; }
+  bool decided() const { return motion.decided(); }
 };
 
 /// One case with its runs in the order of its table.
@@ -60,6 +60,7 @@ struct CaseRuns {
   std::vector<Run> runs;
   std::vector<int> at;  ///< value × starts + start → index into runs, −1 where there is none
   bool any_decided = false;
+  std::optional<double> compliance = {};  ///< of the contact law, m/N; 0: rigid; none: not known
 };
 
 /// The whole study.
@@ -68,15 +69,13 @@ struct Diagram {
   std::string parameter;  ///< in the study's words: "support.amplitude"
   bool strobed = true;
   std::vector<double> values;  ///< of all cases, ascending
-  std::vector<std::string> starts, kinds;
+  std::vector<std::string> starts;
   std::vector<CaseRuns> cases;   ///< those with a table of values
   std::vector<ChoiceAxis> axes;  ///< one per column of the study, a level for each of `cases`
   CloudPoint scale = {1, 1};
   int attractors = 0;  ///< identities run from 1 to this
 
   const Run* run(std::size_t case_index, int value, int start) const;
-  /// Class of a kind in words: "periodic 2", "chaotic".
-  const std::string& kind_name(int kind) const { return kinds[static_cast<std::size_t>(kind)]; }
 };
 
 /// Reads the cases. Points are only looked at for the scale.
@@ -92,6 +91,9 @@ std::optional<std::size_t> reference_case(const Diagram& diagram);
 
 /// α of a run (s); nothing where the study has no such number.
 std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run);
+
+/// The class of a row of a table of the cases: `failed` where its status is not done, undecided where it names none.
+MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status);
 
 /// Cells of a table.
 const DerivedTable* table_of(const CaseRecord& record, const std::string& name);

@@ -33,9 +33,6 @@ DerivedTable verdicts_table(const Diagram& diagram);
 DerivedTable agreement_table(const Diagram& diagram);
 DerivedTable shifts_table(const Diagram& diagram);
 
-/// Tables of kind `basins`.
-void derive_basins(StudyResults& results);
-
 /// "0.0791792".
 std::string short_number(double value);
 /// "83 %"; "0.4 %".

@@ -11,7 +11,7 @@ constexpr double kReach = 0.1;
 
 /// Whether a class is none: what comes before or after it is no change of the motion.
 bool open(const std::string& regime) {
-  return regime == "undecided" || regime == "failed";
+  return regime == text(Regime::undecided) || regime == text(Regime::failed);
 }
 
 /// One located change of a case.
@@ -81,7 +81,7 @@ DerivedTable agreement_table(const Diagram& diagram) {
                   &b = other.runs[static_cast<std::size_t>(other.at[k])];
         if (!a.decided() || !b.decided()) continue;
         ++compared;
-        same_class += a.kind == b.kind;
+        same_class += a.motion == b.motion;
         same_attractor += a.attractor == b.attractor;
       }
       const auto share = [&](int count) {

@@ -56,7 +56,7 @@ Opinion opinion_at(const Diagram& diagram, int value) {
       if (run->decided())
         attractors.insert(run->attractor);
       else
-        open = run->status == "done" ? run->regime : run->status;
+        open = run->status == "done" ? text(run->motion) : run->status;
     }
     if (!any) continue;
     if (open.empty())
@@ -71,7 +71,7 @@ std::map<int, std::string> names_of(const Diagram& diagram) {
   std::map<int, std::string> out;
   for (const CaseRuns& owner : diagram.cases)
     for (const Run& run : owner.runs)
-      if (run.attractor > 0) out.emplace(run.attractor, diagram.kind_name(run.kind));
+      if (run.attractor > 0) out.emplace(run.attractor, text(run.motion));
   return out;
 }
 

@@ -102,9 +102,9 @@ std::vector<Orbit> OrbitScheduler::start(const std::vector<int>& numbers) {
     orbit.lane = lanes[i];
     orbit.now = std::move(started.states[i]);
     orbit.transient_periods = 1;
-    if (!started.causes[i].empty()) {
+    if (started.ends[i]) {
       orbit.stage = Orbit::Stage::stopped;
-      orbit.cause = started.causes[i];
+      orbit.end = started.ends[i];
       orbit.stopped_period = 1;
     }
     orbits.push_back(std::move(orbit));
