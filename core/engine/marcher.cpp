@@ -503,10 +503,10 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
     if (!outcome.converged || !finite) {
       for (int i = 0; i < points; ++i) state.effort[0].at(i, lane) = 0;
-      freeze(lane, finite ? LaneEnd{.cause = EndCause::law_not_converged,
-                                    .value = outcome.residual,
-                                    .count = outcome.iterations}
-                          : LaneEnd{.cause = EndCause::effort_not_finite});
+      freeze(lane,
+             finite
+                 ? LaneEnd{.cause = EndCause::law_not_converged, .value = outcome.residual, .count = outcome.iterations}
+                 : LaneEnd{.cause = EndCause::effort_not_finite});
       continue;
     }
     if (active) state.contact_lanes |= 1u << lane;

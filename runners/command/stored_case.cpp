@@ -64,8 +64,7 @@ std::string StoredRows::regime(std::size_t row) const {
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const Arguments& arguments)
-    : catalogue(standard_catalogue(arguments.plugins)),
-      study(parse_study(results.study.dump(), catalogue, registry)) {}
+    : catalogue(standard_catalogue(arguments.plugins)), study(parse_study(results.study.dump(), catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {
   const auto found =

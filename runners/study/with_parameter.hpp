@@ -54,6 +54,8 @@ struct StartSpec {
 };
 /// The starts in the order of the study, random ones one by one.
 std::vector<StartSpec> starts_of(const Json& settings);
+/// Whether a start of that name is a random state.
+bool is_random_start(const std::string& name);
 /// Whether some start is of that sort.
 bool any_start(const std::vector<StartSpec>& starts, bool own_state);
 

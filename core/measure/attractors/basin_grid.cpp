@@ -93,9 +93,8 @@ std::vector<MotionClass> sort_by_size(std::vector<BasinGrid>& cases, int attract
     for (const GridCell& cell : grid.cells)
       if (cell.attractor >= 0) ++size[static_cast<std::size_t>(cell.attractor)];
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)]; });
   for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   std::vector<MotionClass> motions(size.size());
   for (BasinGrid& grid : cases)

@@ -253,8 +253,7 @@ void EnergyAudit::step_done(Marcher& marcher) {
     if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
       marcher.freeze(lane, {.cause = EndCause::energy_not_finite});
     else if (marcher.beyond_bound(lane, energy))
-      marcher.freeze(lane,
-                     {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
+      marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
   }
 }
 

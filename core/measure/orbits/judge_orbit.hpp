@@ -20,7 +20,8 @@ double impacts_per_period(const Orbit& orbit);
 struct JudgedOrbit {
   Recurrence recurrence;
   std::optional<double> zero_one;  ///< K of the strobed displacements
-  /// Whether the last round of what repeats is its own image under x → −x, t → t + T/2 (within ten times the tolerance).
+  /// Whether the last round of what repeats is its own image under x → −x, t → t + T/2 (within ten times the
+  /// tolerance).
   std::optional<bool> symmetric;
   RegimeVerdict verdict;
 };
@@ -28,8 +29,8 @@ struct JudgedOrbit {
 /// Reads a complete orbit; its largest exponent where it is known. Nothing is told of an orbit that is not complete.
 JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::optional<Interval>& exponent);
 
-/// The class of a complete orbit as far as its readings tell without K and exponents: what does not repeat is one class,
-/// undecided. Nothing for an orbit that is not complete.
+/// The class of a complete orbit as far as its readings tell without K and exponents: what does not repeat is one
+/// class, undecided. Nothing for an orbit that is not complete.
 std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& plan);
 
 }  // namespace ricochet

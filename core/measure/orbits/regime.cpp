@@ -78,13 +78,15 @@ RegimeVerdict classify(const RegimeInput& input) {
   const Recurrence& r = input.recurrence;
   const std::string cut = input.settled ? "" : "; the transient was cut at its cap";
   if (!input.contact) {
-    return {{Regime::no_contact}, r.period,
+    return {{Regime::no_contact},
+            r.period,
             "no stop was touched" + (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut};
   }
   if (r.period > 0) {
     std::string text = repeats_text(input) + fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
     if (input.exponent) text += ", " + exponent_text(*input.exponent);
-    if (grows(input)) return {{Regime::undecided}, r.period, text + ": an orbit that repeats and grows is contradictory"};
+    if (grows(input))
+      return {{Regime::undecided}, r.period, text + ": an orbit that repeats and grows is contradictory"};
     return {{Regime::periodic, r.period}, r.period, text + cut};
   }
   const std::string impacts = fmt::format(", {:.4g} impacts per period", input.impacts_per_period);

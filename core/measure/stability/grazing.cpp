@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t looks = 16;      // from one to the next over the values
+constexpr std::size_t looks = 16;  // from one to the next over the values
 constexpr int most_halvings = 60;
 constexpr double resolution = 1e-12;  // relative
 

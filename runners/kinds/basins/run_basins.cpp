@@ -185,7 +185,8 @@ class BasinsRun {
       const CellEnd& end = ends_[sources[cell]];
       const int told = end_of_[sources[cell]];
       cells.rows.push_back({x, y, text(end.motion.regime), end.period > 0 ? Json(end.period) : Json(nullptr),
-                            told >= 0 ? Json(told + 1) : Json(nullptr), sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
+                            told >= 0 ? Json(told + 1) : Json(nullptr), sources[cell] == cell, row_of[sources[cell]],
+                            end.status, end.reason});
       for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
         std::size_t column = 0;
@@ -255,9 +256,9 @@ class BasinsRun {
   GridRefinement refinement_;
   std::vector<CellEnd> ends_;  // of the marched cells
   SectionPlan section_;
-  bool one_scene_ = true;                          // the axes are coordinates of its initial state
-  OrbitEnds labels_;                               // of one scene
-  std::vector<int> end_of_;                        // of the marched and decided cells, where the scene is one
+  bool one_scene_ = true;                           // the axes are coordinates of its initial state
+  OrbitEnds labels_;                                // of one scene
+  std::vector<int> end_of_;                         // of the marched and decided cells, where the scene is one
   std::map<std::size_t, SettledSection> sections_;  // of the others, where it is not
   CaseRecord record_;
   long long lane_periods_ = 0;

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <ricochet/measure/orbits/random_state.hpp>
 #include <ricochet/measure/stability/contact_compliance.hpp>
 #include <ricochet/measure/stability/grazing.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
-#include <set>
 
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/orbit_entries.hpp"
@@ -27,45 +25,6 @@ namespace {
 
 constexpr int most_refinements = 40;       // halvings
 constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
-
-/// Batches of exponents that a killed run had measured, read when they are asked for and forgotten at the end.
-class ExponentCheckpoints {
- public:
-  explicit ExponentCheckpoints(const CaseDesk& desk) : desk_(desk) {}
-  void serve(ExponentTask& task) {
-    if (!desk_.shelf.find || !desk_.shelf.keep) return;
-    task.find = [this](std::size_t batch) {
-      const std::string bytes = desk_.shelf.find(key(batch));
-      if (!bytes.empty()) note(batch);
-      return bytes;
-    };
-    task.keep = [this](std::size_t batch, const std::string& bytes) {
-      desk_.shelf.keep(key(batch), bytes);
-      note(batch);
-    };
-  }
-  void forget() {
-    for (const std::size_t batch : kept_) desk_.shelf.keep(key(batch), "");
-  }
-
- private:
-  std::string key(std::size_t batch) const { return fmt::format("exponents/{}/{}", desk_.key, batch); }
-  void note(std::size_t batch) {
-    const std::lock_guard guard(mutex_);
-    kept_.insert(batch);
-  }
-  const CaseDesk& desk_;
-  std::mutex mutex_;
-  std::set<std::size_t> kept_;
-};
-
-// What the march does without; tangents belong to the exponents, where these are asked for.
-std::vector<std::pair<std::string, std::string>> left_out_of(const ForcedScenes& scenes, const StudyCase& study_case) {
-  auto pairs = left_out_pairs(scenes.left_out(0));
-  if (study_case.settings.value("exponents", 0) > 0)
-    std::erase_if(pairs, [](const auto& pair) { return pair.first == "tangent columns"; });
-  return pairs;
-}
 
 class BifurcationRun {
  public:
@@ -96,7 +55,7 @@ class BifurcationRun {
     OrbitScheduler scheduler(scenes_, options);
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
-    ExponentCheckpoints batches(desk_);
+    ExponentCheckpoints batches(desk_.shelf, desk_.key);
     saved_ = checkpoints.find();
     const auto keep = [&](const MarchedOrbits& marched) {
       checkpoints.save(marched);
@@ -161,7 +120,7 @@ class BifurcationRun {
 
   void describe_methods() {
     record_.operator_name = scenes_.operator_chosen();
-    record_.left_out = left_out_of(scenes_, case_);
+    record_.left_out = march_left_out(scenes_, case_);
     record_.notes = scenes_.notes(0);
     record_.notes.push_back(fmt::format(
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
@@ -391,46 +350,6 @@ class BifurcationRun {
 };
 
 }  // namespace
-
-CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
-  CasePlan out;
-  const std::vector<double> values = parameter_values(study_case.settings);
-  const std::vector<StartSpec> starts = starts_of(study_case.settings);
-  const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
-  ForcedScenes scenes(study_case, registry);
-  int representative = -1;
-  for (const double value : values) {
-    const int scene = scenes.add(pointer, value, false);
-    if (scenes[scene].refusal.empty()) {
-      representative = scene;
-      break;
-    }
-    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
-  }
-  if (representative < 0) return out;
-  out.refusal.clear();
-  out.operator_name = scenes.operator_chosen();
-  out.left_out = left_out_of(scenes, study_case);
-  out.notes = scenes.notes(0);
-  const Json& settings = study_case.settings;
-  // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
-  // cost 0.7 of free flight on top of it.
-  constexpr double contact_share = 1.7;
-  const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
-  const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +
-                                  settings.at("transient").at("at_most").get<double>());
-  double chains = 0, singles = 0;
-  for (const StartSpec& start : starts)
-    (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
-  const double count = static_cast<double>(values.size()), period = study_case.steps_per_period;
-  const auto lanes = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
-  const double orbit = (transient + kept) * period;
-  out.steps = static_cast<long long>(orbit * count * (chains + singles));
-  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
-  // The orbit again, one column more than exponents, and the twin.
-  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
-  return out;
-}
 
 CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
                            const std::atomic<bool>& stop) {

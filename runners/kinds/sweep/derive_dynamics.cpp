@@ -25,25 +25,27 @@ void append_rows(const StudyResults& results, const CaseRecord& record, const De
   }
 }
 
-DerivedTable values_table(const Diagram& diagram) {
-  const StudyResults& results = *diagram.results;
+DerivedTable values_table(const StudyDiagram& study) {
+  const StudyResults& results = *study.results;
   DerivedTable table = table_with_axes(results, "values", {});
-  for (const CaseRuns& owner : diagram.cases) {
+  for (std::size_t c = 0; c < study.sources.size(); ++c) {
+    const DiagramSource& source = study.sources[c];
     const std::size_t first = table.rows.size();
-    append_rows(results, *owner.record, *owner.table, table);
+    append_rows(results, *source.record, *source.table, table);
     const auto column = column_of(table, "attractor");
     if (!column) continue;
-    for (const Run& run : owner.runs)
-      if (run.attractor > 0) table.rows[first + run.row][*column] = run.attractor;
+    const std::vector<DiagramRun>& runs = study.diagram.cases[c].runs;
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      if (runs[k].attractor > 0) table.rows[first + source.rows[k]][*column] = runs[k].attractor;
   }
   return table;
 }
 
-DerivedTable bifurcations_table(const Diagram& diagram) {
-  DerivedTable table = table_with_axes(*diagram.results, "bifurcations", {});
-  for (const CaseRuns& owner : diagram.cases)
-    if (const DerivedTable* own = table_of(*owner.record, "bifurcations"))
-      append_rows(*diagram.results, *owner.record, *own, table);
+DerivedTable bifurcations_table(const StudyDiagram& study) {
+  DerivedTable table = table_with_axes(*study.results, "bifurcations", {});
+  for (const DiagramSource& source : study.sources)
+    if (const DerivedTable* own = table_of(*source.record, "bifurcations"))
+      append_rows(*study.results, *source.record, *own, table);
   return table;
 }
 
@@ -59,12 +61,12 @@ bool derived_as_dynamics(const std::string& table) {
 
 void derive_dynamics(StudyResults& results) {
   if (results.kind == "basins") return derive_basins(results);
-  Diagram diagram = read_diagram(results);
-  if (diagram.cases.empty()) return;
-  DerivedTable distances = find_attractors(diagram);
-  std::vector<DerivedTable> tables = {values_table(diagram), bifurcations_table(diagram), attractors_table(diagram),
-                                      std::move(distances),  verdicts_table(diagram),     agreement_table(diagram),
-                                      shifts_table(diagram)};
+  StudyDiagram study = read_diagram(results);
+  if (study.sources.empty()) return;
+  DerivedTable distances = find_attractors(study);
+  std::vector<DerivedTable> tables = {values_table(study),  bifurcations_table(study), attractors_table(study),
+                                      std::move(distances), verdicts_table(study),     agreement_table(study),
+                                      shifts_table(study)};
   for (DerivedTable& table : tables) results.derived.push_back(std::move(table));
 }
 

@@ -8,8 +8,8 @@
 /// Clouds of section points live in (tip displacement, tip velocity), each divided by its standard deviation over all
 /// section points of the study and the motions' places half a period later (so that a study of one orbit is measured
 /// against its motion): distances are without unit. Clouds of more than 64 points are thinned evenly to that. See
-/// core/measure/attractors: point_clouds.hpp (distances, their null), attractors.hpp (what counts as one attractor at one
-/// value), branches.hpp (along the parameter) and basin_grid.hpp.
+/// core/measure/attractors: point_clouds.hpp (distances, their null), attractors.hpp (what counts as one attractor at
+/// one value), branches.hpp (along the parameter) and basin_grid.hpp.
 ///
 /// *Reference case*: of the cases with the stiffest contact (a rigid one, where there is one; the law tells) the one
 /// with the most steps per period, then the most elements, then the first of the study that has anything to compare

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <tuple>
+#include <ricochet/measure/attractors/diagram.hpp>
+
+#include "runners/study/with_parameter.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -20,11 +21,13 @@ std::string axis_text(const Json& value) {
   return value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
 }
 
-int index_in(std::vector<std::string>& words, const std::string& word) {
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found != words.end()) return static_cast<int>(found - words.begin());
-  words.push_back(word);
-  return static_cast<int>(words.size()) - 1;
+/// Index of a start; new ones are added.
+int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
+  const auto found =
+      std::find_if(starts.begin(), starts.end(), [&](const DiagramStart& start) { return start.name == name; });
+  if (found != starts.end()) return static_cast<int>(found - starts.begin());
+  starts.push_back({name, is_random_start(name)});
+  return static_cast<int>(starts.size()) - 1;
 }
 
 std::string spoken(const std::string& pointer) {
@@ -43,8 +46,8 @@ std::string parameter_pointer(const StudyResults& results) {
   return parameter != results.study.end() && parameter->is_object() ? parameter->value("pointer", "") : "";
 }
 
-void read_runs(Diagram& diagram, CaseRuns& owner) {
-  const DerivedTable& table = *owner.table;
+void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
+  const DerivedTable& table = *source.table;
   const auto parameter = column_of(table, "parameter"), start = column_of(table, "start"),
              regime = column_of(table, "class"), period = column_of(table, "period"),
              symmetric = column_of(table, "symmetric"), viscosity = column_of(table, "alpha_equivalent"),
@@ -52,35 +55,18 @@ void read_runs(Diagram& diagram, CaseRuns& owner) {
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto value = number_of(cell_of(table, r, parameter));
     if (!value) continue;
-    Run run;
+    DiagramRun run;
     run.parameter = *value;
-    run.row = r;
-    run.start = index_in(diagram.starts, text_of(cell_of(table, r, start)));
+    run.start = start_in(study.diagram.starts, text_of(cell_of(table, r, start)));
     run.status = status ? text_of(cell_of(table, r, status)) : "done";
+    run.settled = run.status == "done";
     const auto repeats = number_of(cell_of(table, r, period));
     run.motion = motion_of(text_of(cell_of(table, r, regime)), repeats, run.status);
-    owner.any_decided = owner.any_decided || run.decided();
     if (repeats && *repeats >= 1) run.period = static_cast<int>(*repeats);
     if (const Json cell = cell_of(table, r, symmetric); cell.is_boolean()) run.symmetric = cell.get<bool>();
     run.viscosity = number_of(cell_of(table, r, viscosity));
+    source.rows.push_back(r);
     owner.runs.push_back(std::move(run));
-  }
-}
-
-void number_values(Diagram& diagram) {
-  std::set<double> values;
-  for (const CaseRuns& owner : diagram.cases)
-    for (const Run& run : owner.runs) values.insert(run.parameter);
-  diagram.values.assign(values.begin(), values.end());
-  for (CaseRuns& owner : diagram.cases) {
-    owner.at.assign(diagram.values.size() * diagram.starts.size(), -1);
-    for (std::size_t k = 0; k < owner.runs.size(); ++k) {
-      Run& run = owner.runs[k];
-      run.value = static_cast<int>(std::lower_bound(diagram.values.begin(), diagram.values.end(), run.parameter) -
-                                   diagram.values.begin());
-      owner.at[static_cast<std::size_t>(run.value) * diagram.starts.size() + static_cast<std::size_t>(run.start)] =
-          static_cast<int>(k);
-    }
   }
 }
 
@@ -96,24 +82,18 @@ std::optional<double> compliance_of(const CaseRecord& record) {
   return stiffness ? 1 / *stiffness : 0;
 }
 
-CloudPoint scale_of(const Diagram& diagram) {
+CloudPoint scale_of(const StudyDiagram& study) {
   ScaleOfPoints scale;
-  for (const CaseRuns& owner : diagram.cases) {
-    const auto *x = owner.sections.column("tip_displacement"), *v = owner.sections.column("tip_velocity");
+  for (const DiagramSource& source : study.sources) {
+    const auto *x = source.sections.column("tip_displacement"), *v = source.sections.column("tip_velocity");
     if (!x || !v) continue;
     for (std::size_t k = 0; k < x->size(); ++k) scale.add({(*x)[k], (*v)[k]});
-    const auto *later_x = owner.sections.column("opposite_displacement"),
-               *later_v = owner.sections.column("opposite_velocity");
+    const auto *later_x = source.sections.column("opposite_displacement"),
+               *later_v = source.sections.column("opposite_velocity");
     if (!later_x || !later_v) continue;
     for (std::size_t k = 0; k < later_x->size(); ++k) scale.add({-(*later_x)[k], -(*later_v)[k]});
   }
   return scale.scale();
-}
-
-/// Points per cycle of a run; 0: it is no cycle.
-int cycle_of(const Run& run) {
-  if (run.motion.regime == Regime::periodic) return run.motion.period;
-  return run.motion.regime == Regime::no_contact ? std::max(run.period, 1) : 0;
 }
 
 }  // namespace
@@ -168,86 +148,67 @@ SectionReadings SectionIndex::read(double key, const std::string& word) const {
   return out;
 }
 
-const Run* Diagram::run(std::size_t case_index, int value, int start) const {
-  const CaseRuns& owner = cases[case_index];
-  const int k = owner.at[static_cast<std::size_t>(value) * starts.size() + static_cast<std::size_t>(start)];
-  return k < 0 ? nullptr : &owner.runs[static_cast<std::size_t>(k)];
-}
-
-Diagram read_diagram(const StudyResults& results) {
-  Diagram diagram;
-  diagram.results = &results;
-  diagram.parameter = spoken(parameter_pointer(results));
+StudyDiagram read_diagram(const StudyResults& results) {
+  StudyDiagram study;
+  study.results = &results;
+  study.parameter = spoken(parameter_pointer(results));
   const auto section = results.study.find("section");
-  diagram.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
+  study.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
   std::vector<const CaseRecord*> records;
   for (const CaseRecord& record : results.cases) {
     const DerivedTable* table = table_of(record, "values");
     if (!table) continue;
-    diagram.cases.push_back({&record, table, SectionIndex(record, "points", "parameter", "start"), {}, {}});
     records.push_back(&record);
-    diagram.cases.back().compliance = compliance_of(record);
-    read_runs(diagram, diagram.cases.back());
+    DiagramSource& source =
+        study.sources.emplace_back(DiagramSource{&record, table, SectionIndex(record, "points", "parameter", "start")});
+    DiagramCase& owner = study.diagram.cases.emplace_back();
+    owner.compliance = compliance_of(record);
+    owner.steps_per_period = number_of(axis_of(record, "steps_per_period")).value_or(0);
+    owner.elements = number_of(axis_of(record, "elements")).value_or(0);
+    read_runs(study, source, owner);
   }
-  number_values(diagram);
-  diagram.scale = scale_of(diagram);
-  diagram.axes = axes_of(results, records);
-  return diagram;
+  study.diagram.number_values();
+  study.scale = scale_of(study);
+  study.axes = axes_of(results, records);
+  return study;
 }
 
-SettledSection settled_section(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
-  const SectionReadings readings =
-      owner.sections.read(run.parameter, diagram.starts[static_cast<std::size_t>(run.start)]);
-  const int cycle = cycle_of(run);
+SettledSection settled_section(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
+  const SectionReadings readings = study.sources[case_index].sections.read(
+      run.parameter, study.diagram.starts[static_cast<std::size_t>(run.start)].name);
+  const int cycle = run.cycle();
   SettledSection out{run.motion, cycle > 0, {}};
-  if (cycle == 0 || diagram.strobed) {
-    out.cloud = make_cloud(readings.points, readings.opposite, diagram.scale, cycle);
+  if (cycle == 0 || study.strobed) {
+    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, cycle);
     return out;
   }
   // Impacts or extrema: how many there are in a cycle is seen from the points themselves.
   const auto half = [&](const std::vector<CloudPoint>& points) {
     std::vector<CloudPoint> last;
     for (std::size_t k = points.size() / 2; k < points.size(); ++k)
-      last.push_back({points[k][0] / diagram.scale[0], points[k][1] / diagram.scale[1]});
+      last.push_back({points[k][0] / study.scale[0], points[k][1] / study.scale[1]});
     return distinct_points(last, kSamePoint);
   };
   out.cloud.points = half(readings.points);
   out.cloud.opposite = half(readings.opposite);
   if (out.cloud.points.size() > kLargestCycle || out.cloud.opposite.size() > kLargestCycle)
-    out.cloud = make_cloud(readings.points, readings.opposite, diagram.scale, 0);
+    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, 0);
   return out;
 }
 
-HalvesNull null_of(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
-  const SectionReadings readings =
-      owner.sections.read(run.parameter, diagram.starts[static_cast<std::size_t>(run.start)]);
-  return null_of_halves(readings.points, diagram.scale, diagram.strobed ? cycle_of(run) : 0);
+HalvesNull null_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
+  const SectionReadings readings = study.sources[case_index].sections.read(
+      run.parameter, study.diagram.starts[static_cast<std::size_t>(run.start)].name);
+  return null_of_halves(readings.points, study.scale, study.strobed ? run.cycle() : 0);
 }
 
-std::optional<std::size_t> reference_case(const Diagram& diagram) {
-  std::optional<std::size_t> best;
-  std::tuple<double, double, double> best_rank;
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-    if (!diagram.cases[c].any_decided) continue;
-    const CaseRecord& record = *diagram.cases[c].record;
-    const double compliance = diagram.cases[c].compliance.value_or(INFINITY);
-    const std::tuple rank(-compliance, number_of(axis_of(record, "steps_per_period")).value_or(0),
-                          number_of(axis_of(record, "elements")).value_or(0));
-    if (!best || rank > best_rank) {
-      best = c;
-      best_rank = rank;
-    }
-  }
-  return best;
-}
-
-std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
+std::optional<double> viscosity_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
   const std::string path = "structure.damping.stiffness";
-  if (diagram.parameter == path) return run.parameter;
-  if (const auto value = number_of(axis_of(*owner.record, path))) return value;
+  if (study.parameter == path) return run.parameter;
+  if (const auto value = number_of(axis_of(study.record(case_index), path))) return value;
   const Json::json_pointer pointer("/scene/structure/damping/stiffness");
-  const Json& study = diagram.results->study;
-  return study.contains(pointer) ? number_of(study.at(pointer)) : std::nullopt;
+  const Json& text = study.results->study;
+  return text.contains(pointer) ? number_of(text.at(pointer)) : std::nullopt;
 }
 
 MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status) {

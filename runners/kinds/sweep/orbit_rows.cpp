@@ -53,12 +53,13 @@ std::vector<Json> value_row(const OrbitView& view, const std::string& start, int
   row.push_back(view.viscosity ? number(view.viscosity->numerical) : Json(nullptr));
   if (complete) {
     const Orbit& orbit = *view.orbit;
-    row.insert(row.end(), {number(view.judged.recurrence.distance), number(view.judged.recurrence.contraction),
-                           view.judged.zero_one ? number(*view.judged.zero_one) : Json(nullptr), Json(orbit.transient_periods),
-                           Json(orbit.settled), Json(orbit.most_on_a_side >= chatter_impacts),
-                           Json(static_cast<double>(orbit.contact_steps) /
-                                (static_cast<double>(orbit.kept_periods) * plan.steps_per_period)),
-                           Json(verdict.evidence)});
+    row.insert(row.end(),
+               {number(view.judged.recurrence.distance), number(view.judged.recurrence.contraction),
+                view.judged.zero_one ? number(*view.judged.zero_one) : Json(nullptr), Json(orbit.transient_periods),
+                Json(orbit.settled), Json(orbit.most_on_a_side >= chatter_impacts),
+                Json(static_cast<double>(orbit.contact_steps) /
+                     (static_cast<double>(orbit.kept_periods) * plan.steps_per_period)),
+                Json(verdict.evidence)});
   } else {
     row.insert(row.end(), 7, Json(nullptr));
     row.push_back("");

@@ -35,7 +35,9 @@ TEST_CASE("starts that settle on one orbit, or on one cloud, are one attractor")
   CHECK(split <= 2);
   CHECK(cluster_starts({}).empty());
   // Unknown sections: the class alone.
-  CHECK(cluster_starts({{{Regime::periodic, 3}, true, {}}, {{Regime::periodic, 3}, true, {}}, {{Regime::periodic, 4}, true, {}}}) == std::vector<int>{0, 0, 1});
+  CHECK(cluster_starts({{{Regime::periodic, 3}, true, {}},
+                        {{Regime::periodic, 3}, true, {}},
+                        {{Regime::periodic, 4}, true, {}}}) == std::vector<int>{0, 0, 1});
 }
 
 TEST_CASE("two attractors of one case never become one, however near another case puts one between them") {

@@ -43,9 +43,9 @@ TEST_CASE("motion class: what a motion without contact repeats after is no part 
 }
 
 TEST_CASE("motion class: other words are none") {
-  for (const char* words : {"", "contact", "not periodic", "periodic", "periodic ", "periodic x", "periodic 3x",
-                            "periodic  3", "periodic 0", "periodic -1", "periodic 99999999999", "chaotic 3",
-                            "no contact 1", " chaotic", "Chaotic"}) {
+  for (const char* words :
+       {"", "contact", "not periodic", "periodic", "periodic ", "periodic x", "periodic 3x", "periodic  3",
+        "periodic 0", "periodic -1", "periodic 99999999999", "chaotic 3", "no contact 1", " chaotic", "Chaotic"}) {
     INFO('"' << words << '"');
     CHECK_FALSE(motion_class(words).has_value());
   }

@@ -237,16 +237,16 @@ TEST_CASE("a stranger's scheme and law are known by what they declare, not by wh
   Registry registry;
   catalogue.open_all(registry);
   // Moreau–Jean and the penalty under other names, with other keys.
-  registry.add_time({.name = "stranger",
-                     .summary = "a scheme of the tests",
-                     .text = "Moreau-Jean.",
-                     .source = "these tests",
-                     .parameters = {with_role(real_parameter("bounce", "1", 0.0, {.low = 0, .high = 1}, "e"),
-                                              ParameterRole::restitution)}},
-                    [&registry](const Parameters& p) {
-                      return registry.time("moreau-jean")
-                          ->make(Parameters({{"theta", 0.5}, {"restitution", p.real("bounce")}}));
-                    });
+  registry.add_time(
+      {.name = "stranger",
+       .summary = "a scheme of the tests",
+       .text = "Moreau-Jean.",
+       .source = "these tests",
+       .parameters = {with_role(real_parameter("bounce", "1", 0.0, {.low = 0, .high = 1}, "e"),
+                                ParameterRole::restitution)}},
+      [&registry](const Parameters& p) {
+        return registry.time("moreau-jean")->make(Parameters({{"theta", 0.5}, {"restitution", p.real("bounce")}}));
+      });
   Json study = oscillator("convergence");
   const auto problem = [&](const Json& time, const Json& contact) {
     study["methods"]["time"] = time;
@@ -255,8 +255,7 @@ TEST_CASE("a stranger's scheme and law are known by what they declare, not by wh
     return reference_problem(read.cases.front(), registry);
   };
   const Json own = {{"name", "moreau-jean"}, {"theta", 0.5}, {"restitution", 0.5}},
-             other = {{"name", "stranger"}, {"bounce", 0.5}},
-             spring = {{"name", "penalty"}, {"stiffness", 1e4}};
+             other = {{"name", "stranger"}, {"bounce", 0.5}}, spring = {{"name", "penalty"}, {"stiffness", 1e4}};
   CHECK(problem(own, "signorini").restitution == 0.5);
   CHECK(problem(other, "signorini").restitution == 0.5);
   CHECK(problem(other, spring).contact_stiffness == 1e4);
