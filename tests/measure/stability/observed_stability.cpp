@@ -102,6 +102,7 @@ class Disturbance final : public StepObserver {
   }
   /// Of the slot that grows most.
   std::array<double, 3> thirds() const {
+    if (slots_[2].empty()) return {1, INFINITY, INFINITY};  // it blew up on the way
     std::array<double, 3> most = {1, 1, 1};
     for (std::size_t j = 0; j < slots_[0].size(); ++j) {
       const std::array<double, 3> slot = {1, slots_[1][j] / slots_[0][j], slots_[2][j] / slots_[0][j]};

@@ -219,7 +219,8 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         for (int j = 0; j < made.slot_count(); ++j)
           CHECK((marched - x).segment(j * n, n).norm() <= 1e-5 * x.segment(j * n, n).norm());
       }
-  CHECK(compared == 99);
+  // Four laws × five schemes × two α, without Signorini × Moreau–Jean and the two of Newmark that start in contact.
+  CHECK(compared == 22);
 }
 
 TEST_CASE("mode by mode and all at once give the same radius") {
@@ -247,13 +248,13 @@ TEST_CASE("mode by mode and all at once give the same radius") {
           // Double roots of the kernel come out of the dense matrix to the square root of round-off times its norm.
           const double near = 2e-4;
           CHECK(known(predicted.open(step, h)).radius == Approx(dense({})).epsilon(near));
-          if (step.stages[0].impact->value.z == 0) continue;
           for (const ClosedSet& set : predicted.sets()) {
             CHECK(known(predicted.closed(step, h, set)).radius == Approx(dense(set.points)).epsilon(near));
             ++closed_sets;
           }
         }
-  CHECK(closed_sets == 99);
+  // Six schemes on the regular mass, five on the singular one; two α, three h; four points and all of them.
+  CHECK(closed_sets == 330);
 }
 
 TEST_CASE("central differences need h below 0.0334014 ℓ² √(ρS/EI)") {
