@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/clamp_motion.hpp>
+#include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/lane_status.hpp>
 #include <ricochet/engine/step_observer.hpp>

@@ -17,8 +17,8 @@
 ///
 /// What the columns of these tables mean is declared in sweep_tables.hpp. A change of shifts is one of the same kind,
 /// classes and start, the nearest within a tenth of the values' range; changes from or to "undecided" are left out.
-/// Intervals of verdicts touch: they end half way between two values. Of kind `basins` a motion and its mirror image are
-/// one attractor.
+/// Intervals of verdicts touch: they end half way between two values. Of kind `basins` a motion and its mirror image
+/// are one attractor.
 namespace ricochet {
 
 /// Whether the study's cases leave sections: kinds `bifurcation` and `basins`.

@@ -83,7 +83,8 @@ Table attractors_table(const StudyDiagram& study) {
     table.rows.push_back(
         {attractor, label.label, extent.cases.size(), from, to, text(extent.motion.regime),
          periodic ? Cell(extent.motion.period) : Cell(), symmetric(extent), fraction.value, fraction.low, fraction.high,
-         label.presence, fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
+         label.presence,
+         fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
   }
   return table;
 }
