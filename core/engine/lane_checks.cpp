@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
@@ -24,20 +22,22 @@ void Marcher::check_lanes() {
     for (std::size_t j = 1; j < blocks_.size() && finite; ++j)
       for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
     if (!finite)
-      freeze(lane, fmt::format("the state is not finite (lanes are checked every {} steps)", check_interval));
+      freeze(lane, {.cause = EndCause::state_not_finite, .count = check_interval});
     else if (beyond_bound(lane, energy))
-      freeze(lane, fmt::format("the elastic energy {:.3g} J passed {:.3g} J, {:g} times the scene's own scale", energy,
-                               energy_bound(lane), EnergyBounds::factor));
+      freeze(lane, {.cause = EndCause::elastic_energy_beyond,
+                    .value = energy,
+                    .bound = energy_bound(lane),
+                    .factor = EnergyBounds::factor});
   }
 }
 
-void Marcher::freeze(int lane, const std::string& cause) {
+void Marcher::freeze(int lane, const LaneEnd& end) {
   LaneStatus& status = status_[static_cast<std::size_t>(lane)];
   if (!status.running) return;
   status.running = false;
   status.step = step_;
   status.time = time();
-  status.cause = cause;
+  status.end = end;
   // At rest in a still frame without stops: the lane stays there, and costs its neighbours nothing.
   frozen_now_ |= 1u << lane;
   clear_lane(lane);

@@ -1,16 +1,7 @@
 #pragma once
-#include <string>
 #include <vector>
 
 namespace ricochet {
-
-/// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
-struct LaneStatus {
-  bool running = true;
-  long long step = 0;  ///< when it stopped
-  double time = 0;
-  std::string cause;
-};
 
 /// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
 struct LaneState {

@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <ricochet/engine/clamp_motion.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/lane_state.hpp>
+#include <ricochet/engine/lane_status.hpp>
 #include <ricochet/engine/step_observer.hpp>
-#include <ricochet/engine/clamp_motion.hpp>
 #include <string>
 #include <vector>
 
@@ -81,7 +82,7 @@ class Marcher {
   ContactLaw& law() { return *program_.law; }
 
   /// Stops a lane now, with its cause (used by audits that see more than the loop does).
-  void freeze(int lane, const std::string& cause);
+  void freeze(int lane, const LaneEnd& end);
   /// Energy (J) above which a lane counts as diverged; its own, whoever marches beside it; stated with the cause.
   double energy_bound(int lane) const;
   /// Whether an energy is beyond it; looks again at a load that depends on time before it says so.

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -68,7 +66,7 @@ void Marcher::choose_touched(StageState& state, std::uint32_t mask) {
       touched_.push_back(lane);
       state.touched_lanes |= 1u << lane;
     } else
-      freeze(lane, "the displacement at a contact point is not finite");
+      freeze(lane, {.cause = EndCause::position_not_finite});
   }
 }
 
@@ -106,9 +104,10 @@ void Marcher::keep_contact(StageState& state) {
     const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
     if (!outcome.converged || !finite) {
       for (int i = 0; i < points; ++i) state.effort[0].at(i, lane) = 0;
-      freeze(lane, finite ? fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)",
-                                        outcome.residual, outcome.iterations)
-                          : "a contact effort is not finite");
+      freeze(lane,
+             finite
+                 ? LaneEnd{.cause = EndCause::law_not_converged, .value = outcome.residual, .count = outcome.iterations}
+                 : LaneEnd{.cause = EndCause::effort_not_finite});
       continue;
     }
     if (active) state.contact_lanes |= 1u << lane;

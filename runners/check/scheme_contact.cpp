@@ -45,7 +45,7 @@ Bounce bounce(const Scheme& scheme, double h, int phase, std::unique_ptr<Contact
     result.lowest = std::min(result.lowest, now);
     last = now;
   }
-  if (!marcher.status(0).running) throw std::runtime_error("a bouncing mass stopped: " + marcher.status(0).cause);
+  if (!marcher.status(0).running) throw std::runtime_error("a bouncing mass stopped: " + text(marcher.status(0).end));
   result.impulse = audit.contact(0).impulse;
   result.impacts = audit.contact(0).impacts;
   return result;

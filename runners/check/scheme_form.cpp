@@ -156,7 +156,7 @@ Verdict singular_mass_as_declared(const Scheme& scheme) {
   marcher.march(200);
   if (!marcher.status(0).running)
     return fails("declares that the mass may be singular; a bar whose free end has no mass fails at step " +
-                 std::to_string(marcher.status(0).step) + ": " + marcher.status(0).cause);
+                 std::to_string(marcher.status(0).step) + ": " + text(marcher.status(0).end));
   const double reached = marcher.position(0).cwiseAbs().maxCoeff();
   if (!(reached < 10))
     return fails(

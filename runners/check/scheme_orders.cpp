@@ -59,7 +59,7 @@ Errors march_against(const Scheme& scheme, const OscillatorBench& bench, const H
           std::max(worst_velocity, std::abs(v - exact.velocity(t + marcher.program().velocity_offset * h)));
     }
     if (!marcher.status(0).running)
-      throw std::runtime_error("the oscillator's march stopped: " + marcher.status(0).cause);
+      throw std::runtime_error("the oscillator's march stopped: " + text(marcher.status(0).end));
     errors.steps.push_back(h);
     errors.displacement.push_back(worst);
     errors.velocity.push_back(worst_velocity);

@@ -118,8 +118,8 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
                                 steps, marcher.time());
     return;
   }
-  record.status = status.cause.starts_with("the contact law") ? "failed" : "diverged";
-  record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, status.cause);
+  record.status = status.end.failed() ? "failed" : "diverged";
+  record.reason = fmt::format("step {}, t = {:.6g} s: {}", status.step, status.time, text(status.end));
   record.steps = status.step;
 }
 

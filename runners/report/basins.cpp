@@ -72,9 +72,7 @@ std::map<long long, std::string> attractor_names(const StudyResults& results) {
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto number = rows.number(row, "attractor"), period = rows.number(row, "period");
       if (!number) continue;
-      std::string regime = rows.text(row, "class");
-      if (regime == "periodic" && period) regime += " " + std::to_string(static_cast<int>(*period));
-      out[std::llround(*number)] = regime;
+      out[std::llround(*number)] = regime_text(rows.text(row, "class"), period);
     }
   }
   return out;

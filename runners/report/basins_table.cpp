@@ -31,9 +31,7 @@ std::string fractions_html(const CaseView& view) {
   for (size_t row = 0; row < rows.size(); ++row) {
     place[{rows.text(row, "attractor"), rows.text(row, "case")}] = row;
     const auto period = rows.number(row, "period");
-    std::string& regime = classes[rows.text(row, "attractor")];
-    regime = rows.text(row, "class");
-    if (regime == "periodic" && period) regime += " " + number_text(*period);
+    classes[rows.text(row, "attractor")] = regime_text(rows.text(row, "class"), period);
   }
   std::string head, body;
   const std::vector<std::string> cases = rows.values("case");

@@ -77,8 +77,7 @@ std::string attractors_html(const StudyResults& results) {
     const auto period = rows.number(row, "period");
     const std::string regime = rows.text(row, "class");
     const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
-    const std::string what =
-        regime + (period && regime == "periodic" ? " " + std::to_string(static_cast<int>(*period)) : "");
+    const std::string what = regime_text(regime, period);
     const std::string symmetric = rows.text(row, "symmetric").empty() ? "" : rows.flag(row, "symmetric") ? "yes" : "no";
     html.push_back(
         fmt::format("<th scope=\"row\">{}</th><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <ricochet/measure/orbits/motion_class.hpp>
 
 namespace ricochet::report {
 namespace {
@@ -58,23 +59,32 @@ std::vector<Orbit> orbits_of(const CaseRecord& record) {
 
 std::string regime_text(const Orbit& orbit) {
   if (!orbit.done()) return orbit.status;
-  return orbit.regime == "periodic" && orbit.period ? "periodic " + std::to_string(*orbit.period) : orbit.regime;
+  return regime_text(orbit.regime, orbit.period);
+}
+
+std::string regime_text(const std::string& regime, std::optional<double> period) {
+  const auto motion = motion_class(regime, period);
+  return motion ? text(*motion) : regime;
 }
 
 size_t regime_group(std::string_view regime, std::optional<int> period) {
-  if (regime == "no contact") return 0;
-  if (regime.starts_with("periodic")) {
-    if (!period && regime.size() > 9) {
-      int said = 0;
-      std::from_chars(regime.data() + 9, regime.data() + regime.size(), said);
-      if (said > 0) period = said;
-    }
-    if (!period || *period < 1) return undecided_group;
-    return *period <= 4 ? static_cast<size_t>(*period) : *period <= 8 ? 5 : 6;
+  const auto motion = period ? motion_class(regime, *period) : motion_class(regime);
+  if (!motion) return regime == "refused" || regime == "diverged" ? failed_group : undecided_group;
+  switch (motion->regime) {
+    case Regime::no_contact:
+      return 0;
+    case Regime::periodic:
+      return motion->period <= 4 ? static_cast<size_t>(motion->period) : motion->period <= 8 ? 5 : 6;
+    case Regime::quasi_periodic:
+      return 7;
+    case Regime::chaotic:
+      return 8;
+    case Regime::undecided:
+      return undecided_group;
+    case Regime::failed:
+      break;
   }
-  if (regime == "quasi-periodic") return 7;
-  if (regime == "chaotic") return 8;
-  return regime == "failed" || regime == "refused" || regime == "diverged" ? failed_group : undecided_group;
+  return failed_group;
 }
 
 size_t regime_group(const Orbit& orbit) {

@@ -32,6 +32,7 @@ std::vector<Orbit> orbits_of(const CaseRecord& record);
 
 /// "periodic 3", "chaotic": the words of the table `bifurcations`.
 std::string regime_text(const Orbit& orbit);
+std::string regime_text(const std::string& regime, std::optional<double> period);
 
 /// What orbits are coloured by. The list, its order and its colours are the same for every study.
 struct RegimeGroup {

@@ -191,6 +191,6 @@ int main(int argc, char** argv) {
                1e9 * one.marcher->program().predicted_step_seconds / one.lanes, ideal, ideal > 0 ? median / ideal : 0);
     for (int lane = 0; lane < one.lanes; ++lane)
       if (!one.marcher->status(lane).running)
-        fmt::print("  lane {} stopped: {}\n", lane, one.marcher->status(lane).cause);
+        fmt::print("  lane {} stopped: {}\n", lane, text(one.marcher->status(lane).end));
   }
 }

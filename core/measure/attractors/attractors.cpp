@@ -43,7 +43,7 @@ class Merging {
 }  // namespace
 
 double relative_distance(const SettledSection& a, const SettledSection& b, const LinkRule& rule) {
-  if (a.kind != b.kind) return std::numeric_limits<double>::infinity();
+  if (!(a.motion == b.motion)) return std::numeric_limits<double>::infinity();
   if (a.cloud.empty() || b.cloud.empty()) return 0;
   double threshold = rule.cycle;
   if (!a.cycle || !b.cycle) threshold = std::max(threshold, rule.null_factor * std::max(a.cloud.null, b.cloud.null));

@@ -1,23 +1,24 @@
 #pragma once
 #include <ricochet/measure/attractors/point_clouds.hpp>
+#include <ricochet/measure/orbits/motion_class.hpp>
 #include <vector>
 
 /// \file
 /// Which settled sections show one attractor, at one value of the parameter.
 ///
-/// Sections of different kind (no contact, periodic 3, chaotic …) never do. Of one kind, they are linked where their
+/// Sections of different class (no contact, periodic 3, chaotic …) never do. Of one class, they are linked where their
 /// distance (core/measure/point_clouds.hpp, a mirror image folded onto its original) is at most a threshold,
 ///
 ///     cycles: c        others: max(c, f × the larger of the two nulls)
 ///
 /// since two runs of one non-periodic attractor differ as much as the halves of one run do; f > 1 because a diagram
 /// asks this thousands of times, and one answer in 20 would be wrong. Distances are in units of the spread of all
-/// points of the study. Sections whose points are not known are told apart by their kind alone.
+/// points of the study. Sections whose points are not known are told apart by their class alone.
 namespace ricochet {
 
 /// What one start settled on.
 struct SettledSection {
-  int kind = 0;        ///< sections of different kinds are different attractors
+  MotionClass motion;  ///< sections of different classes are different attractors
   bool cycle = false;  ///< a finite set of points
   SectionCloud cloud;
 };
@@ -31,7 +32,7 @@ constexpr LinkRule kSameRun{0.01, 1.5};
 /// Cases against each other: the errors of step, mesh and contact move a section.
 constexpr LinkRule kAcrossCases{0.1, 2};
 
-/// Distance over threshold: linked where it is at most 1; infinite for different kinds.
+/// Distance over threshold: linked where it is at most 1; infinite for different classes.
 double relative_distance(const SettledSection& a, const SettledSection& b, const LinkRule& rule);
 
 /// Attractor of each section, from 0 in the order met: single linkage.

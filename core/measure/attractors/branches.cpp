@@ -19,7 +19,7 @@ std::vector<int> Branches::add(const std::vector<SettledSection>& attractors) {
   std::vector<Pair> pairs;
   for (std::size_t b = 0; b < branches_.size(); ++b)
     for (std::size_t k = 0; k < attractors.size(); ++k) {
-      if (branches_[b].last.kind != attractors[k].kind) continue;
+      if (!(branches_[b].last.motion == attractors[k].motion)) continue;
       const int away = values_ - branches_[b].seen - 1;
       if (away > kLongestAbsence) continue;
       const double near = relative_distance(branches_[b].last, attractors[k], rule_);

@@ -13,7 +13,7 @@ namespace ricochet {
 /// Successive values of the parameter, and branches of cases against each other: a third of the spread.
 constexpr LinkRule kAlongParameter{0.35, 2};
 
-/// Follows the attractors of one case along rising values of the parameter. A section continues the branch of its kind
+/// Follows the attractors of one case along rising values of the parameter. A section continues the branch of its class
 /// whose last section is near: relative_distance() with kAlongParameter is at most 1, the nearest pairs first, each
 /// branch in one section at most. A branch that has been away for up to four values may come back; it counts as
 /// further, by half its distance per value. What continues no branch is born.

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -253,10 +251,9 @@ void EnergyAudit::step_done(Marcher& marcher) {
     state.now = totals.last = sample;
     const double energy = sample.common();
     if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
-      marcher.freeze(lane, "the energy is not finite");
+      marcher.freeze(lane, {.cause = EndCause::energy_not_finite});
     else if (marcher.beyond_bound(lane, energy))
-      marcher.freeze(lane,
-                     fmt::format("the energy {:.3g} J passed the bound {:.3g} J", energy, marcher.energy_bound(lane)));
+      marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
   }
 }
 

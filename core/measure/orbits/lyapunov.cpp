@@ -102,7 +102,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
     for (std::size_t lane = 0; lane < states.size(); ++lane) {
       const LaneStatus& status = marcher.status(static_cast<int>(lane));
       if (!status.running) {
-        found[lane].cause = status.cause;
+        found[lane].end = status.end;
         continue;
       }
       if (plan.keep_orbit) found[lane].orbit.push_back(marcher.lane_state(static_cast<int>(lane)));
@@ -150,11 +150,11 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
     marcher.set_clock(origin);
     const auto done = static_cast<std::size_t>(n + plan.discard);
     for (std::size_t i = 0; i < states.size(); ++i) {
-      if (!found[i].cause.empty()) continue;
-      found[i].cause = marcher.status(static_cast<int>(i)).cause;
-      if (done >= orbits[i].orbit.size()) found[i].cause = orbits[i].cause;
-      if (!found[i].cause.empty()) {
-        marcher.freeze(static_cast<int>(i), found[i].cause);
+      if (found[i].end) continue;
+      found[i].end = marcher.status(static_cast<int>(i)).end;
+      if (done >= orbits[i].orbit.size()) found[i].end = orbits[i].end;
+      if (found[i].end) {
+        marcher.freeze(static_cast<int>(i), found[i].end);
         continue;
       }
       const LaneState& orbit = orbits[i].orbit.at(done);
@@ -162,7 +162,7 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
       add(direction.front(), -1, orbit);
       orthonormalise(direction, metric, growth);
       if (!std::isfinite(growth[0])) {
-        found[i].cause = "the twin fell on its orbit";
+        found[i].end = {.cause = EndCause::twin_met};
         continue;
       }
       place_twin(i, direction, orbit);

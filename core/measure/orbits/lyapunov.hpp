@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <ricochet/engine/marcher.hpp>
-#include <string>
 #include <vector>
 
 namespace ricochet {
@@ -23,7 +22,7 @@ struct LyapunovPlan {
 /// Growth of the tangent columns of one lane.
 struct LyapunovRates {
   std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
-  std::string cause;                       ///< of a lane that stopped; "" otherwise
+  LaneEnd end;                             ///< of a lane that stopped; none otherwise
   int jumps = 0;                           ///< impacts with inertia whose jump was applied
   std::vector<LaneState> orbit;            ///< of the lane itself after each period, discarded ones first
 };

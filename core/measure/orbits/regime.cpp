@@ -9,7 +9,6 @@ namespace {
 constexpr double regular_below = 0.2, chaotic_above = 0.8;
 constexpr double seen_growth = 2;   // of a deviation over the window, to contradict what repeats
 constexpr double approached = 0.5;  // of the first distance at the end of the window
-constexpr const char* names[] = {"no contact", "periodic", "quasi-periodic", "chaotic", "undecided", "failed"};
 
 std::string count_text(int n, const char* what) {
   return n == 1 ? fmt::format("every {}", what) : fmt::format("every {} {}s", n, what);
@@ -75,36 +74,34 @@ std::string undecided_text(const RegimeInput& input) {
 
 }  // namespace
 
-const char* regime_name(Regime regime) {
-  return names[static_cast<int>(regime)];
-}
-
 RegimeVerdict classify(const RegimeInput& input) {
   const Recurrence& r = input.recurrence;
   const std::string cut = input.settled ? "" : "; the transient was cut at its cap";
   if (!input.contact) {
-    return {Regime::no_contact, r.period,
+    return {{Regime::no_contact},
+            r.period,
             "no stop was touched" + (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut};
   }
   if (r.period > 0) {
     std::string text = repeats_text(input) + fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
     if (input.exponent) text += ", " + exponent_text(*input.exponent);
-    if (grows(input)) return {Regime::undecided, r.period, text + ": an orbit that repeats and grows is contradictory"};
-    return {Regime::periodic, r.period, text + cut};
+    if (grows(input))
+      return {{Regime::undecided}, r.period, text + ": an orbit that repeats and grows is contradictory"};
+    return {{Regime::periodic, r.period}, r.period, text + cut};
   }
   const std::string impacts = fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
   if (input.exponent) {
     const std::string text = exponent_text(*input.exponent) + ", " + zero_one_text(input) + ", " + distance_text(input);
-    if (input.exponent->low > 0) return {Regime::chaotic, 0, text + impacts};
+    if (input.exponent->low > 0) return {{Regime::chaotic}, 0, text + impacts};
     if (input.exponent->high >= 0 && input.zero_one && *input.zero_one < regular_below)
-      return {Regime::quasi_periodic, 0, text + impacts};
+      return {{Regime::quasi_periodic}, 0, text + impacts};
   } else if (input.zero_one) {
     const std::string text = zero_one_text(input) + " without an exponent, " + distance_text(input);
-    if (*input.zero_one > chaotic_above) return {Regime::chaotic, 0, text + impacts};
+    if (*input.zero_one > chaotic_above) return {{Regime::chaotic}, 0, text + impacts};
     if (*input.zero_one < regular_below && r.window > 0 && !still_arriving(r))
-      return {Regime::quasi_periodic, 0, text + impacts};
+      return {{Regime::quasi_periodic}, 0, text + impacts};
   }
-  return {Regime::undecided, 0, undecided_text(input) + cut};
+  return {{Regime::undecided}, 0, undecided_text(input) + cut};
 }
 
 }  // namespace ricochet

@@ -1,15 +1,11 @@
 #pragma once
 #include <optional>
+#include <ricochet/measure/orbits/motion_class.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
 #include <ricochet/measure/statistics/block_bootstrap.hpp>
 #include <string>
 
 namespace ricochet {
-
-/// What an orbit of a forced structure does in the long run.
-enum class Regime { no_contact, periodic, quasi_periodic, chaotic, undecided, failed };
-/// "no contact", "periodic", "quasi-periodic", "chaotic", "undecided", "failed".
-const char* regime_name(Regime regime);
 
 /// What is known of one orbit over its kept periods.
 struct RegimeInput {
@@ -24,8 +20,8 @@ struct RegimeInput {
 };
 
 struct RegimeVerdict {
-  Regime regime = Regime::undecided;
-  int period = 0;        ///< forcing periods, of what repeats; 0: nothing does
+  MotionClass motion;
+  int period = 0;        ///< forcing periods, of what repeats, be it without contact; 0: nothing does
   std::string evidence;  ///< one sentence, with the numbers
 };
 

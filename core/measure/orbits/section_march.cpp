@@ -184,7 +184,7 @@ SectionMarch::SectionMarch(Program program, const SectionPlan& plan) : marcher_(
   watch_ = std::make_unique<Watch>(marcher_, plan_, orbits_);
   for (Reading* reading : {&strobe_, &opposite_})
     for (auto* tips : {&reading->before, &reading->at, &reading->after}) tips->resize(lanes);
-  for (int lane = 0; lane < marcher_.lanes(); ++lane) marcher_.freeze(lane, "idle");
+  for (int lane = 0; lane < marcher_.lanes(); ++lane) marcher_.freeze(lane, {.cause = EndCause::idle});
   marcher_.set_clock(plan_.strobe + 1);
 }
 
@@ -231,7 +231,7 @@ std::vector<Orbit> SectionMarch::period() {
     const LaneStatus& status = marcher_.status(place);
     if (!status.running) {
       orbit.stage = Orbit::Stage::stopped;
-      orbit.cause = status.cause;
+      orbit.end = status.end;
       orbit.stopped_period = orbit.transient_periods + orbit.kept_periods + 1;
     } else {
       const SectionPoint point{strobe_.at[lane], central(strobe_.before, strobe_.after, lane, h), -opposite_.at[lane],
@@ -240,7 +240,7 @@ std::vector<Orbit> SectionMarch::period() {
     }
     if (orbit.stage != Orbit::Stage::complete && orbit.stage != Orbit::Stage::stopped) continue;
     if (orbit.stage == Orbit::Stage::complete) orbit.now = marcher_.lane_state(place);
-    marcher_.freeze(place, "idle");
+    marcher_.freeze(place, {.cause = EndCause::idle});
     ended.push_back(std::move(orbit));
     orbits_[lane].reset();
   }
@@ -289,7 +289,7 @@ StartedOrbits start_orbits(Program program, const SectionPlan& plan) {
   StartedOrbits started;
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     started.states.push_back(marcher.lane_state(lane));
-    started.causes.push_back(marcher.status(lane).running ? "" : marcher.status(lane).cause);
+    started.ends.push_back(marcher.status(lane).end);
   }
   return started;
 }

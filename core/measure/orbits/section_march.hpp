@@ -3,7 +3,6 @@
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
-#include <string>
 #include <vector>
 
 /// \file
@@ -55,7 +54,7 @@ struct Orbit {
   Stage stage = Stage::transient;
   int transient_periods = 0, kept_periods = 0;
   bool settled = false;
-  std::string cause;  ///< of a stopped one
+  LaneEnd end;  ///< of a stopped one
   int stopped_period = 0;
   Settling settling;
   SectionSeries readings;             ///< per kept period: the strobed point without the sawtooth of single steps
@@ -106,10 +105,10 @@ class SectionMarch {
 };
 
 /// What starts orbits: one period from t = 0 under the start rule of the scheme, up to one step after the strobe that
-/// follows. `states` and `causes` per lane; a cause is "" where the lane still runs.
+/// follows. `states` and `ends` per lane; there is no end where the lane still runs.
 struct StartedOrbits {
   std::vector<LaneState> states;
-  std::vector<std::string> causes;
+  std::vector<LaneEnd> ends;
 };
 StartedOrbits start_orbits(Program program, const SectionPlan& plan);
 

@@ -170,10 +170,10 @@ ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
   watch.judge(cell);
   const LaneStatus& status = marcher.status(0);
   if (status.running) return cell;
-  cell.behaviour = status.cause.starts_with("the contact law") ? Behaviour::failed : Behaviour::diverged;
+  cell.behaviour = status.end.failed() ? Behaviour::failed : Behaviour::diverged;
   cell.steps = status.step;
   if (cell.first_bad_step < 0) cell.first_bad_step = status.step;
-  cell.cause = fmt::format("step {}: {}", status.step, status.cause);
+  cell.cause = fmt::format("step {}: {}", status.step, text(status.end));
   return cell;
 }
 

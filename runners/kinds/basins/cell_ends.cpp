@@ -1,7 +1,6 @@
 #include "runners/kinds/basins/cell_ends.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "runners/march/bytes.hpp"
@@ -9,14 +8,12 @@
 namespace ricochet {
 namespace {
 
-constexpr double cycle_tolerance = 1e-3;
-// Beyond the null of 19 draws, which one run in 20 exceeds; and never asked to be closer than a twentieth of the room.
-constexpr LinkRule cell_rule{0.05, 1.5};
-constexpr std::uint64_t mark = 0x3173646e65'0001;  // what the bytes are, and their version
+constexpr std::uint64_t mark = 0x3173646e65'0002;  // what the bytes are, and their version
 
 template <class Archive, class End>
 void describe(Archive& archive, End& end) {
-  archive(end.regime);
+  archive(end.motion.regime);
+  archive(end.motion.period);
   archive(end.period);
   archive(end.periods);
   archive(end.status);
@@ -31,12 +28,13 @@ CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan) {
   OrbitView view;
   view.orbit = &orbit;
   judge(view, plan);
+  const RegimeVerdict& verdict = view.judged.verdict;
   CellEnd end;
   std::tie(end.status, end.reason) = status_of(view);
   end.periods = orbit.transient_periods + orbit.kept_periods;
   if (orbit.stage != Orbit::Stage::complete) return end;
-  end.regime = view.verdict.regime;
-  end.period = view.verdict.period;
+  end.motion = verdict.motion;
+  end.period = verdict.period;
   const std::size_t wanted = static_cast<std::size_t>(end.period > 0 ? end.period : longest_cell_section);
   const std::size_t first = orbit.strobed.size() - std::min(orbit.strobed.size(), wanted);
   const auto width = static_cast<std::size_t>(orbit.readings.width);
@@ -72,44 +70,16 @@ std::vector<CellEnd> cell_ends(const std::string& bytes) {
   return ends;
 }
 
-SettledSection EndLabels::settled(const CellEnd& end) const {
-  SettledSection out;
-  out.kind = static_cast<int>(end.regime);
-  std::vector<CloudPoint> run;
-  for (std::size_t i = 0; i < end.section.size(); ++i) run.push_back({end.displacements[i], end.section[i].velocity});
-  out.cloud = make_cloud(run, {}, {plan_.scale, plan_.scale * plan_.pulsation}, 0);
-  return out;
-}
-
-bool EndLabels::same_cycle(const CellEnd& a, const CellEnd& b) const {
-  const std::size_t period = a.section.size();
-  if (a.period != b.period || b.section.size() != period) return false;
-  const double speed = plan_.scale * plan_.pulsation;
-  for (std::size_t shift = 0; shift < period; ++shift) {
-    bool all = true;
-    for (std::size_t i = 0; i < period && all; ++i) {
-      const std::size_t j = (i + shift) % period;
-      all = std::abs(a.displacements[i] - b.displacements[j]) <= cycle_tolerance * plan_.scale &&
-            std::abs(a.section[i].velocity - b.section[j].velocity) <= cycle_tolerance * speed;
-    }
-    if (all) return true;
+SettledSection settled_section(const CellEnd& end, const SectionPlan& plan) {
+  // A motion without contact is the linear response, told by its class.
+  if (end.motion.regime == Regime::no_contact) return {end.motion, true, {}};
+  std::vector<CloudPoint> run, opposite;
+  for (std::size_t i = 0; i < end.section.size(); ++i) {
+    run.push_back({end.displacements[i], end.section[i].velocity});
+    opposite.push_back({end.section[i].opposite_displacement, end.section[i].opposite_velocity});
   }
-  return false;
-}
-
-int EndLabels::label(const CellEnd& end) {
-  Known one{end, {}};
-  const bool wandering = end.regime == Regime::quasi_periodic || end.regime == Regime::chaotic;
-  if (wandering) one.section = settled(end);
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    const Known& other = known_[i];
-    if (other.end.regime != end.regime || other.end.status != end.status) continue;
-    if (end.regime == Regime::periodic && !same_cycle(end, other.end)) continue;
-    if (wandering && relative_distance(one.section, other.section, cell_rule) > 1) continue;
-    return static_cast<int>(i);
-  }
-  known_.push_back(std::move(one));
-  return static_cast<int>(known_.size()) - 1;
+  const int cycle = end.motion.period;
+  return {end.motion, cycle > 0, make_cloud(run, opposite, {plan.scale, plan.scale * plan.pulsation}, cycle)};
 }
 
 }  // namespace ricochet

@@ -51,7 +51,7 @@ std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t r
 
 std::string regime_text(const CellEnd& end) {
   if (end.status != "done") return end.status + ": " + end.reason;
-  return std::string(regime_name(end.regime)) + (end.period > 0 ? " " + std::to_string(end.period) : "");
+  return text(end.motion);
 }
 
 }  // namespace

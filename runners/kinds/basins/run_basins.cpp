@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <ricochet/measure/attractors/branches.hpp>
+#include <ricochet/measure/attractors/grid_refinement.hpp>
+#include <ricochet/measure/attractors/orbit_ends.hpp>
 
 #include "runners/kinds/basins/cell_ends.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
-#include "runners/kinds/basins/grid_refinement.hpp"
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/march/partial_pace.hpp"
@@ -32,8 +35,12 @@ class BasinsRun {
         scenes_(study_case, registry),
         columns_(scenes_.axes()[0].values.size()),
         rows_(scenes_.axes()[1].values.size()),
-        refinement_(columns_, rows_, refines(study_case)),
-        ends_(columns_ * rows_) {}
+        refinement_(columns_, rows_, refines(study_case),
+                    [this](std::size_t cell, std::size_t other) { return alike(cell, other); }),
+        ends_(columns_ * rows_),
+        end_of_(columns_ * rows_, -1) {
+    for (const GridAxis& axis : scenes_.axes()) one_scene_ = one_scene_ && names_initial_state(axis.pointer);
+  }
 
   CaseRecord run() {
     record_.id = case_.id;
@@ -124,17 +131,34 @@ class BasinsRun {
     described_ = true;
     const ForcedScenes& scenes = scenes_.scenes();
     section_ = section_plan(case_, scenes);
-    labels_ = EndLabels(section_);
     record_.operator_name = scenes.operator_chosen();
     record_.left_out = left_out_pairs(scenes.left_out(0));
     record_.notes = scenes.notes(0);
+    record_.notes.push_back("a motion and its mirror image (x → −x, t → t + T/2) are one end");
   }
 
   void take(const std::vector<std::size_t>& batch, std::vector<CellEnd> ends) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      refinement_.set_label(batch[i], labels_.label(ends[i]));
-      ends_[batch[i]] = std::move(ends[i]);
+      const std::size_t cell = batch[i];
+      refinement_.set_marched(cell);
+      if (ends[i].motion.decided()) {
+        SettledSection section = settled_section(ends[i], section_);
+        if (one_scene_)
+          end_of_[cell] = labels_.label(std::move(section));
+        else
+          sections_[cell] = std::move(section);
+      }
+      ends_[cell] = std::move(ends[i]);
     }
+  }
+
+  // Whether two marched cells end alike. What is not decided is alike by its status.
+  bool alike(std::size_t cell, std::size_t other) const {
+    const CellEnd &a = ends_[cell], &b = ends_[other];
+    if (!(a.motion == b.motion) || a.status != b.status) return false;
+    if (!a.motion.decided()) return true;
+    if (one_scene_) return end_of_[cell] == end_of_[other];
+    return relative_distance(sections_.at(cell), sections_.at(other), kAlongParameter) <= 1;
   }
 
   // Of a case under way (not complete) only the cells that are known have a row.
@@ -151,12 +175,14 @@ class BasinsRun {
       if (sources[cell] == sources.size()) {
         if (complete)
           cells.rows.push_back(
-              {x, y, regime_name(Regime::failed), nullptr, nullptr, false, nullptr, "failed", unmarched().reason});
+              {x, y, text(Regime::failed), nullptr, nullptr, false, nullptr, "failed", unmarched().reason});
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
-      cells.rows.push_back({x, y, regime_name(end.regime), end.period > 0 ? Cell(end.period) : Cell(), nullptr,
-                            sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
+      const int told = end_of_[sources[cell]];
+      cells.rows.push_back({x, y, text(end.motion.regime), end.period > 0 ? Cell(end.period) : Cell(),
+                            told >= 0 ? Cell(told + 1) : Cell(), sources[cell] == cell, row_of[sources[cell]],
+                            end.status, end.reason});
       for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
         points.add({static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement, point.velocity,
@@ -224,7 +250,10 @@ class BasinsRun {
   GridRefinement refinement_;
   std::vector<CellEnd> ends_;  // of the marched cells
   SectionPlan section_;
-  EndLabels labels_{SectionPlan{}};
+  bool one_scene_ = true;                           // the axes are coordinates of its initial state
+  OrbitEnds labels_;                                // of one scene
+  std::vector<int> end_of_;                         // of the marched and decided cells, where the scene is one
+  std::map<std::size_t, SettledSection> sections_;  // of the others, where it is not
   CaseRecord record_;
   long long lane_periods_ = 0;
   int batches_ = 0;
@@ -252,13 +281,13 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   out.left_out = left_out_pairs(scenes.scenes().left_out(0));
   out.notes = scenes.scenes().notes(0);
   const bool refine = refines(study_case);
-  const std::size_t coarse = GridRefinement::coarse_cells(columns, rows, refine);
-  const std::size_t cells = coarse + (columns * rows - coarse) / 4;
+  const std::size_t first = GridRefinement::first_cells(columns, rows, refine);
+  const std::size_t cells = first + (columns * rows - first) / 4;
   if (refine)
     out.notes.push_back(
         fmt::format("{} of {} cells are marched, then those near boundaries; predicted as a quarter of "
                     "the others",
-                    coarse, columns * rows));
+                    first, columns * rows));
   const Json& settings = study_case.settings;
   const double periods = settings.at("transient").at("periods").get<double>() + settings.at("keep").get<double>();
   const double steps = periods * study_case.steps_per_period * static_cast<double>(cells);

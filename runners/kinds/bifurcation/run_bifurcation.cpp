@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <mutex>
+#include <ricochet/measure/orbits/random_state.hpp>
+#include <ricochet/measure/stability/contact_compliance.hpp>
+#include <ricochet/measure/stability/grazing.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
-#include <set>
 
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/orbit_entries.hpp"
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_portraits.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
-#include "runners/kinds/sweep/random_states.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -24,45 +26,6 @@ namespace {
 
 constexpr int most_refinements = 40;       // halvings
 constexpr std::size_t most_brackets = 48;  // per start, that are refined at once
-
-/// Batches of exponents that a killed run had measured, read when they are asked for and forgotten at the end.
-class ExponentCheckpoints {
- public:
-  explicit ExponentCheckpoints(const CaseDesk& desk) : desk_(desk) {}
-  void serve(ExponentTask& task) {
-    if (!desk_.shelf.find || !desk_.shelf.keep) return;
-    task.find = [this](std::size_t batch) {
-      const std::string bytes = desk_.shelf.find(key(batch));
-      if (!bytes.empty()) note(batch);
-      return bytes;
-    };
-    task.keep = [this](std::size_t batch, const std::string& bytes) {
-      desk_.shelf.keep(key(batch), bytes);
-      note(batch);
-    };
-  }
-  void forget() {
-    for (const std::size_t batch : kept_) desk_.shelf.keep(key(batch), "");
-  }
-
- private:
-  std::string key(std::size_t batch) const { return fmt::format("exponents/{}/{}", desk_.key, batch); }
-  void note(std::size_t batch) {
-    const std::lock_guard guard(mutex_);
-    kept_.insert(batch);
-  }
-  const CaseDesk& desk_;
-  std::mutex mutex_;
-  std::set<std::size_t> kept_;
-};
-
-// What the march does without; tangents belong to the exponents, where these are asked for.
-std::vector<std::pair<std::string, std::string>> left_out_of(const ForcedScenes& scenes, const StudyCase& study_case) {
-  auto pairs = left_out_pairs(scenes.left_out(0));
-  if (study_case.settings.value("exponents", 0) > 0)
-    std::erase_if(pairs, [](const auto& pair) { return pair.first == "tangent columns"; });
-  return pairs;
-}
 
 class BifurcationRun {
  public:
@@ -93,7 +56,7 @@ class BifurcationRun {
     OrbitScheduler scheduler(scenes_, options);
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
-    ExponentCheckpoints batches(desk_);
+    ExponentCheckpoints batches(desk_.shelf, desk_.key);
     saved_ = checkpoints.find();
     const auto keep = [&](const MarchedOrbits& marched) {
       checkpoints.save(marched);
@@ -158,11 +121,17 @@ class BifurcationRun {
 
   void describe_methods() {
     record_.operator_name = scenes_.operator_chosen();
-    record_.left_out = left_out_of(scenes_, case_);
+    record_.left_out = march_left_out(scenes_, case_);
     record_.notes = scenes_.notes(0);
     record_.notes.push_back(fmt::format(
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
+    // At a depth of a thousandth of the room: whoever compares cases orders them by it.
+    const auto compliance =
+        contact_compliance(*make_law(case_, registry_), case_.contact.parameters, 1e-3 * section_.scale);
+    NumberTable law = contact_law_head();
+    law.add({compliance.value_or(std::numeric_limits<double>::quiet_NaN())});
+    record_.numbers.push_back(std::move(law));
     analyse_groups();
   }
 
@@ -188,15 +157,6 @@ class BifurcationRun {
     return std::move(record_);
   }
 
-  // The class of a value as far as it decides where to look closer: what does not repeat is one class.
-  std::string rough_class(int task) const {
-    const Orbit& orbit = scheduler_->orbit(task);
-    if (orbit.stage != Orbit::Stage::complete) return "";
-    if (!touches(orbit)) return "no contact";
-    const Recurrence found = find_recurrence(orbit.readings, section_.reading_scale(), recurrence_tolerance);
-    return found.period > 0 ? fmt::format("periodic {}", found.period) : "not periodic";
-  }
-
   void refine(const std::function<void(const MarchedOrbits&)>& keep) {
     const Json& wanted = case_.settings.value("refine", Json(nullptr));
     if (!wanted.is_number() || scheduler_->over_budget()) return;
@@ -211,19 +171,19 @@ class BifurcationRun {
       for (std::size_t s = 0; s < starts_.size(); ++s) {
         std::size_t brackets = 0;
         const Value* before = nullptr;
-        std::string was;
+        MotionClass was;
         for (const Value& value : known_) {
           if (value.tasks[s] < 0) continue;
-          const std::string is = rough_class(value.tasks[s]);
-          if (is.empty()) continue;
-          if (before && was != is && value.value - before->value > tolerance) {
+          const auto is = rough_class(scheduler_->orbit(value.tasks[s]), section_);
+          if (!is) continue;
+          if (before && !(was == *is) && value.value - before->value > tolerance) {
             if (brackets++ < most_brackets)
               middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
             else
               crowded_ = true;
           }
           before = &value;
-          was = is;
+          was = *is;
         }
       }
       if (middles.empty()) return;
@@ -307,7 +267,7 @@ class BifurcationRun {
     ExponentTask task;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!all[i].orbit || all[i].orbit->stage != Orbit::Stage::complete) continue;
+      if (!all[i].complete()) continue;
       task.orbits.push_back(all[i].orbit);
       task.groups.push_back(all[i].group);
       places.push_back(i);
@@ -331,7 +291,7 @@ class BifurcationRun {
     if (crowded_)
       record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
     long long marched = 0, bad = 0;
-    for (const OrbitView& view : all) (view.orbit && view.orbit->stage == Orbit::Stage::complete ? marched : bad) += 1;
+    for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
     record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
     put("orbits", static_cast<double>(marched));
     add_shares(record_, all);
@@ -344,7 +304,7 @@ class BifurcationRun {
                                    marched, scheduler_->count());
     } else if (marched == 0) {
       for (const OrbitView& view : all)
-        if (view.orbit) record_.reason = "no orbit was completed; " + view.orbit->cause;
+        if (view.orbit) record_.reason = "no orbit was completed; " + text(view.orbit->end);
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));
@@ -365,24 +325,7 @@ class BifurcationRun {
       if (!known->second) return std::nullopt;
       return overlap(*known->second, scene.lane);
     };
-    std::optional<double> before;
-    double low = 0;
-    for (std::size_t i = 0; i < values_.size(); i += std::max<std::size_t>(1, (values_.size() - 1) / 16)) {
-      const auto now = excess(values_[i]);
-      if (before && now && (*before < 0) != (*now < 0)) {
-        double left = low, right = values_[i];
-        int steps = 0;
-        for (; steps < 60 && right - left > 1e-12 * std::max(std::abs(left), std::abs(right)); ++steps) {
-          const double middle = 0.5 * (left + right);
-          const auto there = excess(middle);
-          if (!there) break;
-          ((*there < 0) == (*before < 0) ? left : right) = middle;
-        }
-        add_grazing_row(record_, *before < 0, 0.5 * (left + right), left, right, steps);
-      }
-      before = now;
-      low = values_[i];
-    }
+    for (const Grazing& one : find_grazings(values_, excess)) add_grazing_row(record_, one);
   }
 
   void put(const char* name, double value) {
@@ -409,46 +352,6 @@ class BifurcationRun {
 };
 
 }  // namespace
-
-CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
-  CasePlan out;
-  const std::vector<double> values = parameter_values(study_case.settings);
-  const std::vector<StartSpec> starts = starts_of(study_case.settings);
-  const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
-  ForcedScenes scenes(study_case, registry);
-  int representative = -1;
-  for (const double value : values) {
-    const int scene = scenes.add(pointer, value, false);
-    if (scenes[scene].refusal.empty()) {
-      representative = scene;
-      break;
-    }
-    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
-  }
-  if (representative < 0) return out;
-  out.refusal.clear();
-  out.operator_name = scenes.operator_chosen();
-  out.left_out = left_out_of(scenes, study_case);
-  out.notes = scenes.notes(0);
-  const Json& settings = study_case.settings;
-  // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
-  // cost 0.7 of free flight on top of it.
-  constexpr double contact_share = 1.7;
-  const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
-  const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +
-                                  settings.at("transient").at("at_most").get<double>());
-  double chains = 0, singles = 0;
-  for (const StartSpec& start : starts)
-    (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
-  const double count = static_cast<double>(values.size()), period = study_case.steps_per_period;
-  const auto lanes = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
-  const double orbit = (transient + kept) * period;
-  out.steps = static_cast<long long>(orbit * count * (chains + singles));
-  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
-  // The orbit again, one column more than exponents, and the twin.
-  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
-  return out;
-}
 
 CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
                            const std::atomic<bool>& stop) {

@@ -11,8 +11,8 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
 
 /// Runs one case of kind `bifurcation`: every value of the parameter from every start, as lanes where they share a
 /// factorisation. Tables `values`, `bifurcations`; numbers `points`, `impacts`, `portraits` (see the README's table of
-/// files). A value that cannot be marched, diverges or fails is a row with its reason; the case is done when any value
-/// is.
+/// files) and, not exported, `contact_law`: compliance (m/N; 0: rigid, absent: not known). A value that cannot be
+/// marched, diverges or fails is a row with its reason; the case is done when any value is.
 CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
                            const std::atomic<bool>& stop);
 

@@ -55,7 +55,7 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
     marched.motion = sampler.finish();
   else
     marched.refusal = fmt::format("at h = {:g} s the method itself stops at t = {:.6g} s: {}", study_case.step,
-                                  marcher.status(0).time, marcher.status(0).cause);
+                                  marcher.status(0).time, text(marcher.status(0).end));
   return marched;
 }
 

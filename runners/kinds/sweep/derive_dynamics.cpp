@@ -1,5 +1,6 @@
 #include "runners/kinds/sweep/derive_dynamics.hpp"
 
+#include "runners/kinds/basins/derive_basins.hpp"
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
 #include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/store/record_values.hpp"
@@ -9,26 +10,29 @@ namespace {
 
 using namespace dynamics;
 
-Table values_table(const Diagram& diagram) {
-  const StudyResults& results = *diagram.results;
-  Table table = table_of_cases(results, values_head(0, diagram.swept).name, values_head(0, diagram.swept).text, {});
-  for (const CaseRuns& owner : diagram.cases) {
+Table values_table(const StudyDiagram& study) {
+  const StudyResults& results = *study.results;
+  const Table head = values_head(0, study.swept);
+  Table table = table_of_cases(results, head.name, head.text, {});
+  for (std::size_t c = 0; c < study.sources.size(); ++c) {
+    const DiagramSource& source = study.sources[c];
     const std::size_t first = table.rows.size();
-    append_rows(results, *owner.record, *owner.table, table);
+    append_rows(results, *source.record, *source.table, table);
     const auto column = find_column(table.columns, "attractor");
     if (!column) continue;
-    for (const Run& run : owner.runs)
-      if (run.attractor > 0) table.rows[first + run.row][*column] = run.attractor;
+    const std::vector<DiagramRun>& runs = study.diagram.cases[c].runs;
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      if (runs[k].attractor > 0) table.rows[first + source.rows[k]][*column] = runs[k].attractor;
   }
   return table;
 }
 
-Table bifurcations_table(const Diagram& diagram) {
-  const Table head = bifurcations_head(diagram.swept);
-  Table table = table_of_cases(*diagram.results, head.name, head.text, {});
-  for (const CaseRuns& owner : diagram.cases)
-    if (const Table* own = find_table(owner.record->tables, head.name))
-      append_rows(*diagram.results, *owner.record, *own, table);
+Table bifurcations_table(const StudyDiagram& study) {
+  const Table head = bifurcations_head(study.swept);
+  Table table = table_of_cases(*study.results, head.name, head.text, {});
+  for (const DiagramSource& source : study.sources)
+    if (const Table* own = find_table(source.record->tables, head.name))
+      append_rows(*study.results, *source.record, *own, table);
   return table;
 }
 
@@ -44,15 +48,15 @@ bool derived_as_dynamics(const std::string& table) {
 
 void derive_dynamics(StudyResults& results) {
   if (results.kind == "basins") return derive_basins(results);
-  Diagram diagram = read_diagram(results);
-  if (diagram.cases.empty()) return;
-  Table distances = find_attractors(diagram);
-  std::vector<Table> tables = {values_table(diagram), bifurcations_table(diagram), attractors_table(diagram),
-                               std::move(distances),  verdicts_table(diagram),     agreement_table(diagram),
-                               shifts_table(diagram)};
-  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), diagram.swept));
+  StudyDiagram study = read_diagram(results);
+  if (study.sources.empty()) return;
+  Table distances = find_attractors(study);
+  std::vector<Table> tables = {values_table(study),  bifurcations_table(study), attractors_table(study),
+                               std::move(distances), verdicts_table(study),     agreement_table(study),
+                               shifts_table(study)};
+  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), study.swept));
   for (Table table :
-       {class_counts_table(results), grazing_ranges_table(results, diagram.swept), numerical_viscosity_table(results)})
+       {class_counts_table(results), grazing_ranges_table(results, study.swept), numerical_viscosity_table(results)})
     tables.push_back(std::move(table));
   for (Table& table : tables) results.derived.push_back(std::move(table));
 }

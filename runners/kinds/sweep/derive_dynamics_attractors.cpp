@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <map>
-#include <ricochet/measure/attractors/branches.hpp>
-#include <set>
+#include <ricochet/measure/attractors/diagram_attractors.hpp>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
 #include "runners/store/record_values.hpp"
@@ -12,75 +9,25 @@
 namespace ricochet::dynamics {
 namespace {
 
-constexpr double kHalf = 0.5, kNothing = 1e-12;
+constexpr double kNothing = 1e-12;
 
-/// The sections at one value, case by case, start by start.
-using Sections = std::map<std::pair<std::size_t, int>, SettledSection>;
-
-/// Whether there is anything to compare: a march that was stopped leaves no section.
-bool settled(const Run& run) {
-  return run.status == "done";
-}
-
-Sections sections_at(const Diagram& diagram, int value) {
-  Sections out;
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c)
-    for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s)
-      if (const Run* run = diagram.run(c, value, s); run && settled(*run))
-        out.emplace(std::pair(c, s), settled_section(diagram, diagram.cases[c], *run));
-  return out;
-}
-
-/// One attractor of one case, with the starts that lead to it.
-struct OwnAttractor {
-  std::size_t owner = 0;
-  std::vector<int> starts;
-  SettledSection section;
-};
-
-/// A motion without contact is the linear response: of one scene there is one, told by its kind.
-SettledSection for_matching(const SettledSection& section, bool linear) {
-  if (!linear) return section;
-  return {section.kind, true, {}};
-}
-
-std::vector<OwnAttractor> own_attractors(const Diagram& diagram, const Sections& sections, int value) {
-  std::vector<OwnAttractor> out;
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-    std::vector<int> starts;
-    std::vector<SettledSection> decided;
-    for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s) {
-      const Run* run = diagram.run(c, value, s);
-      if (!run || !run->decided()) continue;
-      starts.push_back(s);
-      decided.push_back(for_matching(sections.at({c, s}), run->regime == "no contact"));
-    }
-    const std::vector<int> labels = cluster_starts(decided);
-    const std::size_t first = out.size();
-    for (std::size_t k = 0; k < labels.size(); ++k) {
-      const std::size_t place = first + static_cast<std::size_t>(labels[k]);
-      if (place == out.size()) out.push_back({c, {}, std::move(decided[k])});
-      out[place].starts.push_back(starts[k]);
-    }
-  }
-  return out;
-}
-
-void add_distances(const Diagram& diagram, const Sections& sections, int value, std::size_t reference, Table& table) {
-  const CaseRuns& standard = diagram.cases[reference];
-  for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s) {
-    const Run* one = diagram.run(reference, value, s);
+void add_distances(const StudyDiagram& study, const ValueSections& sections, int value, std::size_t reference,
+                   Table& table) {
+  const Diagram& diagram = study.diagram;
+  for (int s = 0; s < diagram.start_count(); ++s) {
+    const DiagramRun* one = diagram.run(reference, value, s);
     if (!one) continue;
     const auto of_reference = sections.find({reference, s});
     HalvesNull null;
-    if (of_reference != sections.end()) null = null_of(diagram, standard, *one);
+    if (of_reference != sections.end()) null = null_of(study, reference, *one);
     for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-      const Run* other = diagram.run(c, value, s);
+      const DiagramRun* other = diagram.run(c, value, s);
       if (c == reference || !other) continue;
-      Row row = place_of(*diagram.results, *diagram.cases[c].record);
-      row.insert(row.end(), {standard.record->id, one->parameter, diagram.starts[static_cast<std::size_t>(s)]});
+      Row row = place_of(*study.results, study.record(c));
+      row.insert(row.end(),
+                 {study.record(reference).id, one->parameter, diagram.starts[static_cast<std::size_t>(s)].name});
       const auto of_other = sections.find({c, s});
-      const Cell same = one->decided() && other->decided() ? Cell(one->kind == other->kind) : Cell();
+      const Cell same = one->decided() && other->decided() ? Cell(one->motion == other->motion) : Cell();
       if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
           of_other->second.cloud.empty()) {
         row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr, nullptr, same, ""});
@@ -97,164 +44,7 @@ void add_distances(const Diagram& diagram, const Sections& sections, int value, 
   }
 }
 
-/// Branches of every case while the values go by, and how near those of different cases are to each other.
-class Following {
- public:
-  explicit Following(std::size_t cases) : along_(cases), first_(cases) {}
-
-  /// The attractors of all cases at one value; the runs keep the branch until finish().
-  void add(Diagram& diagram, const std::vector<OwnAttractor>& own, int value) {
-    std::vector<int> branch(own.size(), -1);
-    for (std::size_t first = 0; first < own.size();) {
-      std::size_t last = first;
-      std::vector<SettledSection> sections;
-      for (; last < own.size() && own[last].owner == own[first].owner; ++last) sections.push_back(own[last].section);
-      const std::size_t owner = own[first].owner;
-      const std::vector<int> labels = along_[owner].add(sections);
-      for (std::size_t k = first; k < last; ++k) branch[k] = place(owner, labels[k - first], value);
-      first = last;
-    }
-    for (std::size_t a = 0; a < own.size(); ++a)
-      for (std::size_t b = a + 1; b < own.size(); ++b)
-        if (own[a].owner != own[b].owner && own[a].section.kind == own[b].section.kind) {
-          std::vector<double>& known = met_[{branch[a], branch[b]}];
-          // A dozen values tell; of long branches every eighth one is looked at as well.
-          if (known.size() >= kTelling && value % kSparse != 0) continue;
-          known.push_back(relative_distance(own[a].section, own[b].section, kAlongParameter));
-        }
-    for (std::size_t k = 0; k < own.size(); ++k)
-      for (const int s : own[k].starts) run_of(diagram, own[k].owner, value, s).attractor = branch[k] + 1;
-  }
-
-  /// Turns branches into identities, numbered along the parameter.
-  void finish(Diagram& diagram) const {
-    std::vector<BranchPair> pairs;
-    for (const auto& [pair, distances] : met_) pairs.push_back({pair.first, pair.second, distances});
-    const std::vector<int> identity = match_branches(branches_, pairs);
-    std::vector<std::pair<int, int>> order;  // first value, identity
-    for (std::size_t k = 0; k < identity.size(); ++k) {
-      const auto one = static_cast<std::size_t>(identity[k]);
-      if (one == order.size()) order.emplace_back(branches_[k].values.front(), identity[k]);
-      order[one].first = std::min(order[one].first, branches_[k].values.front());
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<int> number(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-      number[static_cast<std::size_t>(order[k].second)] = static_cast<int>(k);
-    for (CaseRuns& owner : diagram.cases)
-      for (Run& run : owner.runs)
-        if (run.attractor > 0)
-          run.attractor = number[static_cast<std::size_t>(identity[static_cast<std::size_t>(run.attractor) - 1])] + 1;
-    diagram.attractors = static_cast<int>(order.size());
-  }
-
- private:
-  static constexpr std::size_t kTelling = 12;
-  static constexpr int kSparse = 8;
-
-  static Run& run_of(Diagram& diagram, std::size_t c, int value, int start) {
-    CaseRuns& owner = diagram.cases[c];
-    const int run = owner.at[static_cast<std::size_t>(value) * diagram.starts.size() + static_cast<std::size_t>(start)];
-    return owner.runs[static_cast<std::size_t>(run)];
-  }
-
-  int place(std::size_t owner, int label, int value) {
-    std::vector<int>& places = first_[owner];
-    if (static_cast<std::size_t>(label) == places.size()) {
-      places.push_back(static_cast<int>(branches_.size()));
-      branches_.push_back({static_cast<int>(owner), {}});
-    }
-    const int branch = places[static_cast<std::size_t>(label)];
-    branches_[static_cast<std::size_t>(branch)].values.push_back(value);
-    return branch;
-  }
-
-  std::vector<Branches> along_;
-  std::vector<std::vector<int>> first_;  ///< case → its branch → index into branches_
-  std::vector<CaseBranch> branches_;
-  std::map<std::pair<int, int>, std::vector<double>> met_;
-};
-
-/// Runs of one attractor, and all decided runs beside them.
-struct Extent {
-  int kind = -1, first = -1, last = -1;
-  std::set<std::size_t> cases;
-  std::set<int> values;
-  int symmetric = 0, asymmetric = 0, unknown = 0;
-};
-
-std::vector<Extent> extents_of(const Diagram& diagram) {
-  std::vector<Extent> out(static_cast<std::size_t>(diagram.attractors));
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c)
-    for (const Run& run : diagram.cases[c].runs) {
-      if (run.attractor == 0) continue;
-      Extent& extent = out[static_cast<std::size_t>(run.attractor) - 1];
-      extent.kind = run.kind;
-      extent.first = extent.first < 0 ? run.value : std::min(extent.first, run.value);
-      extent.last = std::max(extent.last, run.value);
-      extent.cases.insert(c);
-      extent.values.insert(run.value);
-      ++(!run.symmetric ? extent.unknown : *run.symmetric ? extent.symmetric : extent.asymmetric);
-    }
-  return out;
-}
-
-bool shows(const Diagram& diagram, std::size_t c, int value, int attractor) {
-  for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s)
-    if (const Run* run = diagram.run(c, value, s); run && run->attractor == attractor) return true;
-  return false;
-}
-
-bool decides(const Diagram& diagram, std::size_t c, int value) {
-  for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s)
-    if (const Run* run = diagram.run(c, value, s); run && run->decided()) return true;
-  return false;
-}
-
-Presence presence_of(const Diagram& diagram, const Extent& extent, int attractor) {
-  Presence out;
-  std::vector<double> shares;
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-    int told = 0, shown = 0;
-    for (const int value : extent.values)
-      if (decides(diagram, c, value)) {
-        ++told;
-        shown += shows(diagram, c, value, attractor);
-      }
-    if (told == 0) continue;
-    out.cases.push_back(c);
-    shares.push_back(static_cast<double>(shown) / told);
-  }
-  const double most = shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
-  for (const double share : shares) out.present.push_back(share > 0 && share >= kHalf * most);
-  return out;
-}
-
-/// Share of the starts that lead there, where a case shows it at all. A start counts once in the interval, however many
-/// values and cases repeat it: those are no independent trials.
-Proportion fraction_of(const Diagram& diagram, const Extent& extent, int attractor) {
-  std::vector<int> drawn, all;
-  for (int s = 0; s < static_cast<int>(diagram.starts.size()); ++s) {
-    all.push_back(s);
-    if (diagram.starts[static_cast<std::size_t>(s)].starts_with("random-")) drawn.push_back(s);
-  }
-  const std::vector<int>& starts = drawn.size() >= 2 ? drawn : all;
-  double reached = 0, tried = 0;
-  std::set<int> used;
-  for (const std::size_t c : extent.cases)
-    for (const int value : extent.values) {
-      if (!shows(diagram, c, value, attractor)) continue;
-      for (const int s : starts)
-        if (const Run* run = diagram.run(c, value, s); run && run->decided()) {
-          ++tried;
-          reached += run->attractor == attractor;
-          used.insert(s);
-        }
-    }
-  return wilson_interval(tried > 0 ? reached / tried : 0, static_cast<double>(used.size()));
-}
-
-std::optional<bool> symmetric(const Extent& extent) {
+std::optional<bool> symmetric(const AttractorExtent& extent) {
   if (extent.symmetric > 0 && extent.asymmetric == 0) return true;
   if (extent.asymmetric > 0 && extent.symmetric == 0) return false;
   return std::nullopt;
@@ -262,40 +52,39 @@ std::optional<bool> symmetric(const Extent& extent) {
 
 }  // namespace
 
-Table find_attractors(Diagram& diagram) {
-  Table distances = table_of_cases(*diagram.results, distances_head(diagram.swept));
-  const auto reference = reference_case(diagram);
-  Following following(diagram.cases.size());
-  for (int value = 0; value < static_cast<int>(diagram.values.size()); ++value) {
-    const Sections sections = sections_at(diagram, value);
-    if (reference) add_distances(diagram, sections, value, *reference, distances);
-    following.add(diagram, own_attractors(diagram, sections, value), value);
-  }
-  following.finish(diagram);
+Table find_attractors(StudyDiagram& study) {
+  Table distances = table_of_cases(*study.results, distances_head(study.swept));
+  const auto reference = reference_case(study.diagram);
+  ricochet::find_attractors(
+      study.diagram, [&](std::size_t c, const DiagramRun& run) { return settled_section(study, c, run); },
+      [&](int value, const ValueSections& sections) {
+        if (reference) add_distances(study, sections, value, *reference, distances);
+      });
   return distances;
 }
 
-Table attractors_table(const Diagram& diagram) {
-  Table table = attractors_head(diagram.swept);
-  const std::vector<Extent> extents = extents_of(diagram);
+Table attractors_table(const StudyDiagram& study) {
+  const Diagram& diagram = study.diagram;
+  Table table = attractors_head(study.swept);
+  const std::vector<AttractorExtent> extents = extents_of(diagram);
   for (std::size_t k = 0; k < extents.size(); ++k) {
-    const Extent& extent = extents[k];
-    if (extent.kind < 0) continue;
+    const AttractorExtent& extent = extents[k];
+    if (extent.first < 0) continue;
     const int attractor = static_cast<int>(k) + 1;
-    const std::string& kind = diagram.kind_name(extent.kind);
-    const bool periodic = kind.starts_with("periodic ");
+    const bool periodic = extent.motion.period > 0;
     const double from = diagram.values[static_cast<std::size_t>(extent.first)],
                  to = diagram.values[static_cast<std::size_t>(extent.last)];
-    const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), diagram.axes);
+    const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), study.axes);
     const Proportion fraction = fraction_of(diagram, extent, attractor);
     const std::string range = extent.first == extent.last
                                   ? "at " + short_number(from)
                                   : fmt::format("{} to {}, {}", short_number(from), short_number(to),
                                                 count_of(extent.values.size(), "value"));
-    table.rows.push_back({attractor, label.label, extent.cases.size(), from, to, periodic ? "periodic" : kind,
-                          periodic ? Cell(std::stoi(kind.substr(9))) : Cell(), symmetric(extent), fraction.value,
-                          fraction.low, fraction.high, label.presence,
-                          fmt::format("Attractor {} ({}, {}) {}", attractor, kind, range, label.sentence)});
+    table.rows.push_back(
+        {attractor, label.label, extent.cases.size(), from, to, text(extent.motion.regime),
+         periodic ? Cell(extent.motion.period) : Cell(), symmetric(extent), fraction.value, fraction.low, fraction.high,
+         label.presence,
+         fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
   }
   return table;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <tuple>
+#include <ricochet/measure/attractors/diagram.hpp>
 
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
@@ -14,11 +14,13 @@ namespace {
 constexpr double kSamePoint = 1e-3;
 constexpr std::size_t kLargestCycle = 64;
 
-int index_in(std::vector<std::string>& words, const std::string& word) {
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found != words.end()) return static_cast<int>(found - words.begin());
-  words.push_back(word);
-  return static_cast<int>(words.size()) - 1;
+/// Index of a start; new ones are added.
+int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
+  const auto found =
+      std::find_if(starts.begin(), starts.end(), [&](const DiagramStart& start) { return start.name == name; });
+  if (found != starts.end()) return static_cast<int>(found - starts.begin());
+  starts.push_back({name, is_random_start(name)});
+  return static_cast<int>(starts.size()) - 1;
 }
 
 std::string spoken(const std::string& pointer) {
@@ -37,74 +39,52 @@ std::string parameter_pointer(const StudyResults& results) {
   return parameter != results.study.end() && parameter->is_object() ? parameter->value("pointer", "") : "";
 }
 
-/// "periodic" with its period; "" for what is no attractor.
-std::string kind_of(const std::string& regime, const std::string& status, std::optional<double> period) {
-  if (status != "done") return "";
-  if (regime == "periodic" && period) return "periodic " + std::to_string(static_cast<int>(*period));
-  return regime == "no contact" || regime == "quasi-periodic" || regime == "chaotic" ? regime : "";
-}
-
-void read_runs(Diagram& diagram, CaseRuns& owner) {
-  const TableReader rows(*owner.table);
+void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
+  const TableReader rows(*source.table);
   const std::size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
                     period = rows.column("period"), symmetric = rows.column_if_any("symmetric"),
                     viscosity = rows.column_if_any("alpha_equivalent"), status = rows.column_if_any("status");
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto value = rows.number(r, parameter);
     if (!value) continue;
-    Run run;
+    DiagramRun run;
     run.parameter = *value;
-    run.row = r;
-    run.start = index_in(diagram.starts, rows.text(r, start));
-    run.regime = rows.text(r, regime);
+    run.start = start_in(study.diagram.starts, rows.text(r, start));
     run.status = status == TableReader::absent ? "done" : rows.text(r, status);
+    run.settled = run.status == "done";
     const auto repeats = rows.number(r, period);
-    if (const std::string kind = kind_of(run.regime, run.status, repeats); !kind.empty()) {
-      run.kind = index_in(diagram.kinds, kind);
-      owner.any_decided = true;
-    }
+    run.motion = motion_of(rows.text(r, regime), repeats, run.status);
     if (repeats && *repeats >= 1) run.period = static_cast<int>(*repeats);
     run.symmetric = rows.truth(r, symmetric);
     run.viscosity = rows.number(r, viscosity);
+    source.rows.push_back(r);
     owner.runs.push_back(std::move(run));
   }
 }
 
-void number_values(Diagram& diagram) {
-  std::set<double> values;
-  for (const CaseRuns& owner : diagram.cases)
-    for (const Run& run : owner.runs) values.insert(run.parameter);
-  diagram.values.assign(values.begin(), values.end());
-  for (CaseRuns& owner : diagram.cases) {
-    owner.at.assign(diagram.values.size() * diagram.starts.size(), -1);
-    for (std::size_t k = 0; k < owner.runs.size(); ++k) {
-      Run& run = owner.runs[k];
-      run.value = static_cast<int>(std::lower_bound(diagram.values.begin(), diagram.values.end(), run.parameter) -
-                                   diagram.values.begin());
-      owner.at[static_cast<std::size_t>(run.value) * diagram.starts.size() + static_cast<std::size_t>(run.start)] =
-          static_cast<int>(k);
-    }
+/// Of the contact law of a case. Stores of earlier versions do not hold it: there the axis tells that the penalties of
+/// this tree have, and a case without one is taken for rigid.
+std::optional<double> compliance_of(const CaseRecord& record) {
+  if (const NumberTable* table = find_table(record.numbers, contact_law_head().name); table && table->rows() == 1) {
+    const double told = table->values.front().front();
+    return std::isfinite(told) ? std::optional(told) : std::nullopt;
   }
+  const auto stiffness = axis(record, "contact.stiffness").number();
+  return stiffness ? 1 / *stiffness : 0;
 }
 
-CloudPoint scale_of(const Diagram& diagram) {
+CloudPoint scale_of(const StudyDiagram& study) {
   ScaleOfPoints scale;
-  for (const CaseRuns& owner : diagram.cases) {
-    const auto *x = owner.sections.column("tip_displacement"), *v = owner.sections.column("tip_velocity");
+  for (const DiagramSource& source : study.sources) {
+    const auto *x = source.sections.column("tip_displacement"), *v = source.sections.column("tip_velocity");
     if (!x || !v) continue;
     for (std::size_t k = 0; k < x->size(); ++k) scale.add({(*x)[k], (*v)[k]});
-    const auto *later_x = owner.sections.column("opposite_displacement"),
-               *later_v = owner.sections.column("opposite_velocity");
+    const auto *later_x = source.sections.column("opposite_displacement"),
+               *later_v = source.sections.column("opposite_velocity");
     if (!later_x || !later_v) continue;
     for (std::size_t k = 0; k < later_x->size(); ++k) scale.add({-(*later_x)[k], -(*later_v)[k]});
   }
   return scale.scale();
-}
-
-/// Points per cycle of a run; 0: it is no cycle.
-int cycle_of(const Run& run) {
-  if (run.regime == "periodic" && run.period > 0) return run.period;
-  return run.regime == "no contact" ? std::max(run.period, 1) : 0;
 }
 
 }  // namespace
@@ -149,87 +129,73 @@ SectionReadings SectionIndex::read(double key, const std::string& word) const {
   return out;
 }
 
-const Run* Diagram::run(std::size_t case_index, int value, int start) const {
-  const CaseRuns& owner = cases[case_index];
-  const int k = owner.at[static_cast<std::size_t>(value) * starts.size() + static_cast<std::size_t>(start)];
-  return k < 0 ? nullptr : &owner.runs[static_cast<std::size_t>(k)];
-}
-
-Diagram read_diagram(const StudyResults& results) {
-  Diagram diagram;
-  diagram.results = &results;
-  diagram.swept = swept_columns(results);
-  diagram.parameter = spoken(parameter_pointer(results));
+StudyDiagram read_diagram(const StudyResults& results) {
+  StudyDiagram study;
+  study.results = &results;
+  study.swept = swept_columns(results);
+  study.parameter = spoken(parameter_pointer(results));
   const auto section = results.study.find("section");
-  diagram.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
+  study.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
   std::vector<const CaseRecord*> records;
   for (const CaseRecord& record : results.cases) {
     const Table* table = find_table(record.tables, "values");
     if (!table) continue;
-    diagram.cases.push_back({&record, table, SectionIndex(record, "points", "parameter", "start"), {}, {}});
     records.push_back(&record);
-    read_runs(diagram, diagram.cases.back());
+    DiagramSource& source =
+        study.sources.emplace_back(DiagramSource{&record, table, SectionIndex(record, "points", "parameter", "start")});
+    DiagramCase& owner = study.diagram.cases.emplace_back();
+    owner.compliance = compliance_of(record);
+    owner.steps_per_period = axis(record, "steps_per_period").number().value_or(0);
+    owner.elements = axis(record, "elements").number().value_or(0);
+    read_runs(study, source, owner);
   }
-  number_values(diagram);
-  diagram.scale = scale_of(diagram);
-  diagram.axes = axes_of(results, records);
-  return diagram;
+  study.diagram.number_values();
+  study.scale = scale_of(study);
+  study.axes = axes_of(results, records);
+  return study;
 }
 
-SettledSection settled_section(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
-  const SectionReadings readings =
-      owner.sections.read(run.parameter, diagram.starts[static_cast<std::size_t>(run.start)]);
-  const int cycle = cycle_of(run);
-  SettledSection out{run.kind, cycle > 0, {}};
-  if (cycle == 0 || diagram.strobed) {
-    out.cloud = make_cloud(readings.points, readings.opposite, diagram.scale, cycle);
+SettledSection settled_section(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
+  const SectionReadings readings = study.sources[case_index].sections.read(
+      run.parameter, study.diagram.starts[static_cast<std::size_t>(run.start)].name);
+  const int cycle = run.cycle();
+  SettledSection out{run.motion, cycle > 0, {}};
+  if (cycle == 0 || study.strobed) {
+    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, cycle);
     return out;
   }
   // Impacts or extrema: how many there are in a cycle is seen from the points themselves.
   const auto half = [&](const std::vector<CloudPoint>& points) {
     std::vector<CloudPoint> last;
     for (std::size_t k = points.size() / 2; k < points.size(); ++k)
-      last.push_back({points[k][0] / diagram.scale[0], points[k][1] / diagram.scale[1]});
+      last.push_back({points[k][0] / study.scale[0], points[k][1] / study.scale[1]});
     return distinct_points(last, kSamePoint);
   };
   out.cloud.points = half(readings.points);
   out.cloud.opposite = half(readings.opposite);
   if (out.cloud.points.size() > kLargestCycle || out.cloud.opposite.size() > kLargestCycle)
-    out.cloud = make_cloud(readings.points, readings.opposite, diagram.scale, 0);
+    out.cloud = make_cloud(readings.points, readings.opposite, study.scale, 0);
   return out;
 }
 
-HalvesNull null_of(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
-  const SectionReadings readings =
-      owner.sections.read(run.parameter, diagram.starts[static_cast<std::size_t>(run.start)]);
-  return null_of_halves(readings.points, diagram.scale, diagram.strobed ? cycle_of(run) : 0);
+HalvesNull null_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
+  const SectionReadings readings = study.sources[case_index].sections.read(
+      run.parameter, study.diagram.starts[static_cast<std::size_t>(run.start)].name);
+  return null_of_halves(readings.points, study.scale, study.strobed ? run.cycle() : 0);
 }
 
-std::optional<std::size_t> reference_case(const Diagram& diagram) {
-  std::optional<std::size_t> best;
-  std::tuple<double, double, double> best_rank;
-  for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-    if (!diagram.cases[c].any_decided) continue;
-    const CaseRecord& record = *diagram.cases[c].record;
-    // A rigid contact has no stiffness: stiffer than any.
-    const double stiffness = axis(record, "contact.stiffness").number().value_or(INFINITY);
-    const std::tuple rank(stiffness, axis(record, "steps_per_period").number().value_or(0),
-                          axis(record, "elements").number().value_or(0));
-    if (!best || rank > best_rank) {
-      best = c;
-      best_rank = rank;
-    }
-  }
-  return best;
-}
-
-std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run) {
+std::optional<double> viscosity_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
   const std::string path = "structure.damping.stiffness";
-  if (diagram.parameter == path) return run.parameter;
-  if (const auto value = axis(*owner.record, path).number()) return value;
+  if (study.parameter == path) return run.parameter;
+  if (const auto value = axis(study.record(case_index), path).number()) return value;
   const Json::json_pointer pointer("/scene/structure/damping/stiffness");
-  const Json& study = diagram.results->study;
-  return study.contains(pointer) ? cell_of(study.at(pointer)).number() : std::nullopt;
+  const Json& text = study.results->study;
+  return text.contains(pointer) ? cell_of(text.at(pointer)).number() : std::nullopt;
+}
+
+MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status) {
+  if (status != "done") return {Regime::failed};
+  return motion_class(regime, period).value_or(MotionClass{});
 }
 
 std::vector<ChoiceAxis> axes_of(const StudyResults& results, const std::vector<const CaseRecord*>& cases) {

@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <ricochet/measure/attractors/attractors.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <string>
 #include <utility>
@@ -39,61 +40,41 @@ class SectionIndex {
   std::map<std::pair<double, std::string>, std::vector<Range>> ranges_;
 };
 
-/// What one value of the parameter and one start came to.
-struct Run {
-  double parameter = 0;
-  int value = 0, start = 0;  ///< indices into Diagram::values and Diagram::starts
-  int kind = -1;             ///< index into Diagram::kinds; < 0: undecided or failed, and never an attractor
-  int period = 0;            ///< of a periodic run
-  std::string regime, status;
-  std::optional<bool> symmetric;
-  std::optional<double> viscosity;  ///< alpha_equivalent, s
-  int attractor = 0;                ///< from 1; 0: none
-  std::size_t row = 0;              ///< of the case's table
-  bool decided() const { return kind >= 0; }
-};
-
-/// One case with its runs in the order of its table.
-struct CaseRuns {
+/// What a case of the diagram was read from.
+struct DiagramSource {
   const CaseRecord* record = nullptr;
   const Table* table = nullptr;
   SectionIndex sections;
-  std::vector<Run> runs;
-  std::vector<int> at;  ///< value × starts + start → index into runs, −1 where there is none
-  bool any_decided = false;
+  std::vector<std::size_t> rows = {};  ///< of the runs, in the table
 };
 
-/// The whole study.
-struct Diagram {
+/// The whole study: its diagram, beside what it was read from.
+struct StudyDiagram {
   const StudyResults* results = nullptr;
   SweptColumns swept;
   std::string parameter;  ///< in the study's words: "support.amplitude"
   bool strobed = true;
-  std::vector<double> values;  ///< of all cases, ascending
-  std::vector<std::string> starts, kinds;
-  std::vector<CaseRuns> cases;   ///< those with a table of values
-  std::vector<ChoiceAxis> axes;  ///< one per column of the study, a level for each of `cases`
+  Diagram diagram;                     ///< of the cases with a table of values
+  std::vector<DiagramSource> sources;  ///< of these cases
+  std::vector<ChoiceAxis> axes;        ///< one per column of the study, a level for each of these cases
   CloudPoint scale = {1, 1};
-  int attractors = 0;  ///< identities run from 1 to this
 
-  const Run* run(std::size_t case_index, int value, int start) const;
-  /// Class of a kind in words: "periodic 2", "chaotic".
-  const std::string& kind_name(int kind) const { return kinds[static_cast<std::size_t>(kind)]; }
+  const CaseRecord& record(std::size_t case_index) const { return *sources[case_index].record; }
 };
 
 /// Reads the cases. Points are only looked at for the scale.
-Diagram read_diagram(const StudyResults& results);
+StudyDiagram read_diagram(const StudyResults& results);
 
 /// The section of a run, ready to be compared. Where it is periodic: the points of its cycle.
-SettledSection settled_section(const Diagram& diagram, const CaseRuns& owner, const Run& run);
+SettledSection settled_section(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run);
 /// How far a run is from itself.
-HalvesNull null_of(const Diagram& diagram, const CaseRuns& owner, const Run& run);
-
-/// Index of the reference case; none where no case has anything decided.
-std::optional<std::size_t> reference_case(const Diagram& diagram);
+HalvesNull null_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run);
 
 /// α of a run (s); nothing where the study has no such number.
-std::optional<double> viscosity_of(const Diagram& diagram, const CaseRuns& owner, const Run& run);
+std::optional<double> viscosity_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run);
+
+/// The class of a row of a table of the cases: `failed` where its status is not done, undecided where it names none.
+MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status);
 
 /// The axes of the study, with a level for each of the cases.
 std::vector<ChoiceAxis> axes_of(const StudyResults& results, const std::vector<const CaseRecord*>& cases);

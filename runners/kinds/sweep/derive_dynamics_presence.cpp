@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
 
@@ -10,57 +8,6 @@ namespace ricochet::dynamics {
 namespace {
 
 constexpr std::size_t kMostLevels = 8;
-
-bool refines(const std::string& axis) {
-  return axis == "steps_per_period" || axis == "elements";
-}
-
-double size_of(const std::string& level) {
-  try {
-    return std::stod(level);
-  } catch (const std::exception&) {
-    return 0;
-  }
-}
-
-/// Whether the finest case of each group of like cases lacks what a coarser one shows.
-bool vanishes(const Presence& presence, const std::vector<ChoiceAxis>& axes) {
-  struct Finest {
-    std::vector<double> size;
-    int present = 0;
-    bool varied = false, coarser = false;
-  };
-  std::map<std::vector<std::string>, Finest> groups;
-  for (std::size_t k = 0; k < presence.cases.size(); ++k) {
-    std::vector<std::string> others;
-    std::vector<double> size;
-    for (const ChoiceAxis& axis : axes) {
-      const std::string& level = axis.levels[presence.cases[k]];
-      if (refines(axis.name))
-        size.push_back(size_of(level));
-      else
-        others.push_back(level);
-    }
-    const auto [found, fresh] = groups.try_emplace(others, Finest{size, presence.present[k], false, false});
-    if (fresh) continue;
-    Finest& finest = found->second;
-    finest.varied = true;
-    // Finest: not coarser in any way; of two that are each finer in one, the one with more steps.
-    if (size > finest.size) {
-      finest.coarser = finest.coarser || finest.present;
-      finest.size = size;
-      finest.present = presence.present[k];
-    } else {
-      finest.coarser = finest.coarser || presence.present[k];
-    }
-  }
-  bool coarser = false;
-  for (const auto& [others, finest] : groups) {
-    if (finest.present || !finest.varied) return false;
-    coarser = coarser || finest.coarser;
-  }
-  return coarser;
-}
 
 std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<std::size_t>& chosen, std::size_t c) {
   std::string out;
@@ -101,18 +48,14 @@ std::string count_of(std::size_t count, const std::string& one) {
 }
 
 PresenceLabel label_presence(const Presence& presence, const std::vector<ChoiceAxis>& axes) {
+  const PresenceVerdict verdict = judge_presence(presence, axes);
+  const DecidingChoice& choice = verdict.choice;
   const std::size_t told = presence.cases.size();
-  const auto shown = static_cast<std::size_t>(std::count(presence.present.begin(), presence.present.end(), 1));
-  const std::string all = fmt::format("{} of {}", shown, count_of(told, "case"));
-  if (told < 2) return {"not compared", all, "is seen by the only case that decides there: nothing to compare."};
-  if (shown == told) return {"common to all", all, fmt::format("is common to all {} cases.", told)};
-  std::vector<ChoiceAxis> here;
-  for (const ChoiceAxis& axis : axes) {
-    ChoiceAxis one{axis.name, {}};
-    for (const std::size_t c : presence.cases) one.levels.push_back(axis.levels[c]);
-    here.push_back(std::move(one));
-  }
-  const DecidingChoice choice = deciding_choice(presence.present, here);
+  const std::string all = fmt::format("{} of {}", verdict.shown, count_of(told, "case"));
+  if (verdict.kind == PresenceKind::not_compared)
+    return {"not compared", all, "is seen by the only case that decides there: nothing to compare."};
+  if (verdict.kind == PresenceKind::common)
+    return {"common to all", all, fmt::format("is common to all {} cases.", told)};
   std::string levels;
   const auto by_level = counts(presence, axes, choice.axes);
   for (std::size_t k = 0; k < std::min(by_level.size(), kMostLevels); ++k)
@@ -120,10 +63,10 @@ PresenceLabel label_presence(const Presence& presence, const std::vector<ChoiceA
                           by_level[k].second.first);
   if (by_level.size() > kMostLevels) levels += ", …";
   const std::string text = choice.name.empty() ? all : choice.name + " " + levels;
-  if (vanishes(presence, axes))
+  if (verdict.kind == PresenceKind::vanishes)
     return {"vanishes under refinement", text,
             fmt::format("vanishes under refinement: {} show it, none of them the finest of its kind ({}).", all, text)};
-  if (choice.share < kNamed)
+  if (verdict.kind == PresenceKind::several_choices)
     return {"depends on several choices", text,
             fmt::format("shows in {}, and no one choice tells which (the best of them: {}).", all, text)};
   return {"depends on " + choice.name, text,

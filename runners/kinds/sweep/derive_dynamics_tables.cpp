@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <cmath>
+#include <ricochet/measure/attractors/diagram_changes.hpp>
 
 #include "runners/kinds/sweep/derive_dynamics_parts.hpp"
 #include "runners/store/record_values.hpp"
@@ -12,20 +11,11 @@ constexpr double kReach = 0.1;
 
 /// Whether a class is none: what comes before or after it is no change of the motion.
 bool open(const std::string& regime) {
-  return regime == "undecided" || regime == "failed";
+  return regime == text(Regime::undecided) || regime == text(Regime::failed);
 }
 
-/// One located change of a case.
-struct Change {
-  std::string start, from, to, kind;
-  double value = 0, low = 0, high = 0;
-  bool like(const Change& other) const {
-    return start == other.start && from == other.from && to == other.to && kind == other.kind;
-  }
-};
-
-std::vector<Change> changes_of(const CaseRecord& record) {
-  std::vector<Change> out;
+std::vector<DiagramChange> changes_of(const CaseRecord& record) {
+  std::vector<DiagramChange> out;
   const Table* table = find_table(record.tables, "bifurcations");
   if (!table) return out;
   const TableReader rows(*table);
@@ -41,68 +31,39 @@ std::vector<Change> changes_of(const CaseRecord& record) {
   return out;
 }
 
-/// Index in `here` of the change that each of `reference` became, −1 where none is left within `reach`: the nearest
-/// pairs first.
-std::vector<int> nearest_changes(const std::vector<Change>& reference, const std::vector<Change>& here, double reach) {
-  struct Pair {
-    double distance;
-    std::size_t one, other;
-  };
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < reference.size(); ++i)
-    for (std::size_t j = 0; j < here.size(); ++j)
-      if (reference[i].like(here[j]) && std::abs(reference[i].value - here[j].value) <= reach)
-        pairs.push_back({std::abs(reference[i].value - here[j].value), i, j});
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
-  std::vector<int> out(reference.size(), -1);
-  std::vector<char> taken(here.size(), 0);
-  for (const Pair& pair : pairs)
-    if (out[pair.one] < 0 && !taken[pair.other]) {
-      out[pair.one] = static_cast<int>(pair.other);
-      taken[pair.other] = 1;
-    }
-  return out;
-}
-
 }  // namespace
 
-Table agreement_table(const Diagram& diagram) {
+Table agreement_table(const StudyDiagram& study) {
   Table table = agreement_head();
-  if (diagram.cases.size() < 2) return table;
-  for (const CaseRuns& one : diagram.cases)
-    for (const CaseRuns& other : diagram.cases) {
-      int compared = 0, same_class = 0, same_attractor = 0;
-      for (std::size_t k = 0; k < one.at.size(); ++k) {
-        if (one.at[k] < 0 || other.at[k] < 0) continue;
-        const Run &a = one.runs[static_cast<std::size_t>(one.at[k])],
-                  &b = other.runs[static_cast<std::size_t>(other.at[k])];
-        if (!a.decided() || !b.decided()) continue;
-        ++compared;
-        same_class += a.kind == b.kind;
-        same_attractor += a.attractor == b.attractor;
-      }
-      const auto share = [&](int count) { return compared > 0 ? Cell(static_cast<double>(count) / compared) : Cell(); };
-      table.rows.push_back({one.record->id, other.record->id, compared, same_class, share(same_class), same_attractor,
-                            share(same_attractor)});
+  const std::vector<DiagramCase>& cases = study.diagram.cases;
+  if (cases.size() < 2) return table;
+  for (std::size_t a = 0; a < cases.size(); ++a)
+    for (std::size_t b = 0; b < cases.size(); ++b) {
+      const auto [compared, same_class, same_attractor] = agreement(cases[a], cases[b]);
+      const auto share = [all = compared](int count) {
+        return all > 0 ? Cell(static_cast<double>(count) / all) : Cell();
+      };
+      table.rows.push_back({study.record(a).id, study.record(b).id, compared, same_class, share(same_class),
+                            same_attractor, share(same_attractor)});
     }
   return table;
 }
 
-Table shifts_table(const Diagram& diagram) {
-  Table table = table_of_cases(*diagram.results, shifts_head(diagram.swept));
+Table shifts_table(const StudyDiagram& study) {
+  const Diagram& diagram = study.diagram;
+  Table table = table_of_cases(*study.results, shifts_head(study.swept));
   const auto reference = reference_case(diagram);
   if (!reference) return table;
-  const CaseRecord& standard = *diagram.cases[*reference].record;
-  const std::vector<Change> expected = changes_of(standard);
+  const CaseRecord& standard = study.record(*reference);
+  const std::vector<DiagramChange> expected = changes_of(standard);
   const double reach = kReach * (diagram.values.back() - diagram.values.front());
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
-    const CaseRuns& owner = diagram.cases[c];
-    if (c == *reference || !owner.any_decided) continue;
-    const std::vector<Change> here = changes_of(*owner.record);
-    const std::vector<int> match = nearest_changes(expected, here, reach);
+    if (c == *reference || !diagram.cases[c].any_decided()) continue;
+    const std::vector<DiagramChange> here = changes_of(study.record(c));
+    const std::vector<int> match = match_changes(expected, here, reach);
     std::vector<char> used(here.size(), 0);
-    const auto add = [&](const Change& change, const Change* standing, const Change* found) {
-      Row row = place_of(*diagram.results, *owner.record);
+    const auto add = [&](const DiagramChange& change, const DiagramChange* standing, const DiagramChange* found) {
+      Row row = place_of(*study.results, study.record(c));
       row.insert(row.end(), {standard.id, change.start, change.from, change.to, change.kind});
       row.push_back(standing ? Cell(standing->value) : Cell());
       row.push_back(found ? Cell(found->value) : Cell());

@@ -2,9 +2,10 @@
 #include <functional>
 #include <memory>
 #include <ricochet/contract/registry.hpp>
-#include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/lane_groups.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/study/study.hpp"
@@ -20,12 +21,10 @@ struct ForcedScene {
 };
 
 /// The scenes of one case of a sweep: the case at each value of its parameters, sorted into groups that march as lanes
-/// of one factorisation (same matrices, same step, same plan; amplitude, phase, stops, initial state and the law's
-/// per-lane parameters may differ).
+/// of one factorisation (LaneGroups).
 class ForcedScenes {
  public:
-  ForcedScenes(const StudyCase& study_case, const Registry& registry);
-  ~ForcedScenes();
+  ForcedScenes(const StudyCase& study_case, const Registry& registry) : case_(study_case), registry_(registry) {}
 
   /// Prepares one more scene; its number is the count before. Refusals and bad values are kept, not thrown.
   int add(const std::function<StudyCase()>& variant);
@@ -34,35 +33,32 @@ class ForcedScenes {
 
   const ForcedScene& operator[](int scene) const { return scenes_[static_cast<std::size_t>(scene)]; }
   int count() const { return static_cast<int>(scenes_.size()); }
-  int groups() const { return static_cast<int>(groups_.size()); }
+  int groups() const { return groups_.count(); }
 
-  /// What the scenes of a group share.
-  const SemiDiscrete& problem(int group) const;
-  std::shared_ptr<const SemiDiscrete> shared_problem(int group) const;
-  const StepPlan& plan(int group) const;
-  double step(int group) const;
-  const std::vector<std::string>& notes(int group) const;
-  const char* operator_chosen() const;
-  std::vector<LeftOut> left_out(int group) const;
-  /// Seconds per step of a block of `lanes`, as predicted.
-  double predicted_step_seconds(int group, int lanes) const;
-
-  /// A program for these lanes, with `tangents` columns each. The operator is the same for all programs of the case, so
-  /// that states are in the same coordinates and bits do not depend on the number of lanes.
-  Program program(int group, std::vector<LaneSpec> lanes, int tangents = 0) const;
-
-  /// A state of one group in the coordinates and slots of another: displacements as they are, velocities kept while
-  /// the step changes.
-  LaneState carry(const LaneState& state, int from, int to) const;
+  /// What the scenes of a group share, as LaneGroups has it.
+  const SemiDiscrete& problem(int group) const { return *groups_.problem(group); }
+  std::shared_ptr<const SemiDiscrete> shared_problem(int group) const { return groups_.problem(group); }
+  const StepPlan& plan(int group) const { return groups_.plan(group); }
+  double step(int group) const { return groups_.step(group); }
+  const std::vector<std::string>& notes(int group) const { return problem(group).notes; }
+  const char* operator_chosen() const { return groups_.operator_chosen(); }
+  const std::vector<LeftOut>& left_out(int group) const { return groups_.left_out(group); }
+  double predicted_step_seconds(int group, int lanes) const { return groups_.predicted_step_seconds(group, lanes); }
+  Program program(int group, std::vector<LaneSpec> lanes, int tangents = 0) const {
+    return groups_.program(group, std::move(lanes), tangents);
+  }
+  LaneState carry(const LaneState& state, int from, int to) const { return groups_.carry(state, from, to); }
 
  private:
-  struct Group;
-  int group_of(std::unique_ptr<Group> candidate);
-
   const StudyCase& case_;
   const Registry& registry_;
   std::vector<ForcedScene> scenes_;
-  std::vector<std::unique_ptr<Group>> groups_;
+  LaneGroups groups_;
 };
+
+/// Item and reason of what the march of a case does without; tangents belong to the exponents, where these are asked
+/// for.
+std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScenes& scenes,
+                                                                const StudyCase& study_case);
 
 }  // namespace ricochet

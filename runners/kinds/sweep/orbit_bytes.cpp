@@ -14,6 +14,15 @@ void describe_state(Archive& archive, State& state) {
   archive(state.memory);
 }
 
+template <class Archive, class End>
+void describe_end(Archive& archive, End& end) {
+  archive(end.cause);
+  archive(end.value);
+  archive(end.bound);
+  archive(end.factor);
+  archive(end.count);
+}
+
 template <class Archive, class One>
 void describe_orbit(Archive& archive, One& orbit) {
   archive(orbit.task);
@@ -21,7 +30,7 @@ void describe_orbit(Archive& archive, One& orbit) {
   archive(orbit.transient_periods);
   archive(orbit.kept_periods);
   archive(orbit.settled);
-  archive(orbit.cause);
+  describe_end(archive, orbit.end);
   archive(orbit.stopped_period);
   archive(orbit.settling.scale);
   archive(orbit.settling.tolerance);
@@ -43,7 +52,7 @@ void describe_orbit(Archive& archive, One& orbit) {
   describe_state(archive, orbit.now);
 }
 
-constexpr std::uint64_t mark = 0x3174696272'0001;  // what the bytes are, and their version
+constexpr std::uint64_t mark = 0x3174696272'0002;  // what the bytes are, and their version
 
 }  // namespace
 

@@ -36,4 +36,30 @@ void OrbitCheckpoints::forget() {
   shelf_.keep(part(-1), "");
 }
 
+std::string ExponentCheckpoints::part(std::size_t batch) const {
+  return fmt::format("exponents/{}/{}", key_, batch);
+}
+
+void ExponentCheckpoints::note(std::size_t batch) {
+  const std::lock_guard guard(mutex_);
+  kept_.insert(batch);
+}
+
+void ExponentCheckpoints::serve(ExponentTask& task) {
+  if (!shelf_.find || !shelf_.keep) return;
+  task.find = [this](std::size_t batch) {
+    const std::string bytes = shelf_.find(part(batch));
+    if (!bytes.empty()) note(batch);
+    return bytes;
+  };
+  task.keep = [this](std::size_t batch, const std::string& bytes) {
+    shelf_.keep(part(batch), bytes);
+    note(batch);
+  };
+}
+
+void ExponentCheckpoints::forget() {
+  for (const std::size_t batch : kept_) shelf_.keep(part(batch), "");
+}
+
 }  // namespace ricochet

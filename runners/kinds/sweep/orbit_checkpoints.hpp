@@ -1,5 +1,10 @@
 #pragma once
+#include <mutex>
+#include <set>
+#include <string>
+
 #include "runners/kinds/comparison/references.hpp"
+#include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
 namespace ricochet {
@@ -22,6 +27,24 @@ class OrbitCheckpoints {
   const MotionShelf& shelf_;
   std::string key_;
   int parts_ = 0;
+};
+
+/// Batches of exponents that a killed run had measured, read when they are asked for and forgotten at the end.
+class ExponentCheckpoints {
+ public:
+  ExponentCheckpoints(const MotionShelf& shelf, std::string key) : shelf_(shelf), key_(std::move(key)) {}
+  /// Lets the task keep its batches here, and find them.
+  void serve(ExponentTask& task);
+  void forget();
+
+ private:
+  std::string part(std::size_t batch) const;
+  void note(std::size_t batch);
+
+  const MotionShelf& shelf_;
+  std::string key_;
+  std::mutex mutex_;
+  std::set<std::size_t> kept_;
 };
 
 }  // namespace ricochet

@@ -47,7 +47,7 @@ void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const 
   NumberTable table = entries_head();
   table.words = {{"start", starts}};
   for (const OrbitView& view : views) {
-    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    if (!view.complete()) continue;
     const std::vector<double> state = flat(view.orbit->entry);
     if (entry_columns * (table.rows() + state.size()) > most_entry_numbers) {
       record.notes.push_back(

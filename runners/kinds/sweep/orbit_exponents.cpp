@@ -8,6 +8,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <ricochet/measure/orbits/exponent_intervals.hpp>
 #include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
@@ -28,48 +29,6 @@ struct Batch {
   std::vector<std::size_t> orbits;
 };
 
-Interval interval_of(const std::vector<double>& rates) {
-  if (rates.size() >= static_cast<std::size_t>(fewest_resampled)) return block_bootstrap_mean(rates);
-  double mean = 0;
-  for (const double rate : rates) mean += rate / static_cast<double>(rates.size());
-  return {mean, mean, mean};
-}
-
-double spread(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean = 0, sum = 0;
-  const auto count = static_cast<double>(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) mean += (a[i] + b[i]) / count;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] + b[i] - mean) * (a[i] + b[i] - mean) / count;
-  return sum;
-}
-
-// Exponents of the columns. Two multipliers that are a complex pair turn their plane: each column's growth swings from
-// period to period while that of the area does not, and both exponents are half of it.
-std::vector<Interval> intervals_of(const std::vector<std::vector<double>>& rates, int count) {
-  constexpr double steadier = 0.05;  // variance of the area's growth over that of one column
-  std::vector<Interval> found;
-  for (std::size_t k = 0; k < rates.size() && static_cast<int>(found.size()) < count; ++k) {
-    if (k + 1 < rates.size()) {
-      const double alone = spread(rates[k], std::vector<double>(rates[k].size(), 0.0));
-      const auto count_of = static_cast<double>(rates[k].size());
-      double apart = 0;
-      for (std::size_t i = 0; i < rates[k].size(); ++i) apart += (rates[k][i] - rates[k + 1][i]) / count_of;
-      // Two real multipliers stay apart; the means of a pair's columns agree up to their swing.
-      const bool together = apart * apart <= 16 * alone / count_of;
-      if (together && spread(rates[k], rates[k + 1]) < steadier * alone) {
-        std::vector<double> half(rates[k].size());
-        for (std::size_t i = 0; i < half.size(); ++i) half[i] = 0.5 * (rates[k][i] + rates[k + 1][i]);
-        found.insert(found.end(), 2, interval_of(half));
-        ++k;
-        continue;
-      }
-    }
-    found.push_back(interval_of(rates[k]));
-  }
-  found.resize(std::min(found.size(), static_cast<std::size_t>(count)));
-  return found;
-}
-
 template <class Archive, class Exponents>
 void describe_exponents(Archive& archive, Exponents& exponents) {
   bool twin = exponents.twin.has_value();
@@ -79,7 +38,6 @@ void describe_exponents(Archive& archive, Exponents& exponents) {
   if (twin)
     for (auto Interval::*part : {&Interval::value, &Interval::low, &Interval::high}) archive((*exponents.twin).*part);
   archive(exponents.method);
-  archive(exponents.cause);
 }
 
 bool usable(const std::vector<double>& rates) {
@@ -136,11 +94,10 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
       for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
         OrbitExponents& exponents = found[batch.orbits[b]];
-        exponents.cause = rates[b].cause;
-        if (!rates[b].cause.empty()) continue;
+        if (rates[b].end) continue;
         // A column beyond what the state can tell apart has no growth to speak of.
         const auto& all = rates[b].rates;
-        exponents.values = intervals_of({all.begin(), std::find_if_not(all.begin(), all.end(), usable)}, count);
+        exponents.values = exponent_intervals({all.begin(), std::find_if_not(all.begin(), all.end(), usable)}, count);
         exponents.method = rates[b].jumps > 0 ? "tangent+jump" : "tangent";
       }
     } catch (const Refusal&) {
@@ -153,8 +110,8 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     const auto twin = twin_rates(scenes.program(batch.group, lanes), states, rates, one, twin_offset);
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
-      if (!twin[b].cause.empty() || !usable(twin[b].rates[0])) continue;
-      exponents.twin = interval_of(twin[b].rates[0]);
+      if (twin[b].end || !usable(twin[b].rates[0])) continue;
+      exponents.twin = exponent_interval(twin[b].rates[0]);
       if (tangents) continue;
       exponents.values = {*exponents.twin};
       exponents.method = fmt::format("twin({:g})", twin_offset);

@@ -15,7 +15,6 @@ struct OrbitExponents {
   std::vector<Interval> values;  ///< largest first; those owed to the scheme set apart
   std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
   std::string method;            ///< "tangent", "tangent+jump", "twin(1e-07)"; "" where none could be measured
-  std::string cause;             ///< why not
 };
 
 /// What the stability analysis says of roots of modulus one that are the scheme's.

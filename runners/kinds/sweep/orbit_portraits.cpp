@@ -51,7 +51,7 @@ void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::ve
                    const SectionPlan& plan) {
   std::vector<const OrbitView*> complete;
   for (const OrbitView& view : views)
-    if (view.orbit && view.orbit->stage == Orbit::Stage::complete) complete.push_back(&view);
+    if (view.complete()) complete.push_back(&view);
   if (complete.empty()) return;
   if (complete.size() > most_portraits) {
     record.notes.push_back(
@@ -64,7 +64,7 @@ void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::ve
   if (const NumberTable* points = find_table(record.numbers, "points")) table.words = {points->words.front()};
   std::map<std::pair<int, int>, std::vector<const OrbitView*>> batches;  // by group and periods
   for (const OrbitView* view : complete) {
-    const int period = view->verdict.period > 0 ? std::min(view->verdict.period, longest) : longest;
+    const int period = view->judged.verdict.period > 0 ? std::min(view->judged.verdict.period, longest) : longest;
     batches[{view->group, period}].push_back(view);
   }
   for (const auto& [key, members] : batches)

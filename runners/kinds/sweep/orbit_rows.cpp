@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <ricochet/measure/orbits/zero_one_test.hpp>
 #include <span>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
@@ -19,25 +18,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double impacts_per_period(const Orbit& orbit) {
-  if (orbit.impact_counts.empty()) return 0;
-  const double sum = std::accumulate(orbit.impact_counts.begin(), orbit.impact_counts.end(), 0.0);
-  return sum / static_cast<double>(orbit.impact_counts.size());
-}
-
-std::string class_text(const OrbitView& view) {
-  std::string text = regime_name(view.verdict.regime);
-  if (view.verdict.regime == Regime::periodic) text += fmt::format(" {}", view.verdict.period);
-  return text;
-}
+constexpr const char* contact_word = "contact";  // beyond a grazing, whatever class of motion it is
 
 Row value_row(const OrbitView& view, const std::string& start, int exponents, const SectionPlan& plan) {
-  const bool complete = view.orbit && view.orbit->stage == Orbit::Stage::complete;
-  const RegimeVerdict& verdict = view.verdict;
-  Row row = {view.value, start, regime_name(complete ? verdict.regime : Regime::failed)};
+  const bool complete = view.complete();
+  const RegimeVerdict& verdict = view.judged.verdict;
+  Row row = {view.value, start, text(complete ? verdict.motion.regime : Regime::failed)};
   row.push_back(complete && verdict.period > 0 ? Cell(verdict.period) : Cell());
   row.push_back(complete ? Cell(impacts_per_period(*view.orbit)) : Cell());
-  row.push_back(complete ? Cell(view.symmetric) : Cell());
+  row.push_back(complete ? Cell(view.judged.symmetric) : Cell());
   for (std::size_t k = 0; k < static_cast<std::size_t>(exponents); ++k) {
     const bool known = k < view.exponents.values.size();
     for (const double Interval::*part : {&Interval::value, &Interval::low, &Interval::high})
@@ -50,7 +39,7 @@ Row value_row(const OrbitView& view, const std::string& start, int exponents, co
   row.push_back(view.viscosity ? Cell(view.viscosity->numerical) : Cell());
   if (complete) {
     const Orbit& orbit = *view.orbit;
-    row.insert(row.end(), {view.recurrence.distance, view.recurrence.contraction, view.zero_one,
+    row.insert(row.end(), {view.judged.recurrence.distance, view.judged.recurrence.contraction, view.judged.zero_one,
                            orbit.transient_periods, orbit.settled, orbit.most_on_a_side >= chatter_impacts,
                            static_cast<double>(orbit.contact_steps) /
                                (static_cast<double>(orbit.kept_periods) * plan.steps_per_period),
@@ -69,7 +58,7 @@ Row value_row(const OrbitView& view, const std::string& start, int exponents, co
 std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
   const std::span<const ImpactPoint> all(view.orbit->impacts);
   const std::vector<int>& counts = view.orbit->impact_counts;
-  const auto periods = static_cast<std::size_t>(view.recurrence.period);
+  const auto periods = static_cast<std::size_t>(view.judged.recurrence.period);
   if (periods == 0 || periods > counts.size()) return all;
   const auto last =
       static_cast<std::size_t>(std::accumulate(counts.end() - static_cast<std::ptrdiff_t>(periods), counts.end(), 0));
@@ -81,13 +70,12 @@ Table changes(const std::vector<OrbitView>& views, const std::vector<std::string
   const OrbitView* before = nullptr;
   for (const OrbitView& view : views) {
     if (before && before->start != view.start) before = nullptr;
-    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    if (!view.complete()) continue;
     if (before) {
-      const std::string from = class_text(*before), to = class_text(view);
-      const bool grazing =
-          (before->verdict.regime == Regime::no_contact) != (view.verdict.regime == Regime::no_contact);
-      if (from != to)
-        table.rows.push_back({starts[view.start], from, to, grazing ? "grazing" : "change",
+      const MotionClass &from = before->judged.verdict.motion, &to = view.judged.verdict.motion;
+      const bool grazing = (from.regime == Regime::no_contact) != (to.regime == Regime::no_contact);
+      if (!(from == to))
+        table.rows.push_back({starts[view.start], text(from), text(to), grazing ? "grazing" : "change",
                               0.5 * (before->value + view.value), before->value, view.value, nullptr});
     }
     before = &view;
@@ -100,12 +88,8 @@ Table changes(const std::vector<OrbitView>& views, const std::vector<std::string
 std::pair<std::string, std::string> status_of(const OrbitView& view) {
   if (!view.orbit) return {"refused", view.refusal};
   if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
-  const bool failed = view.orbit->cause.starts_with("the contact law");
-  return {failed ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, view.orbit->cause)};
-}
-
-bool touches(const Orbit& orbit) {
-  return orbit.contact_steps > 0;
+  const LaneEnd& end = view.orbit->end;
+  return {end.failed() ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, text(end))};
 }
 
 SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes) {
@@ -152,34 +136,9 @@ std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scene
 }
 
 void judge(OrbitView& view, const SectionPlan& plan) {
-  if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) return;
-  const Orbit& orbit = *view.orbit;
-  view.recurrence = find_recurrence(orbit.readings, plan.reading_scale(), recurrence_tolerance);
-  std::vector<double> displacements;
-  std::vector<std::array<double, 2>> here, opposite;
-  for (const SectionPoint& point : orbit.strobed) {
-    displacements.push_back(point.displacement);
-    here.push_back({point.displacement, point.velocity});
-    opposite.push_back({point.opposite_displacement, point.opposite_velocity});
-  }
-  view.zero_one = zero_one_test(displacements);
-  RegimeInput input;
-  input.contact = touches(orbit);
-  input.recurrence = view.recurrence;
-  input.zero_one = view.zero_one;
-  if (!view.exponents.values.empty()) input.exponent = view.exponents.values.front();
-  input.impacts_per_period = impacts_per_period(orbit);
-  input.settled = orbit.settled;
-  input.tolerance = recurrence_tolerance;
-  input.forcing_period = 2 * std::numbers::pi / plan.pulsation;
-  view.verdict = classify(input);
-  if (view.recurrence.period > 0) {
-    // The last rounds of the orbit against its image under x → −x, t → t + T/2.
-    const auto last = std::min(here.size(), static_cast<std::size_t>(view.recurrence.period));
-    const std::vector<std::array<double, 2>> a(here.end() - static_cast<std::ptrdiff_t>(last), here.end());
-    const std::vector<std::array<double, 2>> b(opposite.end() - static_cast<std::ptrdiff_t>(last), opposite.end());
-    view.symmetric = same_cloud(a, b, {plan.scale, plan.scale * plan.pulsation}, 10 * recurrence_tolerance);
-  }
+  if (!view.complete()) return;
+  const auto& exponents = view.exponents.values;
+  view.judged = judge(*view.orbit, plan, exponents.empty() ? std::nullopt : std::optional(exponents.front()));
 }
 
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
@@ -190,7 +149,7 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
   impacts.words = {{"start", starts}, {"side", {"lower", "upper"}}};
   for (const OrbitView& view : views) {
     values.rows.push_back(value_row(view, starts[view.start], exponents, plan));
-    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    if (!view.complete()) continue;
     const auto start = static_cast<double>(view.start);
     const auto& section = plan.section == SectionKind::strobe ? view.orbit->strobed : view.orbit->points;
     for (std::size_t i = 0; i < section.size(); ++i)
@@ -209,10 +168,10 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   double orbits = 0, periodic = 0, chaotic = 0, impacts = 0;
   std::optional<double> largest;
   for (const OrbitView& view : views) {
-    if (!view.orbit || view.orbit->stage != Orbit::Stage::complete) continue;
+    if (!view.complete()) continue;
     ++orbits;
-    periodic += view.verdict.regime == Regime::periodic;
-    chaotic += view.verdict.regime == Regime::chaotic;
+    periodic += view.judged.verdict.motion.regime == Regime::periodic;
+    chaotic += view.judged.verdict.motion.regime == Regime::chaotic;
     impacts += impacts_per_period(*view.orbit);
     if (!view.exponents.values.empty())
       largest = std::max(largest.value_or(-std::numeric_limits<double>::infinity()), view.exponents.values[0].value);
@@ -224,11 +183,13 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   if (largest && std::isfinite(*largest)) record.measures.emplace_back("largest_exponent", *largest);
 }
 
-void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps) {
+void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
+  const char *below = contact_word, *above = text(Regime::no_contact);
+  if (grazing.opens_below) std::swap(below, above);
   for (Table& table : record.tables)
     if (table.name == "bifurcations")
-      table.rows.push_back({"open orbit", opens_below ? "no contact" : "contact",
-                            opens_below ? "contact" : "no contact", "grazing", value, low, high, steps});
+      table.rows.push_back(
+          {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
 }
 
 }  // namespace ricochet

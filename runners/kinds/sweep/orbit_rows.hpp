@@ -1,7 +1,8 @@
 #pragma once
 #include <optional>
-#include <ricochet/measure/orbits/regime.hpp>
+#include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
+#include <ricochet/measure/stability/grazing.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,12 +11,6 @@
 #include "runners/store/record.hpp"
 
 namespace ricochet {
-
-/// Relative distance at which two readings of an orbit count as the same (see SectionPlan::scale for the unit). An
-/// orbit that is still approaching repeats when the limit it approaches does.
-constexpr double recurrence_tolerance = 1e-4;
-/// Impacts on one side within one forcing period from which a motion is said to chatter.
-constexpr int chatter_impacts = 10;
 
 /// One row of values.csv in the making.
 struct OrbitView {
@@ -27,14 +22,9 @@ struct OrbitView {
   std::string marginal;  ///< what the stability analysis says of roots that are the scheme's
   std::optional<EquivalentViscosity> viscosity;
   OrbitExponents exponents;
-  Recurrence recurrence;
-  std::optional<double> zero_one;
-  std::optional<bool> symmetric;
-  RegimeVerdict verdict;
+  JudgedOrbit judged;
+  bool complete() const { return orbit && orbit->stage == Orbit::Stage::complete; }
 };
-
-/// Whether a stop was touched while the orbit was kept.
-bool touches(const Orbit& orbit);
 
 /// What the section's settings say, for the scenes of a case. The unit of displacements is half the gap between the
 /// stops (the distance to the one there is; the amplitude without any).
@@ -44,7 +34,7 @@ SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes
 std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scenes, int group,
                                                        const StudyCase& study_case, const Registry& registry);
 
-/// Classifies a complete orbit from its readings and exponents.
+/// Classifies an orbit, where it is complete, from its readings and exponents.
 void judge(OrbitView& view, const SectionPlan& plan);
 
 /// Status (done, refused, diverged, failed) and reason of a value, as of a case.
@@ -58,6 +48,6 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
 void add_shares(CaseRecord& record, const std::vector<OrbitView>& views);
 
 /// One more row of `bifurcations`: where the motion without contact grazes a stop.
-void add_grazing_row(CaseRecord& record, bool opens_below, double value, double low, double high, int steps);
+void add_grazing_row(CaseRecord& record, const Grazing& grazing);
 
 }  // namespace ricochet

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ostream>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/measure/orbits/motion_class.hpp>
 
 #include "runners/study/load_study.hpp"
 #include "runners/study/stated_plan.hpp"
@@ -44,8 +45,9 @@ const Table& stored_table(const CaseRecord& record, const std::string& name) {
 }
 
 std::string stored_regime(const TableReader& rows, std::size_t row) {
-  const std::string name = rows.text(row, "class"), period = rows.text(row, "period");
-  return name == "periodic" && !period.empty() ? name + " " + period : name;
+  const std::string name = rows.text(row, "class");
+  const auto motion = motion_class(name, rows.number(row, "period"));
+  return motion ? text(*motion) : name;
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const PointRequest& asked)

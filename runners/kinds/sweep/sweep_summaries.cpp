@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ricochet/measure/attractors/opinions.hpp>
 
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"

@@ -5,9 +5,6 @@
 /// What the orbits of a bifurcation study come to, over values and starts.
 namespace ricochet {
 
-/// A numerical viscosity counts as small up to this share of the physical one.
-inline constexpr double small_viscosity = 0.01;
-
 /// verdict_shares: for each verdict and deciding choice, how many intervals and which share of the range; robust first,
 /// undecided last.
 Table verdict_shares_table(const Table& verdicts, const SweptColumns& swept);

@@ -178,6 +178,14 @@ NumberTable cell_points_head() {
   return table;
 }
 
+NumberTable contact_law_head() {
+  NumberTable table =
+      number_table("contact_law",
+                   {{"compliance", "m/N", "How much the contact law gives way, 0 for a rigid one; empty: not known."}});
+  table.exported = false;
+  return table;
+}
+
 Table attractors_head(const SweptColumns& swept) {
   return {
       "attractors",
@@ -300,8 +308,8 @@ void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
       if (head.name == table.name) describe(table, head);
   }
   for (NumberTable& table : record.numbers)
-    for (const NumberTable& head :
-         {points_head(swept), impacts_head(swept), portraits_head(swept), entries_head(swept), cell_points_head()})
+    for (const NumberTable& head : {points_head(swept), impacts_head(swept), portraits_head(swept), entries_head(swept),
+                                    cell_points_head(), contact_law_head()})
       if (head.name == table.name) {
         table.text = head.text;
         describe(table.columns, head.columns);

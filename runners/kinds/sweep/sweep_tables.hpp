@@ -24,6 +24,7 @@ NumberTable impacts_head(const SweptColumns& swept = {});
 NumberTable portraits_head(const SweptColumns& swept = {});
 NumberTable entries_head(const SweptColumns& swept = {});
 NumberTable cell_points_head();
+NumberTable contact_law_head();
 
 /// Over all cases, worked out of these.
 Table attractors_head(const SweptColumns& swept);

@@ -16,6 +16,8 @@
 namespace ricochet {
 namespace {
 
+constexpr const char* random_prefix = "random-";  // of the names of random starts, before their number
+
 /// A scalar of the scene: where it is, what declares it.
 struct Scalar {
   std::string pointer;
@@ -198,13 +200,18 @@ std::vector<StartSpec> starts_of(const Json& settings) {
   for (const Json& start : settings.at("start")) {
     if (start.is_object()) {
       for (int i = 1; i <= start.at("random").get<int>(); ++i)
-        starts.push_back({StartSpec::random, i, start.at("seed").get<std::uint64_t>(), "random-" + std::to_string(i)});
+        starts.push_back(
+            {StartSpec::random, i, start.at("seed").get<std::uint64_t>(), random_prefix + std::to_string(i)});
       continue;
     }
     for (const auto& [word, kind] : words)
       if (start == word) starts.push_back({kind, 0, 0, word});
   }
   return starts;
+}
+
+bool is_random_start(const std::string& name) {
+  return name.starts_with(random_prefix);
 }
 
 bool any_start(const std::vector<StartSpec>& starts, bool own_state) {
@@ -217,6 +224,10 @@ std::vector<GridAxis> grid_axes(const Json& settings) {
   for (const Json& axis : settings.at("axes"))
     axes.push_back({axis.at("pointer").get<std::string>(), axis.at("values").get<std::vector<double>>()});
   return axes;
+}
+
+bool names_initial_state(const std::string& pointer) {
+  return pointer.starts_with("/scene/initial/");
 }
 
 std::vector<std::string> scene_scalars(const Json& scene) {

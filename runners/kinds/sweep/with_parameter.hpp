@@ -54,6 +54,8 @@ struct StartSpec {
 };
 /// The starts in the order of the study, random ones one by one.
 std::vector<StartSpec> starts_of(const Json& settings);
+/// Whether a start of that name is a random state.
+bool is_random_start(const std::string& name);
 /// Whether some start is of that sort.
 bool any_start(const std::vector<StartSpec>& starts, bool own_state);
 
@@ -64,6 +66,8 @@ struct GridAxis {
 };
 /// The two axes of kind `basins`, x then y.
 std::vector<GridAxis> grid_axes(const Json& settings);
+/// Whether a pointer names a coordinate of the initial state: along it the scene, hence what it can end in, stays.
+bool names_initial_state(const std::string& pointer);
 
 /// Every scalar of a scene (with its values, lists included) that may be a parameter, as JSON pointers.
 std::vector<std::string> scene_scalars(const Json& scene);

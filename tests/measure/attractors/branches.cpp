@@ -9,15 +9,15 @@ using namespace ricochet;
 
 namespace {
 
-SettledSection orbit(double x, int kind = 0) {
-  return {kind, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {1, 1}, 1)};
+SettledSection orbit(double x, int period = 1) {
+  return {{Regime::periodic, period}, true, make_cloud(std::vector<CloudPoint>{{x, 0}}, {}, {1, 1}, 1)};
 }
 
-SettledSection noise(std::mt19937& random, double x, int kind = 1) {
+SettledSection noise(std::mt19937& random, double x) {
   std::normal_distribution<double> normal;
   std::vector<CloudPoint> points;
   for (int k = 0; k < 300; ++k) points.push_back({x + normal(random), normal(random)});
-  return {kind, false, make_cloud(points, {}, {1, 1}, 0)};
+  return {{Regime::chaotic}, false, make_cloud(points, {}, {1, 1}, 0)};
 }
 
 }  // namespace
@@ -34,8 +34,10 @@ TEST_CASE("starts that settle on one orbit, or on one cloud, are one attractor")
   // Half above a null that one in 20 exceeds: rarer than one in 50.
   CHECK(split <= 2);
   CHECK(cluster_starts({}).empty());
-  // Unknown sections: the kind alone.
-  CHECK(cluster_starts({{3, true, {}}, {3, true, {}}, {4, true, {}}}) == std::vector<int>{0, 0, 1});
+  // Unknown sections: the class alone.
+  CHECK(cluster_starts({{{Regime::periodic, 3}, true, {}},
+                        {{Regime::periodic, 3}, true, {}},
+                        {{Regime::periodic, 4}, true, {}}}) == std::vector<int>{0, 0, 1});
 }
 
 TEST_CASE("two attractors of one case never become one, however near another case puts one between them") {

@@ -1,12 +1,15 @@
 // Kinds convergence and work-precision end to end: references, errors, orders, timing, and what is refused.
 #include <SQLiteCpp/Database.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/store.hpp"
@@ -225,4 +228,42 @@ TEST_CASE("effects stand beside the cases wherever two choices vary, and sum to 
     sums[cell(effects, row, "measure").text()] += cell(effects, row, "share").number().value();
   REQUIRE(sums.count("tip_displacement_end") == 1);
   CHECK(sums["tip_displacement_end"] == Approx(1).epsilon(1e-9));
+}
+
+TEST_CASE("a stranger's scheme and law are known by what they declare, not by what they call it") {
+  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Registry registry;
+  catalogue.open_all(registry);
+  // Moreau–Jean and the penalty under other names, with other keys.
+  registry.add_time(
+      {.name = "stranger",
+       .summary = "a scheme of the tests",
+       .text = "Moreau-Jean.",
+       .source = "these tests",
+       .parameters = {with_role(real_parameter("bounce", "1", 0.0, {.low = 0, .high = 1}, "e"),
+                                ParameterRole::restitution)}},
+      [&registry](const Parameters& p) {
+        return registry.time("moreau-jean")->make(Parameters({{"theta", 0.5}, {"restitution", p.real("bounce")}}));
+      });
+  Json study = oscillator("convergence");
+  const auto problem = [&](const Json& time, const Json& contact) {
+    study["methods"]["time"] = time;
+    study["methods"]["contact"] = contact;
+    const Study read = parse_study(study.dump(), catalogue, registry);
+    return reference_problem(read.cases.front(), registry);
+  };
+  const Json own = {{"name", "moreau-jean"}, {"theta", 0.5}, {"restitution", 0.5}},
+             other = {{"name", "stranger"}, {"bounce", 0.5}}, spring = {{"name", "penalty"}, {"stiffness", 1e4}};
+  CHECK(problem(own, "signorini").restitution == 0.5);
+  CHECK(problem(other, "signorini").restitution == 0.5);
+  CHECK(problem(other, spring).contact_stiffness == 1e4);
+  // What is said of a compliant law beside a restitution is said of both schemes.
+  for (const Json& time : {own, other}) {
+    study["methods"]["time"] = time;
+    const Study read = parse_study(study.dump(), catalogue, registry);
+    const Prepared prepared = prepare_case(read.cases.front(), registry);
+    CHECK(std::any_of(prepared.notes.begin(), prepared.notes.end(), [](const std::string& note) {
+      return note.find("the scheme's restitution has no part in it") != std::string::npos;
+    }));
+  }
 }

@@ -442,6 +442,36 @@ TEST_CASE("every row is as long as its columns, and no cell is NaN") {
     CHECK(names.count(name) == 1);
 }
 
+TEST_CASE("the reference case has the stiffest contact, whatever its parameters are called") {
+  struct Law {
+    const char* name;
+    double compliance;  ///< NaN: the law does not say
+    int steps;
+  };
+  const std::vector<Law> laws = {
+      {"foam", 1e-4, 32000}, {"rubber", 1e-6, 8000}, {"unknown", NAN, 64000}, {"plates", 0, 2000}, {"anvils", 0, 4000}};
+  for (std::size_t known = 1; known <= laws.size(); ++known) {
+    std::vector<Method> methods;
+    for (std::size_t k = 0; k < known; ++k) {
+      methods.push_back(method(0.5, laws[k].steps, 20, moving));
+      methods.back().axes[0].second = laws[k].name;
+      methods.back().axes[1] = {"contact.hardness", 1e3 * static_cast<double>(known - k)};
+    }
+    StudyResults results = study(methods, range(0.07, 0.08, 3));
+    for (std::size_t k = 0; k < known; ++k) {
+      NumberTable law = contact_law_head();
+      law.add({laws[k].compliance});
+      results.cases[k].numbers.push_back(std::move(law));
+    }
+    derive_tables(results);
+    if (known == 1) continue;
+    const Derived distances(results, "distances");
+    REQUIRE(distances.size() > 0);
+    const std::size_t expected = known <= 3 ? 1 : known == 4 ? 3 : 4;
+    CHECK(distances.text(0, "reference_case") == results.cases[expected].id);
+  }
+}
+
 namespace {
 
 /// Two attractors: below the line y = slope x + 0.5 an orbit, above it another; beyond the unit circle, a failure.

@@ -60,7 +60,8 @@ std::string difference(const std::vector<std::string>& a, const std::vector<std:
     if (a[i].empty() || b[i].empty()) return "finished";
     const Orbit x = marched_orbits(a[i]).finished[0], y = marched_orbits(b[i]).finished[0];
     std::string text;
-    if (x.stage != y.stage || x.cause != y.cause) text += " end (" + x.cause + " | " + y.cause + ")";
+    if (x.stage != y.stage || !(x.end == y.end))
+      text += " end (" + ricochet::text(x.end) + " | " + ricochet::text(y.end) + ")";
     if (x.transient_periods != y.transient_periods) text += " transient";
     if (x.stopped_period != y.stopped_period) text += " stopped_period";
     if (x.readings.values != y.readings.values) text += " readings";
@@ -214,7 +215,7 @@ TEST_CASE("a chain goes over an orbit that stops, from what that orbit began wit
   over.run(stop, nowhere);
   REQUIRE(over.orbit(first).stage == Orbit::Stage::complete);
   REQUIRE(over.orbit(broken).stage == Orbit::Stage::stopped);
-  CHECK_FALSE(over.orbit(broken).cause.empty());
+  CHECK(over.orbit(broken).end);
   CHECK(over.orbit(broken).stopped_period > 0);
   REQUIRE(over.orbit(next).stage == Orbit::Stage::complete);
   without.add(sweep.task(0));

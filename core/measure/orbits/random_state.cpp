@@ -1,10 +1,9 @@
-#include "runners/kinds/sweep/random_states.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/measure/orbits/random_state.hpp>
 
 namespace ricochet {
 namespace {

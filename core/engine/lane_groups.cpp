@@ -1,0 +1,129 @@
+#include <ricochet/engine/lane_groups.hpp>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+bool same_matrix(const SparseMatrix& a, const SparseMatrix& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols() || a.nonZeros() != b.nonZeros()) return false;
+  return a.nonZeros() == 0 || (a - b).cwiseAbs().sum() == 0;
+}
+
+// Loads are formulas: they are the same when they give the same forces at times that no period hides.
+bool same_load(const SemiDiscrete& a, const SemiDiscrete& b) {
+  const bool absent = !a.load || a.load->absent();
+  if (absent != (!b.load || b.load->absent())) return false;
+  if (absent) return true;
+  Eigen::VectorXd left = Eigen::VectorXd::Zero(a.dofs()), right = left;
+  for (const double t : {0.0, 0.0137, 0.1973, 0.7719, 3.3391}) {
+    a.load->assemble(t, left.data());
+    b.load->assemble(t, right.data());
+    if (left != right) return false;
+  }
+  return true;
+}
+
+bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
+  return a.dofs() == b.dofs() && a.points() == b.points() && same_matrix(a.stiffness, b.stiffness) &&
+         same_matrix(a.inertia.mass, b.inertia.mass) && same_matrix(a.inertia.coupling, b.inertia.coupling) &&
+         same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) && a.damping.stiffness == b.damping.stiffness &&
+         a.damping.mass == b.damping.mass && a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x &&
+         same_load(a, b);
+}
+
+// A load is a formula, which keeps what it works with inside: every program that may run beside others has its own.
+std::shared_ptr<const SemiDiscrete> with_own_load(const std::shared_ptr<const SemiDiscrete>& problem) {
+  if (!problem->load || problem->load->absent()) return problem;
+  auto own = std::make_shared<SemiDiscrete>(*problem);
+  own->load = std::make_shared<const DistributedLoad>(*problem->load);
+  return own;
+}
+
+}  // namespace
+
+struct LaneGroups::Group {
+  LaneCandidate scene;  // the first one
+  OperatorKind kind = OperatorKind::automatic;
+  std::shared_ptr<const MarchModel> model;
+  std::vector<LeftOut> left_out;
+};
+
+LaneGroups::LaneGroups() = default;
+LaneGroups::~LaneGroups() = default;
+
+int LaneGroups::add(LaneCandidate candidate) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const LaneCandidate& known = groups_[g]->scene;
+    if (known.h == candidate.h && known.law == candidate.law && known.scheme == candidate.scheme &&
+        same_problem(*known.problem, *candidate.problem))
+      return static_cast<int>(g);
+  }
+  CompileOptions options;
+  options.kind = groups_.empty() ? OperatorKind::automatic : groups_.front()->kind;
+  options.moving_support = true;
+  options.expected_steps = 100000000;
+  auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
+                          std::vector<LaneSpec>(8, candidate.lane), options);
+  if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
+  const Program& program = std::get<Program>(compiled);
+  auto group = std::make_unique<Group>();
+  group->kind = program.kind == OperatorKind::diagonal ? OperatorKind::band : program.kind;
+  group->model = program.model;
+  group->left_out = program.left_out;
+  group->scene = std::move(candidate);
+  groups_.push_back(std::move(group));
+  return count() - 1;
+}
+
+std::shared_ptr<const SemiDiscrete> LaneGroups::problem(int group) const {
+  return groups_[static_cast<std::size_t>(group)]->scene.problem;
+}
+const StepPlan& LaneGroups::plan(int group) const {
+  return groups_[static_cast<std::size_t>(group)]->scene.plan;
+}
+double LaneGroups::step(int group) const {
+  return groups_[static_cast<std::size_t>(group)]->scene.h;
+}
+const char* LaneGroups::operator_chosen() const {
+  return groups_.empty() ? "" : operator_name(groups_.front()->kind);
+}
+const std::vector<LeftOut>& LaneGroups::left_out(int group) const {
+  return groups_[static_cast<std::size_t>(group)]->left_out;
+}
+
+double LaneGroups::predicted_step_seconds(int group, int lanes) const {
+  const LaneSpec& lane = groups_[static_cast<std::size_t>(group)]->scene.lane;
+  return program(group, std::vector<LaneSpec>(static_cast<std::size_t>(lanes), lane)).predicted_step_seconds;
+}
+
+Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents) const {
+  const Group& one = *groups_[static_cast<std::size_t>(group)];
+  CompileOptions options;
+  options.kind = one.kind;
+  options.moving_support = one.scene.problem->support.pulsation != 0;
+  options.tangents = tangents;
+  auto compiled = compile(with_own_load(one.scene.problem), one.scene.plan, one.scene.h, one.scene.make_law(),
+                          std::move(lanes), options);
+  if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
+  return std::move(std::get<Program>(compiled));
+}
+
+LaneState LaneGroups::carry(const LaneState& state, int from, int to) const {
+  if (from == to) return state;
+  const Group& source = *groups_[static_cast<std::size_t>(from)];
+  const Group& target = *groups_[static_cast<std::size_t>(to)];
+  const Eigen::Index rows = source.model->rows();
+  LaneState carried = state;
+  carried.slots.clear();
+  for (std::size_t j = 0; j < source.scene.plan.slots.size(); ++j) {
+    Eigen::VectorXd slot =
+        Eigen::Map<const Eigen::VectorXd>(state.slots.data() + static_cast<Eigen::Index>(j) * rows, rows);
+    const double was = source.scene.plan.initial[j][1], is = target.scene.plan.initial[j][1];
+    if (source.scene.plan.initial[j][0] == 0 && was != 0) slot *= is / was;
+    slot = target.model->to_model(source.model->to_nodal(slot));
+    carried.slots.insert(carried.slots.end(), slot.data(), slot.data() + slot.size());
+  }
+  return carried;
+}
+
+}  // namespace ricochet

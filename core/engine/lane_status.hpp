@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+
+namespace ricochet {
+
+/// Why the march of a lane ended.
+enum class EndCause {
+  none,                   ///< it runs
+  position_not_finite,    ///< the displacement at a contact point
+  effort_not_finite,      ///< that a contact law found
+  law_not_converged,      ///< value: residual, in units of the measure; count: iterations made
+  state_not_finite,       ///< count: steps between two looks at the state
+  elastic_energy_beyond,  ///< value: ½wᵀKw, J; bound, J: factor times the scene's own scale
+  energy_not_finite,      ///< of an audit
+  energy_beyond,          ///< value: energy of an audit, J; bound, J
+  idle,                   ///< nothing is marched there
+  twin_met,               ///< a twin trajectory fell on its orbit
+};
+
+/// The end of a march: its cause, with the numbers that the cause tells of.
+struct LaneEnd {
+  EndCause cause = EndCause::none;
+  double value = 0, bound = 0, factor = 0;
+  long long count = 0;
+
+  /// Whether there is one.
+  explicit operator bool() const { return cause != EndCause::none; }
+  /// Whether the step itself could not be made: then the march has failed. Otherwise it went where no motion of the
+  /// scene goes: it has diverged.
+  bool failed() const { return cause == EndCause::law_not_converged; }
+  bool operator==(const LaneEnd&) const = default;
+};
+
+/// The cause in words, with its numbers: "the contact law did not converge (residual 0.3 after 50 iterations)"; "" for
+/// none.
+std::string text(const LaneEnd& end);
+
+/// How a lane fares. A lane that diverges is frozen at zero, out of every stop's reach, and the others go on.
+struct LaneStatus {
+  bool running = true;
+  long long step = 0;  ///< when it stopped
+  double time = 0;     ///< s
+  LaneEnd end;
+};
+
+}  // namespace ricochet

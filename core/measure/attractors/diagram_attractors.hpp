@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <ricochet/measure/attractors/attractors.hpp>
+#include <ricochet/measure/attractors/diagram.hpp>
+#include <ricochet/measure/attractors/presence.hpp>
+#include <set>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Attractors of a bifurcation diagram: clusters over the starts of a case, followed along the parameter, matched over
+/// cases as whole branches (branches.hpp).
+namespace ricochet {
+
+/// The section of a settled run, ready to be compared.
+using RunSection = std::function<SettledSection(std::size_t case_index, const DiagramRun& run)>;
+/// The sections at one value, by case and start; of settled runs alone.
+using ValueSections = std::map<std::pair<std::size_t, int>, SettledSection>;
+
+/// Fills in the attractor of every decided run; identities are numbered along the parameter. A motion without contact
+/// is the linear response: of one scene there is one, told by its class. Each section is prepared once; `look` sees
+/// those of each value before they go.
+void find_attractors(Diagram& diagram, const RunSection& section,
+                     const std::function<void(int value, const ValueSections& sections)>& look);
+
+/// The runs that show one attractor.
+struct AttractorExtent {
+  MotionClass motion;
+  int first = -1, last = -1;  ///< values; −1: no run shows it
+  std::set<std::size_t> cases;
+  std::set<int> values;
+  int symmetric = 0, asymmetric = 0, unknown = 0;  ///< runs
+};
+/// Of each attractor, from that with the number 1.
+std::vector<AttractorExtent> extents_of(const Diagram& diagram);
+
+/// Which cases show an attractor over the values at which it exists.
+Presence presence_of(const Diagram& diagram, const AttractorExtent& extent, int attractor);
+
+/// Share of the starts that lead there, where a case shows it at all: of the random ones where there are two or more. A
+/// start counts once in the interval, however many values and cases repeat it: those are no independent trials.
+Proportion fraction_of(const Diagram& diagram, const AttractorExtent& extent, int attractor);
+
+}  // namespace ricochet

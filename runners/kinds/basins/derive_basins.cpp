@@ -1,0 +1,256 @@
+#include "runners/kinds/basins/derive_basins.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/attractors/basin_grid.hpp>
+#include <ricochet/measure/attractors/uncertainty_exponent.hpp>
+#include <set>
+
+#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet::dynamics {
+namespace {
+
+/// A case shows an attractor where it has a quarter of the share that it has elsewhere.
+constexpr double kShown = 0.25;
+constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
+
+/// A case with its table, as a grid.
+struct Image {
+  const CaseRecord* record = nullptr;
+  const Table* table = nullptr;
+  SectionIndex sections;
+  std::vector<std::size_t> row_of;  ///< of each place, kNoRow where the case has no cell
+};
+
+/// What the grid of the study goes through.
+GridOf grid_of(const StudyResults& results) {
+  const auto axes = results.study.find("axes");
+  if (axes == results.study.end() || !axes->is_array()) return GridOf::initial_states;
+  const bool states = std::all_of(axes->begin(), axes->end(), [](const Json& axis) {
+    return axis.is_object() && names_initial_state(axis.value("pointer", ""));
+  });
+  return states ? GridOf::initial_states : GridOf::parameters;
+}
+
+/// The class and period of an attractor, as two cells.
+std::pair<Cell, Cell> class_cells(const MotionClass& motion) {
+  return {text(motion.regime), motion.period > 0 ? Cell(motion.period) : Cell()};
+}
+
+class BasinImages {
+ public:
+  explicit BasinImages(StudyResults& results) : results_(results), grid_of_(grid_of(results)) {
+    read_places();
+    scale_ = scale_of_points();
+    for (const Image& image : images_) {
+      BasinGrid& grid = grids_.emplace_back(grid_from(image));
+      const SectionOf section = [&](std::size_t place) { return section_at(image, place, grid.cells[place].motion); };
+      grid_of_ == GridOf::initial_states ? find_ends(grid, section) : find_regions(grid, section);
+    }
+    attractors_ = match_attractors(grids_, grid_of_);
+  }
+
+  bool empty() const { return images_.empty(); }
+
+  void append_tables() const {
+    for (Table table : {cells(), attractors(), fractions(), differences(), uncertainty()})
+      results_.derived.push_back(std::move(table));
+  }
+
+ private:
+  /// The grid is what the cases have rows for.
+  void read_places() {
+    std::set<double> xs, ys;
+    for (const CaseRecord& record : results_.cases) {
+      const Table* table = find_table(record.tables, "cells");
+      if (!table) continue;
+      images_.push_back({&record, table, SectionIndex(record, "cell_points", "cell", ""), {}});
+      const TableReader rows(*table);
+      const std::size_t across = rows.column("x"), along = rows.column("y");
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const auto x = rows.number(r, across), y = rows.number(r, along);
+        if (!x || !y) continue;
+        xs.insert(*x);
+        ys.insert(*y);
+      }
+    }
+    xs_.assign(xs.begin(), xs.end());
+    ys_.assign(ys.begin(), ys.end());
+    const auto index = [](const std::vector<double>& list, double value) {
+      return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), value) - list.begin());
+    };
+    for (Image& image : images_) {
+      image.row_of.assign(xs_.size() * ys_.size(), kNoRow);
+      const TableReader rows(*image.table);
+      const std::size_t across = rows.column("x"), along = rows.column("y");
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        if (const auto x = rows.number(r, across), y = rows.number(r, along); x && y)
+          image.row_of[index(ys_, *y) * xs_.size() + index(xs_, *x)] = r;
+    }
+  }
+
+  CloudPoint scale_of_points() const {
+    ScaleOfPoints scale;
+    for (const Image& image : images_)
+      for (const char* name : {"tip", "opposite"}) {
+        const bool mirrored = name[0] == 'o';
+        const auto *d = image.sections.column(std::string(name) + "_displacement"),
+                   *v = image.sections.column(std::string(name) + "_velocity");
+        if (!d || !v) continue;
+        for (std::size_t k = 0; k < d->size(); ++k)
+          scale.add(mirrored ? CloudPoint{-(*d)[k], -(*v)[k]} : CloudPoint{(*d)[k], (*v)[k]});
+      }
+    return scale.scale();
+  }
+
+  BasinGrid grid_from(const Image& image) const {
+    BasinGrid grid;
+    grid.columns = xs_.size();
+    grid.rows = ys_.size();
+    grid.cells.resize(image.row_of.size());
+    const TableReader rows(*image.table);
+    const std::size_t regime = rows.column("class"), period = rows.column("period"),
+                      status = rows.column_if_any("status"), attractor = rows.column_if_any("attractor");
+    for (std::size_t place = 0; place < grid.cells.size(); ++place) {
+      const std::size_t r = image.row_of[place];
+      if (r == kNoRow) continue;
+      GridCell& cell = grid.cells[place];
+      cell.present = true;
+      cell.motion = motion_of(rows.text(r, regime), rows.number(r, period),
+                              status == TableReader::absent ? "done" : rows.text(r, status));
+      // What the case itself has told apart while it marched.
+      if (const auto end = rows.number(r, attractor); end && grid_of_ == GridOf::initial_states)
+        cell.end = static_cast<int>(*end) - 1;
+    }
+    return grid;
+  }
+
+  SettledSection section_at(const Image& image, std::size_t place, const MotionClass& motion) const {
+    if (motion.regime == Regime::no_contact) return {motion, true, {}};
+    const SectionReadings readings = image.sections.read(static_cast<double>(image.row_of[place]), "");
+    const int cycle = motion.period;
+    return {motion, cycle > 0, make_cloud(readings.points, readings.opposite, scale_, cycle)};
+  }
+
+  Table cells() const {
+    const Table head = cells_head(swept_);
+    Table table = table_of_cases(results_, head.name, head.text, {});
+    for (std::size_t c = 0; c < images_.size(); ++c) {
+      const Image& image = images_[c];
+      const std::size_t begin = table.rows.size();
+      append_rows(results_, *image.record, *image.table, table);
+      const auto column = find_column(table.columns, "attractor");
+      if (!column) continue;
+      for (std::size_t place = 0; place < image.row_of.size(); ++place)
+        if (const int attractor = grids_[c].cells[place].attractor; image.row_of[place] != kNoRow)
+          table.rows[begin + image.row_of[place]][*column] = attractor >= 0 ? Cell(attractor + 1) : Cell();
+    }
+    return table;
+  }
+
+  Table attractors() const {
+    Table table = attractors_head(swept_);
+    std::vector<const CaseRecord*> records;
+    for (const Image& image : images_) records.push_back(image.record);
+    const std::vector<ChoiceAxis> axes = axes_of(results_, records);
+    for (std::size_t a = 0; a < attractors_.size(); ++a) {
+      std::vector<double> shares;
+      Presence presence;
+      std::size_t cases = 0, grid = 0;
+      double sum = 0;
+      for (std::size_t c = 0; c < grids_.size(); ++c) {
+        const std::size_t decided = decided_cells(grids_[c]);
+        if (decided == 0) continue;
+        const std::size_t count = count_cells(grids_[c], static_cast<int>(a));
+        presence.cases.push_back(c);
+        shares.push_back(static_cast<double>(count) / static_cast<double>(decided));
+        cases += count > 0;
+        // Methods repeat one grid: its cells count once in the interval.
+        if (count > 0) {
+          sum += shares.back();
+          grid = std::max(grid, decided);
+        }
+      }
+      const double largest = *std::max_element(shares.begin(), shares.end());
+      for (const double share : shares) presence.present.push_back(share > 0 && share >= kShown * largest);
+      const PresenceLabel label = label_presence(presence, axes);
+      const Proportion fraction = wilson_interval(sum / static_cast<double>(cases), static_cast<double>(grid));
+      const auto [regime, period] = class_cells(attractors_[a]);
+      table.rows.push_back({a + 1, label.label, cases, nullptr, nullptr, regime, period, nullptr, fraction.value,
+                            fraction.low, fraction.high, label.presence,
+                            fmt::format("Attractor {} ({}, {} of the cells where it shows) {}", a + 1,
+                                        text(attractors_[a]), percent(fraction.value), label.sentence)});
+    }
+    return table;
+  }
+
+  Table fractions() const {
+    Table table = table_of_cases(results_, basin_fractions_head());
+    for (std::size_t c = 0; c < grids_.size(); ++c) {
+      const std::size_t decided = decided_cells(grids_[c]);
+      if (decided == 0) continue;
+      for (std::size_t a = 0; a < attractors_.size(); ++a) {
+        const std::size_t count = count_cells(grids_[c], static_cast<int>(a));
+        const Proportion share =
+            wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
+        const auto [regime, period] = class_cells(attractors_[a]);
+        Row row = place_of(results_, *images_[c].record);
+        row.insert(row.end(), {a + 1, regime, period, count, share.value, share.low, share.high});
+        table.rows.push_back(std::move(row));
+      }
+    }
+    return table;
+  }
+
+  Table differences() const {
+    Table table = basin_differences_head();
+    for (std::size_t a = 0; a < grids_.size(); ++a)
+      for (std::size_t b = a + 1; b < grids_.size(); ++b) {
+        const auto [both, differ] = compare(grids_[a], grids_[b]);
+        table.rows.push_back({images_[a].record->id, images_[b].record->id, both, differ,
+                              both > 0 ? Cell(static_cast<double>(differ) / both) : Cell()});
+      }
+    return table;
+  }
+
+  Table uncertainty() const {
+    Table table = table_of_cases(results_, basin_uncertainty_head());
+    for (std::size_t c = 0; c < grids_.size(); ++c) {
+      const std::vector<int> labels = attractors_of(grids_[c]);
+      Row row = place_of(results_, *images_[c].record);
+      row.emplace_back(boundary_share(grids_[c]));
+      const auto exponent =
+          labels.empty() ? std::nullopt
+                         : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
+      if (exponent)
+        row.insert(row.end(), {exponent->value, exponent->low, exponent->high});
+      else
+        row.insert(row.end(), {nullptr, nullptr, nullptr});
+      table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+
+  StudyResults& results_;
+  const SweptColumns swept_ = swept_columns(results_);
+  GridOf grid_of_;
+  std::vector<double> xs_, ys_;
+  CloudPoint scale_ = {1, 1};
+  std::vector<Image> images_;
+  std::vector<BasinGrid> grids_;  // of the images
+  std::vector<MotionClass> attractors_;
+};
+
+}  // namespace
+
+void derive_basins(StudyResults& results) {
+  const BasinImages images(results);
+  if (!images.empty()) images.append_tables();
+}
+
+}  // namespace ricochet::dynamics

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/sweep/forced_scenes.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
+
+namespace ricochet {
+
+CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
+  CasePlan out;
+  const std::vector<double> values = parameter_values(study_case.settings);
+  const std::vector<StartSpec> starts = starts_of(study_case.settings);
+  const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
+  ForcedScenes scenes(study_case, registry);
+  int representative = -1;
+  for (const double value : values) {
+    const int scene = scenes.add(pointer, value, false);
+    if (scenes[scene].refusal.empty()) {
+      representative = scene;
+      break;
+    }
+    if (out.refusal.empty()) out.refusal = fmt::format("at {:g}: {}", value, scenes[scene].refusal);
+  }
+  if (representative < 0) return out;
+  out.refusal.clear();
+  out.operator_name = scenes.operator_chosen();
+  out.left_out = march_left_out(scenes, study_case);
+  out.notes = scenes.notes(0);
+  const Json& settings = study_case.settings;
+  // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
+  // cost 0.7 of free flight on top of it.
+  constexpr double contact_share = 1.7;
+  const auto kept = settings.at("keep").get<double>(), exponents = settings.value("exponents", 0.0);
+  const double transient = 0.5 * (settings.at("transient").at("periods").get<double>() +
+                                  settings.at("transient").at("at_most").get<double>());
+  double chains = 0, singles = 0;
+  for (const StartSpec& start : starts)
+    (start.kind == StartSpec::up || start.kind == StartSpec::down ? chains : singles) += 1;
+  const double count = static_cast<double>(values.size()), period = study_case.steps_per_period;
+  const auto lanes = [&](int width) { return contact_share * scenes.predicted_step_seconds(0, width) / width; };
+  const double orbit = (transient + kept) * period;
+  out.steps = static_cast<long long>(orbit * count * (chains + singles));
+  out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
+  // The orbit again, one column more than exponents, and the twin.
+  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
+  return out;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,77 @@
+#pragma once
+#include <deque>
+#include <vector>
+
+#include "runners/kinds/sweep/forced_scenes.hpp"
+
+namespace ricochet {
+
+/// An orbit to be marched: at a scene, from an initial state, or on from where another orbit ended.
+struct OrbitTask {
+  int scene = 0;
+  LaneSpec lane;   ///< of the scene, with the initial state of this orbit
+  int after = -1;  ///< the task whose end is this one's start; −1: from lane's initial state
+  int follower = -1;
+};
+
+/// What has been marched so far, for a checkpoint: finished orbits, and those on their way.
+struct MarchedOrbits {
+  std::vector<Orbit> finished, running;
+};
+
+/// Which orbits may begin, and which are done: what a scheduler writes down, without threads and without marching. An
+/// orbit that stops hands the state it began with to its follower, so that one bad value does not end a sweep.
+class OrbitQueue {
+ public:
+  /// `lean`: finished orbits keep what classifies them: no impacts, no states; none may be followed.
+  OrbitQueue(const ForcedScenes& scenes, bool lean) : scenes_(scenes), lean_(lean) {}
+
+  int add(OrbitTask task);
+  const OrbitTask& task(int number) const { return tasks_[static_cast<std::size_t>(number)]; }
+  int count() const { return static_cast<int>(tasks_.size()); }
+  const Orbit& orbit(int number) const { return orbits_[static_cast<std::size_t>(number)]; }
+  bool finished(int number) const { return done_[static_cast<std::size_t>(number)]; }
+  int group(int number) const { return scenes_[task(number).scene].group; }
+
+  /// Takes back what an interrupted run had marched.
+  void restore(MarchedOrbits marched);
+  /// Makes everything that is not finished ready, chains first.
+  void open();
+  int open_tasks() const { return open_; }
+  int ready() const { return static_cast<int>(ready_.size()); }
+
+  /// Orbits that march together.
+  struct Batch {
+    std::vector<Orbit> orbits;  ///< that go on from a state
+    std::vector<int> fresh;     ///< tasks that start at t = 0
+    bool empty() const { return orbits.empty() && fresh.empty(); }
+  };
+  /// Orbits of one group that an interrupted run had on their way.
+  std::vector<Orbit> resume(int most);
+  /// Tasks of one group that may begin now; group −1: of the group of the first one. A batch holds either chains or
+  /// single orbits: chains are long, and fastest in narrow blocks.
+  Batch take(int group, int most);
+
+  /// An orbit has completed or stopped.
+  void finish(Orbit orbit);
+  /// What is finished since the last call, and of the given orbits and those that wait the ones on their way.
+  MarchedOrbits stock(const std::vector<std::vector<Orbit>>& marching);
+
+ private:
+  bool follows(int number) const;
+  bool chained(int number) const { return task(number).follower >= 0 || task(number).after >= 0; }
+  Orbit begin(int number) const;
+
+  const ForcedScenes& scenes_;
+  bool lean_;
+  std::vector<OrbitTask> tasks_;
+  std::vector<Orbit> orbits_;
+  std::vector<bool> done_;
+  std::vector<Orbit> waiting_;  // on their way when the last run was interrupted
+  std::deque<int> ready_;       // tasks that may begin
+  std::deque<Orbit> resumed_;   // orbits that may go on
+  std::vector<Orbit> fresh_;    // finished since the last stock
+  int open_ = 0;                // tasks not finished
+};
+
+}  // namespace ricochet
