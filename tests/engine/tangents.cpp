@@ -121,7 +121,7 @@ TEST_CASE("an orbit goes on with the same bits in another lane of another block"
   });
   block.start();
   block.march(1234);
-  block.freeze(3, "idle");
+  block.freeze(3, {.cause = EndCause::idle});
   block.set_clock(clock);
   block.set_lane(3, spec, state);
   alone.march(3000);

@@ -86,11 +86,11 @@ TEST_CASE("regime: the logistic and circle maps are what they are known to be, w
     // Below k = 1 the circle map is invertible: the golden rotation does not lock at k = 0.3.
     const RegimeVerdict golden = classify(observed(circle(std::numbers::phi - 1, 0.3), with));
     INFO(golden.evidence);
-    CHECK(golden.regime == Regime::quasi_periodic);
+    CHECK(golden.motion.regime == Regime::quasi_periodic);
     // Ω = ½ locks to period 2.
     const RegimeVerdict locked = classify(observed(circle(0.5, 0.9), with));
     INFO(locked.evidence);
-    CHECK(locked.regime == Regime::periodic);
+    CHECK(locked.motion.regime == Regime::periodic);
     CHECK(locked.period == 2);
   }
 }
@@ -136,7 +136,7 @@ TEST_CASE("regime: what repeats is periodic unless an exponent above zero contra
   CHECK(classify(input).motion.regime == Regime::periodic);
   // An orbit that is still arriving says so.
   const RegimeVerdict arriving = classify(touched({2, 3e-4, 0.97, 300}));
-  CHECK(arriving.regime == Regime::periodic);
+  CHECK(arriving.motion.regime == Regime::periodic);
   CHECK(says(arriving, "settles every 2 forcing periods"));
 }
 
