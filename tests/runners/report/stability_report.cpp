@@ -5,6 +5,7 @@
 
 #include "runners/report/derived/shown_tables.hpp"
 #include "runners/report/stability_rows.hpp"
+#include "runners/run/derive.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
 using namespace ricochet;
@@ -36,7 +37,7 @@ TEST_CASE("ranges are read with what both contact states say of a cell", "[repor
 }
 
 TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
-  const StudyResults all = synthetic::stability();
+  const StudyResults all = with_tables(synthetic::stability());
   const std::string html = stability_html(CaseView(all));
   CHECK_THAT(html, Contains("root −1 on &lt;the kernel&gt;") && Contains("nothing to march") && Contains("none"));
   CHECK_THAT(html, Contains("agree to 2 %"));
