@@ -38,8 +38,8 @@ TEST_CASE("A point is marched with the bits of its diagram") {
   const StudyCase& one = study.cases.front();
   const std::atomic<bool> stop = false;
   const CaseRecord record = run_bifurcation(one, registry, {{}, "key", 1}, stop);
-  const NumberTable& points = record.numbers.front();
-  REQUIRE(points.name == "points");
+  REQUIRE(find_table(record.numbers, "points"));
+  const NumberTable& points = *find_table(record.numbers, "points");
   const auto& starts = points.words.front().second;
   for (std::size_t s = 0; s < starts.size(); ++s)
     for (const double value : {0.08, 0.0875, 0.095}) {
