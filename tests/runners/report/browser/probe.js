@@ -26,7 +26,8 @@
   const itemOf = (item) => (Array.isArray(item) ? { value: item } : pick(item, ["value", "text", "itemStyle", "symbolSize", "mark"]));
   function seriesOf(series, model) {
     const out = pick(series, ["type", "name", "tags", "symbol", "symbolSize", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]);
-    out.count = model.getData().count();
+    out.count = model.getData().count();   // after the library's own thinning
+    out.given = series.data.length;
     out.data = series.data.length <= mostItems ? series.data.map(itemOf) : [];
     if (series.endLabel && series.endLabel.show) out.endLabel = series.endLabel.formatter;
     if (series.markLine) out.markLine = series.markLine.data;
