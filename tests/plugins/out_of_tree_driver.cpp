@@ -340,7 +340,7 @@ TEST_CASE("plugins that end the program or never return cost a study one case, a
     ++failed;
     CHECK(one.at("status") == "failed");
     CHECK_THAT(one.at("reason"), Contains("plugin " + plugin) && Contains(bad.reason));
-    CHECK(fs::exists(here / "out/failures" / (one.at("id") + ".json")));
+    CHECK(fs::exists(here / "out/failures" / (one.at("case") + ".json")));
   }
   CHECK(failed == 1);
   const Outcome report = installed.run(here.path(), "report out");
