@@ -50,6 +50,12 @@ const Kind* find_kind(const std::string& name) {
   return found == kinds().end() ? nullptr : &*found;
 }
 
+const report::KindPage& page_of(const std::string& kind) {
+  static const report::KindPage none;
+  const Kind* known = find_kind(kind);
+  return known ? known->page : none;
+}
+
 std::vector<const StudyKind*> study_kinds() {
   std::vector<const StudyKind*> formats;
   for (const Kind& kind : kinds()) formats.push_back(&kind.format);

@@ -4,7 +4,7 @@
 namespace ricochet::report {
 
 /// A file that reports inline, carried inside the program (see echarts.cmake): "page.css", "script/page.js",
-/// "figures/tip.js". Empty for a name that it does not carry.
+/// "kinds/tip.js" (whatever the folder of the kind). Empty for a name that it does not carry.
 std::string_view asset(std::string_view name);
 
 /// The minified chart library, or nothing when the program was built without it.

@@ -5,8 +5,8 @@ option(RICOCHET_CHARTS "Inline the chart library in reports where node_modules h
 set(report_dir ${CMAKE_CURRENT_LIST_DIR})
 set(echarts ${report_dir}/node_modules/echarts/dist/echarts.min.js)
 set(RICOCHET_ECHARTS_VERSION "")
-file(GLOB embedded CONFIGURE_DEPENDS ${report_dir}/page.css ${report_dir}/script/*.js ${report_dir}/figures/*.js
-  ${report_dir}/templates/*.html)
+file(GLOB embedded CONFIGURE_DEPENDS ${report_dir}/page.css ${report_dir}/effects.js ${report_dir}/script/*.js
+  ${report_dir}/templates/*.html ${report_dir}/../kinds/*/page/*.js)
 
 # A glob, so that a build notices when the library comes or goes.
 file(GLOB found CONFIGURE_DEPENDS ${echarts})
@@ -26,6 +26,11 @@ set(RICOCHET_EMBEDDED_NAMES "")
 foreach(file ${embedded})
   file(RELATIVE_PATH name ${report_dir} ${file})
   string(REGEX REPLACE "^node_modules/.*/" "" name ${name})
+  string(REGEX REPLACE "^\\.\\./kinds/.*/" "kinds/" name ${name})
+  if(name IN_LIST names)
+    message(FATAL_ERROR "Two files of the page have the name ${name}: ${file} is the second")
+  endif()
+  list(APPEND names ${name})
   string(MAKE_C_IDENTIFIER "ricochet_report_${name}" symbol)
   string(APPEND RICOCHET_EMBEDDED "RICOCHET_EMBED(${symbol}, \"${file}\")\n")
   string(APPEND RICOCHET_EMBEDDED_NAMES "    {\"${name}\", ${symbol}_begin, ${symbol}_end},\n")

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "runners/report/effects_words.hpp"
-#include "runners/report/evidence.hpp"
+#include "runners/report/effects.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "runners/report/evidence_rows.hpp"
+#include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
 
 namespace ricochet::report {
@@ -53,7 +53,7 @@ std::string effects_percent(double share) {
 }
 
 std::vector<MeasureShares> measure_shares(const StudyResults& results) {
-  const EvidenceRows rows(results, "effects");
+  const AxisRows rows(results, "effects");
   std::vector<MeasureShares> out;
   for (size_t row = 0; row < rows.size(); ++row) {
     const std::string name = rows.text(row, "measure");

@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "runners/report/basin_data.hpp"
 #include "runners/report/curve_data.hpp"
-#include "runners/report/derived/shown_tables.hpp"
-#include "runners/report/orbit_data.hpp"
-#include "runners/report/orbits.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -108,30 +104,28 @@ PageJson measures_json(const PageJson& cases) {
   return out;
 }
 
-PageJson tables_json(const CaseView& view, const Drawn& drawn) {
+PageJson tables_json(const CaseView& view, const KindPage& kind) {
   PageJson out = PageJson::object();
-  const auto add = [&](const Table& table) {
-    if (std::find(drawn.tables.begin(), drawn.tables.end(), table.name) != drawn.tables.end())
-      out[table.name] = table_json(table);
-  };
-  for (const Table& table : view.results().derived) add(table);
-  for (const Table& table : shown_tables(view.results())) add(table);
+  std::vector<std::string_view> names = kind.tables;
+  names.insert(names.end(), {"effects", "effects_said"});
+  for (const std::string_view name : names)
+    if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
   return out;
 }
 
-PageJson own_json(const CaseView& view, const Drawn& drawn) {
+PageJson own_json(const CaseView& view, const KindPage& kind) {
   PageJson out = PageJson::object();
   for (const CaseRecord* record : view.all())
-    for (const std::string_view name : drawn.own_tables)
+    for (const std::string_view name : kind.own_tables)
       if (const Table* table = find_table(record->tables, name))
         out[std::string(name)][record->id] = table_json(*table);
   return out;
 }
 
-PageJson curves_json(const CaseView& view, const Drawn& drawn, CurveData& curves) {
+PageJson curves_json(const CaseView& view, const KindPage& kind, CurveData& curves) {
   PageJson out = PageJson::object();
   for (const CaseRecord* record : view.all())
-    for (const std::string_view column : drawn.curves)
+    for (const std::string_view column : kind.curves)
       if (auto names = curves.series(*record, "t", std::string(column)))
         out[record->id][std::string(column)] = std::move(*names);
   return out;
@@ -139,21 +133,20 @@ PageJson curves_json(const CaseView& view, const Drawn& drawn, CurveData& curves
 
 }  // namespace
 
-PageData page_data(const CaseView& view, const Drawn& drawn) {
+PageData page_data(const CaseView& view, const KindPage& kind) {
   const StudyResults& results = view.results();
   size_t series = 0;
   for (const CaseRecord& record : results.cases)
-    if (!record.curve.columns.empty()) series += drawn.curves.size() + 1;
+    if (!record.curve.columns.empty()) series += kind.curves.size() + 1;
   CurveData curves(sample_limit(series));
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
   out["axes"] = axes_json(view);
   out["cases"] = cases_json(view);
   out["measures"] = measures_json(out["cases"]);
-  out["tables"] = tables_json(view, drawn);
-  out["own"] = own_json(view, drawn);
-  out["curves"] = curves_json(view, drawn, curves);
-  if (drawn.orbits) out["orbits"] = orbit_data(view, curves);
-  if (drawn.basins) out["basins"] = basin_data(view, curves);
+  out["tables"] = tables_json(view, kind);
+  out["own"] = own_json(view, kind);
+  out["curves"] = curves_json(view, kind, curves);
+  if (kind.data) out[kind.data_key] = kind.data(view, curves);
   return {std::move(out), curves.blocks(), curves.thinning()};
 }
 

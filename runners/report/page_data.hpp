@@ -2,8 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "runners/report/case_view.hpp"
-#include "runners/report/drawn.hpp"
+#include "runners/report/kind_page.hpp"
 
 namespace ricochet::report {
 
@@ -21,8 +20,8 @@ struct PageData {
 ///   tables    {name: {columns: [{name, unit, text}], rows, cells}}: a column of words is {words, at}
 ///   own       {table: {case: …}}: tables of single cases, in the same form
 ///   curves    {case: {column: [block of t, block of the column]}}
-///   orbits, basins   where the kind draws them
+///   and what the kind adds under its own key
 /// Nothing that figures of the kind do not read is written, but for the cases with their measures.
-PageData page_data(const CaseView& view, const Drawn& drawn);
+PageData page_data(const CaseView& view, const KindPage& kind);
 
 }  // namespace ricochet::report

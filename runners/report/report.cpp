@@ -4,14 +4,10 @@
 
 #include <algorithm>
 
-#include "runners/report/answer.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
-#include "runners/report/drawn.hpp"
-#include "runners/report/dynamics_report.hpp"
-#include "runners/report/evidence.hpp"
+#include "runners/report/effects.hpp"
 #include "runners/report/html.hpp"
-#include "runners/report/orbits.hpp"
 #include "runners/report/page.hpp"
 #include "runners/report/page_data.hpp"
 #include "runners/report/table_view.hpp"
@@ -21,10 +17,6 @@
 namespace ricochet {
 namespace report {
 namespace {
-
-bool sweeps(const StudyResults& results) {
-  return results.kind == "bifurcation" || results.kind == "basins";
-}
 
 /// "24 cases: 20 done, 4 refused."
 std::string counts_text(const CaseView& view) {
@@ -46,7 +38,7 @@ Fill banner(const std::string& first, const std::string& rest) {
 Fill banners(const StudyResults& results) {
   Fill out{Fill::type::list};
   const auto partial = std::count_if(results.cases.begin(), results.cases.end(),
-                                     [](const CaseRecord& record) { return is_partial(record); });
+                                     [](const CaseRecord& record) { return record.partial; });
   if (partial > 0)
     out << banner(partial == 1 ? "One case is still being worked on."
                                : fmt::format("{} cases are still being worked on.", partial),
@@ -69,11 +61,12 @@ constexpr const char* shared_scripts[] = {"format",        "data",           "ca
                                           "method_curves", "figure_section", "figure", "picture"};
 constexpr const char* page_scripts[] = {"case_table", "page"};
 
-std::string page_program(const Drawn& drawn) {
+std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
   const auto add = [&](const std::string& name) { out += asset(name); };
   for (const char* name : shared_scripts) add(fmt::format("script/{}.js", name));
-  for (const std::string_view name : drawn.scripts) add(fmt::format("figures/{}.js", name));
+  for (const std::string_view script : kind.scripts) out += script;
+  add("effects.js");
   for (const char* name : page_scripts) add(fmt::format("script/{}.js", name));
   return out;
 }
@@ -84,10 +77,18 @@ std::string script(const std::string& attributes, const std::string& content) {
 
 }  // namespace
 
-std::string render_page(const StudyResults& results, std::string_view library, std::string_view library_version) {
+std::string answer_html(const CaseView& view, const KindPage& kind) {
+  if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
+  const std::string answer = kind.answer ? kind.answer(view) : "";
+  if (answer.empty() && view.with_status("done").empty())
+    return "<p>No case has finished with a result; the table below says why.</p>\n";
+  return answer;
+}
+
+std::string render_page(const StudyResults& results, const KindPage& kind, std::string_view library,
+                        std::string_view library_version) {
   const CaseView view(results);
-  const Drawn& drawn = drawn_for(results.kind);
-  const PageData data = library.empty() ? PageData() : page_data(view, drawn);
+  const PageData data = library.empty() ? PageData() : page_data(view, kind);
   const auto truth = [](bool value) { return value ? Fill::type::bool_true : Fill::type::bool_false; };
   Fill page;
   page.set("name", results.name);
@@ -96,12 +97,12 @@ std::string render_page(const StudyResults& results, std::string_view library, s
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(view));
   page.set("banners", banners(results));
-  page.set("answer", answer_html(view));
+  page.set("answer", answer_html(view, kind));
   page.set("charts", truth(!library.empty()));
-  page.set("masses", truth(!sweeps(results)));
+  page.set("masses", truth(kind.masses));
   if (!data.thinning.empty()) page.set("thinning", data.thinning);
   if (!library_version.empty()) page.set("version", std::string(library_version));
-  if (const std::string methods = dynamics_tables_html(view); !methods.empty())
+  if (const std::string methods = kind.methods ? kind.methods(view) : ""; !methods.empty())
     page.set("methods", html_section(methods));
   if (const std::string effects = effects_html(view); !effects.empty()) page.set("effects", html_section(effects));
   page.set("cases", case_table_html(view));
@@ -111,7 +112,7 @@ std::string render_page(const StudyResults& results, std::string_view library, s
   page.set("notes", notes_html(view));
   page.set("environment", environment_html(view));
   // Scripts follow what they work on; the data are too long to pass through a template.
-  std::string out = filled("page", page) + script("", script_text(page_program(drawn)));
+  std::string out = filled("page", page) + script("", script_text(page_program(kind)));
   if (!library.empty()) {
     out += script(" type=\"application/json\" id=\"page-data\"", script_json(data.results));
     out += script(" type=\"application/json\" id=\"curve-data\"", script_json(data.blocks));
@@ -122,8 +123,8 @@ std::string render_page(const StudyResults& results, std::string_view library, s
 
 }  // namespace report
 
-std::string render_report(const StudyResults& results) {
-  return report::render_page(results, report::chart_library(), report::chart_library_version());
+std::string render_report(const StudyResults& results, const report::KindPage& kind) {
+  return report::render_page(results, kind, report::chart_library(), report::chart_library_version());
 }
 
 }  // namespace ricochet

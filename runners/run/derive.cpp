@@ -2,7 +2,6 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
-#include "runners/report/derived/shown_tables.hpp"
 #include "runners/run/effects_table.hpp"
 
 namespace ricochet {
@@ -15,7 +14,7 @@ void derive_tables(StudyResults& results) {
   else
     collect_tables(results);
   if (Table effects = effects_table(results); !effects.rows.empty()) results.derived.push_back(std::move(effects));
-  for (Table& table : report::shown_tables(results)) results.derived.push_back(std::move(table));
+  for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
 }
 
 }  // namespace ricochet

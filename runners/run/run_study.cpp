@@ -9,6 +9,13 @@
 #include "runners/store/fingerprint.hpp"
 
 namespace ricochet {
+namespace {
+
+std::string render(const StudyResults& results) {
+  return render_report(results, page_of(results.kind));
+}
+
+}  // namespace
 
 CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry) {
   return find_kind(kind)->plan(study_case, registry);
@@ -28,12 +35,12 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   runner.cases = find_kind(study.kind)->start({study, registry, key, options.jobs > 0 ? options.jobs : processors});
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
-  runner.render = render_report;
+  runner.render = render;
   return run_study_with(runner, study, options);
 }
 
 int rebuild_report(const std::filesystem::path& folder) {
-  return rebuild_report_with(render_report, folder);
+  return rebuild_report_with(render, folder);
 }
 
 }  // namespace ricochet

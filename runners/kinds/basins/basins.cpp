@@ -1,5 +1,6 @@
 #include "runners/kinds/basins/basins.hpp"
 
+#include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/basins/point.hpp"
 #include "runners/kinds/basins/run_basins.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
@@ -38,6 +39,7 @@ Kind basins_kind() {
   kind.format.keys = basins_keys();
   kind.plan = plan_basins;
   kind.point = march_cell_again;
+  kind.page = report::basins_page();
   return kind;
 }
 

@@ -1,5 +1,6 @@
 #include "runners/kinds/bifurcation/bifurcation.hpp"
 
+#include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/bifurcation/point.hpp"
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
@@ -49,6 +50,7 @@ Kind bifurcation_kind() {
   kind.plan = plan_bifurcation;
   kind.measures = orbit_measures();
   kind.point = march_orbit_again;
+  kind.page = report::bifurcation_page();
   return kind;
 }
 

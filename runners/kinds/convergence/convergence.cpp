@@ -3,6 +3,7 @@
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/comparison/page/page.hpp"
 #include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
@@ -28,6 +29,7 @@ Kind convergence_kind() {
   kind.outcome = errors_text;
   kind.measures = comparison_measures();
   kind.alone = minimal_study;
+  kind.page = report::comparison_page();
   return kind;
 }
 

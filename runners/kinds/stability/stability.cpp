@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runners/kinds/stability/page/page.hpp"
 #include "runners/kinds/stability/run_stability.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/kinds/stability/step_limits.hpp"
@@ -104,9 +105,12 @@ Kind stability_kind() {
     collect_tables(results);
     results.derived.push_back(step_limits_table(results));
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
+    for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
+      if (!table.rows.empty()) results.derived.push_back(std::move(table));
   };
   kind.outcome = limits_text;
   kind.measures = stability_measures();
+  kind.page = report::stability_page();
   return kind;
 }
 

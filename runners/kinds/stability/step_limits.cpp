@@ -5,81 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/kinds/stability/step_range.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
-
-/// One step of a range.
-struct StepCell {
-  double step = 0;
-  std::optional<double> radius;  ///< of the contact state itself
-  std::optional<double> worst;   ///< the larger of the radii that the marched cell meets
-  std::string marginal, status, reason;
-  std::string behaviour;  ///< "" where not observed
-  bool predicted_unstable() const { return worst && *worst > 1 + growth_tolerance; }
-  bool observed_unstable() const { return behaviour == "unstable" || behaviour == "diverged" || behaviour == "failed"; }
-  bool disagrees() const { return worst && !behaviour.empty() && predicted_unstable() != observed_unstable(); }
-};
-
-/// One contact state of one case, along the step.
-struct StepRange {
-  std::vector<StepCell> cells;  ///< steps increase
-  std::optional<double> predicted, observed, expected;
-};
-
-std::map<double, std::string> behaviours_of(const CaseRecord& record, bool closed) {
-  std::map<double, std::string> out;
-  const Table* observed = find_table(record.tables, "stability_observed");
-  if (!observed) return out;
-  const TableReader rows(*observed);
-  const std::size_t step = rows.column("step"), state = rows.column("closed"), behaviour = rows.column("behaviour");
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (const auto h = rows.number(row, step); h && rows.truth(row, state) == closed)
-      out[*h] = rows.text(row, behaviour);
-  return out;
-}
-
-// The range as the case left it; nothing where it has none.
-std::optional<StepRange> own_range(const CaseRecord& record, bool closed) {
-  const Table* table = find_table(record.tables, "stability");
-  if (!table) return std::nullopt;
-  const TableReader rows(*table);
-  const std::size_t step = rows.column("step"), state = rows.column("closed"), radius = rows.column("radius"),
-                    marginal = rows.column("marginal"), status = rows.column("status"), reason = rows.column("reason"),
-                    predicted = rows.column("limit_predicted"), observed = rows.column("limit_observed");
-  const std::map<double, std::string> behaviours = behaviours_of(record, closed);
-  StepRange out;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const auto h = rows.number(row, step);
-    if (rows.truth(row, state) != closed || !h) continue;
-    const auto seen = behaviours.find(*h);
-    out.cells.push_back({*h, rows.number(row, radius), rows.number(row, radius), rows.text(row, marginal),
-                         rows.text(row, status), rows.text(row, reason),
-                         seen == behaviours.end() ? std::string() : seen->second});
-    out.predicted = rows.number(row, predicted);
-    out.observed = rows.number(row, observed);
-  }
-  if (out.cells.empty()) return std::nullopt;
-  out.expected = out.predicted;
-  std::stable_sort(out.cells.begin(), out.cells.end(),
-                   [](const StepCell& a, const StepCell& b) { return a.step < b.step; });
-  return out;
-}
-
-std::optional<StepRange> range_of(const CaseRecord& record, bool closed) {
-  std::optional<StepRange> out = own_range(record, closed);
-  const std::optional<StepRange> open = out && closed ? own_range(record, false) : std::nullopt;
-  if (!open) return out;
-  if (open->predicted) out->expected = std::min(*open->predicted, out->predicted.value_or(*open->predicted));
-  for (StepCell& one : out->cells)
-    for (const StepCell& apart : open->cells)
-      if (apart.step == one.step && apart.radius && one.radius) one.worst = std::max(*one.radius, *apart.radius);
-  return out;
-}
 
 // Whether the range has a limit, and which way it has none.
 std::string where(const std::optional<double>& limit, bool any, bool bad) {
@@ -135,7 +67,7 @@ std::vector<const CaseRecord*> counted_open(const StudyResults& results) {
   std::map<std::string, std::size_t> known;
   std::vector<const CaseRecord*> out;
   for (const CaseRecord& record : results.cases) {
-    if (!own_range(record, false)) continue;
+    if (!step_range(record, false)) continue;
     std::string key;
     for (const Cell& cell : axes_of(record, others)) key += cell.text() + '\x1f';
     const auto [found, fresh] = known.emplace(key, out.size());
@@ -173,7 +105,7 @@ Table step_limits_table(const StudyResults& results) {
   const std::vector<const CaseRecord*> counted = counted_open(results);
   for (const bool closed : {false, true})
     for (const CaseRecord& record : results.cases) {
-      const std::optional<StepRange> range = range_of(record, closed);
+      const std::optional<StepRange> range = step_range(record, closed);
       if (!range) continue;
       const bool counts = closed || std::find(counted.begin(), counted.end(), &record) != counted.end();
       std::optional<double> ratio;

@@ -18,4 +18,10 @@ Table step_limits_table(const StudyResults& results);
 /// both together.
 Table step_limit_agreement_table(const Table& step_limits);
 
+/// stability_cells: each step of each contact state with what was predicted and observed of it.
+Table stability_cells_table(const StudyResults& results);
+
+/// stability_disagreements: ranges of neighbouring steps where prediction and observation differ.
+Table stability_disagreements_table(const StudyResults& results);
+
 }  // namespace ricochet

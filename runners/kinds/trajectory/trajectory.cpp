@@ -3,6 +3,7 @@
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
+#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/study/fields.hpp"
 
@@ -101,6 +102,7 @@ Kind trajectory_kind() {
   kind.measures = trajectory_measures();
   kind.measures_stand = true;
   kind.alone = minimal_study;
+  kind.page = report::trajectory_page();
   return kind;
 }
 

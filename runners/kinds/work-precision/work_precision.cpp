@@ -8,6 +8,7 @@
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/work-precision/page/page.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -46,6 +47,7 @@ Kind work_precision_kind() {
       {"timed_high", "s", "The slowest repeat.", Of::computation},
   };
   kind.alone = minimal_study;
+  kind.page = report::work_precision_page();
   return kind;
 }
 

@@ -1,8 +1,9 @@
-#include "runners/report/answer.hpp"
+#include "runners/kinds/trajectory/page/page.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "runners/report/page.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 using namespace ricochet;
@@ -36,7 +37,7 @@ bool starts(const std::string& text, const char* with) {
 /// The answer to what the cases have measured by now.
 std::string answer_of(StudyResults results) {
   synthetic::derive_energies(results);
-  return answer_html(CaseView(results));
+  return answer_html(CaseView(results), trajectory_page());
 }
 
 }  // namespace

@@ -1,18 +1,18 @@
 // The sections of kinds `bifurcation` and `basins`: what is told and written for the page is what the cases left.
-#include "runners/report/dynamics_report.hpp"
+#include "runners/kinds/bifurcation/page/page.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <set>
 
-#include "runners/report/basin_data.hpp"
-#include "runners/report/basins.hpp"
-#include "runners/report/derived/shown_tables.hpp"
-#include "runners/report/orbit_data.hpp"
-#include "runners/report/orbits.hpp"
-#include "runners/report/page.hpp"
+#include "runners/kinds/basins/page/basin_data.hpp"
+#include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/basins/page/page.hpp"
+#include "runners/kinds/bifurcation/page/orbit_data.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/store/record_values.hpp"
+#include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 
 using namespace ricochet;
@@ -175,9 +175,9 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   const CaseView view(results);
   CHECK(orbit_data(view, curves).is_null());
   CHECK(curves.blocks().empty());
-  CHECK(shown_tables(results).empty());
+  CHECK(page_tables(results, page_of(results.kind)).empty());
   CHECK(dynamics_answer_html(view).empty());
-  const std::string page = render_page(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results, "/* charts */", "6");
   CHECK_THAT(page, Contains("No case has finished with a result"));
 }
 
@@ -274,9 +274,9 @@ TEST_CASE("cells that were not marched themselves are said", "[report]") {
 
 TEST_CASE("cases that are still being worked on are said to be", "[report]") {
   StudyResults results = synthetic::dynamics();
-  CHECK_THAT(render_page(results, "/* charts */", "6"), !Contains("still being worked on.</strong>"));
+  CHECK_THAT(synthetic::rendered(results, "/* charts */", "6"), !Contains("still being worked on.</strong>"));
   results.cases[1].partial = true;
-  const std::string page = render_page(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results, "/* charts */", "6");
   CHECK_THAT(page, Contains("<strong>One case is still being worked on.</strong>"));
   CHECK_THAT(page, Contains("<em>(partial)</em>") && Contains("\"partial\":[false,true]"));
 }
@@ -293,7 +293,7 @@ TEST_CASE("a page of dynamics keeps what studies say in its place", "[report]") 
     for (auto& row : table.rows)
       for (auto& cell : row)
         if (cell.words() && cell != "robust") cell = attack;
-  const std::string page = render_page(results, "/* charts */", "6");
+  const std::string page = synthetic::rendered(results, "/* charts */", "6");
   CHECK(page.find("<script>alert") == std::string::npos);
   CHECK(page.find("<!--") == std::string::npos);
 }

@@ -1,14 +1,15 @@
 // The report's evidence: what is told is what the derived tables hold.
-#include "runners/report/evidence.hpp"
+#include "runners/kinds/comparison/page/page.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "runners/report/derived/shown_tables.hpp"
-#include "runners/report/evidence_rows.hpp"
-#include "runners/report/work_precision.hpp"
+#include "runners/kinds/work-precision/page/page.hpp"
+#include "runners/report/axis_rows.hpp"
+#include "runners/report/effects.hpp"
+#include "runners/kinds/work-precision/page/work_precision.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 
 using namespace ricochet;
@@ -29,7 +30,7 @@ const Table& table(const StudyResults& results, const std::string& name) {
 TEST_CASE("without derived tables there is no evidence", "[report]") {
   const StudyResults results = synthetic::results();
   const CaseView view(results);
-  for (const Table& one : shown_tables(results)) CHECK(one.name == "energy_changes");
+  CHECK(page_tables(results, work_precision_page()).empty());
   CHECK(orders_html(view).empty());
   CHECK(work_precision_html(view).empty());
   CHECK(effects_html(view).empty());
@@ -37,7 +38,7 @@ TEST_CASE("without derived tables there is no evidence", "[report]") {
 
 TEST_CASE("rows are found by the axes of a case", "[report]") {
   const StudyResults results = synthetic::comparison({1e-3, 5e-4}, {10, 20});
-  const EvidenceRows errors(results, "errors", {"error"}), orders(results, "orders", {"refined", "error"});
+  const AxisRows errors(results, "errors", {"error"}), orders(results, "orders", {"refined", "error"});
   for (const CaseRecord& record : results.cases) {
     const auto row = errors.find(record, {"energy"});
     CHECK(row.has_value() == CaseView::measure(record, "error.energy").has_value());
@@ -48,7 +49,7 @@ TEST_CASE("rows are found by the axes of a case", "[report]") {
     CHECK(order.has_value() == (record.status != "refused"));
   }
   CHECK(errors.text(0, "no such column").empty());
-  CHECK(EvidenceRows(results, "no such table").empty());
+  CHECK(AxisRows(results, "no such table").empty());
 }
 
 TEST_CASE("the Pareto front is what nothing beats", "[report]") {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "runners/report/html.hpp"
-#include "runners/report/page.hpp"
+#include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 using namespace ricochet;
@@ -26,7 +26,7 @@ const std::string no_library = "/* charts */";  // stands for the library where 
 
 TEST_CASE("the page forbids the network and asks nothing of it", "[report]") {
   for (const std::string& library : {std::string(), no_library}) {
-    const std::string page = report::render_page(synthetic::results(), library, "6");
+    const std::string page = synthetic::rendered(synthetic::results(), library, "6");
     CHECK(page_contains(page, "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
     CHECK(!page_contains(page, "connect-src"));
     CHECK(!page_contains(page, "http:"));
@@ -39,7 +39,7 @@ TEST_CASE("the page forbids the network and asks nothing of it", "[report]") {
 
 TEST_CASE("every case is a row, whatever became of it", "[report]") {
   const StudyResults results = synthetic::results();
-  const std::string page = report::render_page(results, "", "");
+  const std::string page = synthetic::rendered(results, "", "");
   CHECK(count(page, "<tr data-status=") == results.cases.size());
   for (const char* status : {"refused", "diverged"})
     CHECK(page_contains(page, "<tr data-status=\"" + std::string(status)));
@@ -48,7 +48,7 @@ TEST_CASE("every case is a row, whatever became of it", "[report]") {
 }
 
 TEST_CASE("a page without the library says so and keeps its tables", "[report]") {
-  const std::string page = report::render_page(synthetic::results(), "", "");
+  const std::string page = synthetic::rendered(synthetic::results(), "", "");
   CHECK(page_contains(page, "built without the chart library"));
   CHECK(page_contains(page, "npm ci"));
   CHECK(!page_contains(page, "<section class=\"figure\""));
@@ -59,11 +59,11 @@ TEST_CASE("a page without the library says so and keeps its tables", "[report]")
 TEST_CASE("partial results are said plainly", "[report]") {
   StudyResults results = synthetic::results();
   results.expected_cases = static_cast<int>(results.cases.size());
-  CHECK(!page_contains(report::render_page(results, "", ""), "Partial results"));
+  CHECK(!page_contains(synthetic::rendered(results, "", ""), "Partial results"));
   results.expected_cases += 12;
-  CHECK(page_contains(report::render_page(results, "", ""), "Partial results: 36 of 48 cases so far."));
+  CHECK(page_contains(synthetic::rendered(results, "", ""), "Partial results: 36 of 48 cases so far."));
   results.cases.clear();
-  const std::string empty = report::render_page(results, no_library, "6");
+  const std::string empty = synthetic::rendered(results, no_library, "6");
   CHECK(page_contains(empty, "Partial results: 0 of 48 cases so far."));
   CHECK(page_contains(empty, "No case has run yet."));
 }
@@ -81,7 +81,7 @@ TEST_CASE("nothing that a study says can leave its place in the page", "[report]
     record.left_out.emplace_back(attack, attack);
     if (record.status != "done") record.reason = attack;
   }
-  const std::string page = report::render_page(results, "var s = '</script><!--';", attack);
+  const std::string page = synthetic::rendered(results, "var s = '</script><!--';", attack);
   CHECK(!page_contains(page, "<script>alert"));
   CHECK(!page_contains(page, "<!--"));
   CHECK(!page_contains(page, "\xff"));
@@ -94,13 +94,13 @@ TEST_CASE("nothing that a study says can leave its place in the page", "[report]
 TEST_CASE("a kind without figures of its own still has its tables", "[report]") {
   StudyResults results = synthetic::results();
   results.kind = "stability";
-  const std::string page = report::render_page(results, no_library, "6");
+  const std::string page = synthetic::rendered(results, no_library, "6");
   CHECK(!page_contains(page, "<section class=\"figure\""));
   CHECK(count(page, "<tr data-status=") == results.cases.size());
 }
 
 TEST_CASE("what was left out is grouped over the cases", "[report]") {
-  const std::string page = report::render_page(synthetic::results(), "", "");
+  const std::string page = synthetic::rendered(synthetic::results(), "", "");
   CHECK(count(page, "no damping is given") == 1);
   CHECK(page_contains(page, "all 36 cases"));
   CHECK(page_contains(page, "9 of 36 cases (mass singular; mass.velocity P0)"));
@@ -114,11 +114,12 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
     record.status = "failed";
     record.reason = "it went wrong";
   }
-  const std::string page = report::render_page(results, no_library, "6");
+  const std::string page = synthetic::rendered(results, no_library, "6");
   CHECK(page_contains(page, "No case has finished with a result"));
   CHECK(!page_contains(page, "nan"));
 }
 
 TEST_CASE("rendering the same results twice gives the same bytes", "[report]") {
-  CHECK(render_report(synthetic::results()) == render_report(synthetic::results()));
+  const auto& kind = page_of("trajectory");
+  CHECK(render_report(synthetic::results(), kind) == render_report(synthetic::results(), kind));
 }

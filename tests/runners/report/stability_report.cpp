@@ -1,10 +1,9 @@
 // What the report of kind `stability` tells is what the cases' tables hold.
-#include "runners/report/stability_report.hpp"
+#include "runners/kinds/stability/page/page.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "runners/report/derived/shown_tables.hpp"
-#include "runners/report/stability_rows.hpp"
+#include "runners/kinds/stability/step_range.hpp"
 #include "runners/run/derive.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
@@ -14,7 +13,7 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("ranges are read with what both contact states say of a cell", "[report]") {
   const CaseRecord record = synthetic::stability_case("full", 1e8, 2e-3, 1e-4, 1e-4);
-  const auto open = stability_range(record, false), closed = stability_range(record, true);
+  const auto open = step_range(record, false), closed = step_range(record, true);
   REQUIRE(open);
   REQUIRE(closed);
   CHECK(open->cells.size() == 9);
@@ -23,17 +22,17 @@ TEST_CASE("ranges are read with what both contact states say of a cell", "[repor
   CHECK(closed->expected == 1e-4);
   CHECK(disagreements(*closed).empty());
   // A scene is open as well: it is expected to fail where the open structure does.
-  const auto late = stability_range(synthetic::stability_case("full", 1e2, 2e-4, 2e-3, 2e-4), true);
+  const auto late = step_range(synthetic::stability_case("full", 1e2, 2e-4, 2e-3, 2e-4), true);
   CHECK(late->expected == 2e-4);
   CHECK(disagreements(*late).empty());
   // Seen to blow up beyond 1e-4 s, predicted beyond 1e-3 s: the steps between.
-  const auto apart = disagreements(*stability_range(synthetic::stability_case("poor", 1e2, 0, 1e-3, 9e-5), true));
+  const auto apart = disagreements(*step_range(synthetic::stability_case("poor", 1e2, 0, 1e-3, 9e-5), true));
   REQUIRE(apart.size() == 1);
   CHECK(apart[0].from == Approx(1e-4));
   CHECK(apart[0].to == Approx(1e-3));
   CHECK(apart[0].steps == 3);
   CHECK_FALSE(apart[0].predicted_unstable);
-  CHECK_FALSE(stability_range(CaseRecord(), false));
+  CHECK_FALSE(step_range(CaseRecord(), false));
 }
 
 TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
@@ -45,5 +44,5 @@ TEST_CASE("the table says limits, agreement, marginal roots", "[report]") {
   StudyResults other;
   other.kind = "trajectory";
   CHECK(stability_html(CaseView(other)).empty());
-  CHECK(shown_tables(other).empty());
+  CHECK(page_tables(other, stability_page()).empty());
 }

@@ -1,4 +1,5 @@
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/rendered.hpp"
 
 #include <sys/wait.h>
 
@@ -8,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "runners/report/page.hpp"
 
 namespace ricochet::browser {
 namespace {
@@ -43,7 +43,7 @@ std::string with_probe(const Page& page) {
 }  // namespace
 
 Page page_of(const std::string& name, const StudyResults& results) {
-  return {name, report::render_page(results, chart_library_file(), "6")};
+  return {name, synthetic::rendered(results, chart_library_file(), "6")};
 }
 
 bool left_out() {

@@ -3,9 +3,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "runners/report/basins.hpp"
-#include "runners/report/derived/shown_tables.hpp"
-#include "runners/report/orbits.hpp"
+#include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <set>
 
-#include "runners/report/basins.hpp"
-#include "runners/report/orbits.hpp"
+#include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/report/browser/browser.hpp"

@@ -5,8 +5,8 @@
 
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/report/page.hpp"
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 using namespace ricochet;
@@ -201,7 +201,7 @@ TEST_CASE("a hundred thousand samples per curve are drawn", "[report][browser]")
   StudyResults results = synthetic::results(shape);
   results.cases.resize(3);  // one chart per figure: what is new here is the length
   const Json pages =
-      read_back("long", {page_of("long", results), {"tables", report::render_page(synthetic::results(), "", "")}});
+      read_back("long", {page_of("long", results), {"tables", synthetic::rendered(synthetic::results(), "", "")}});
   require_works(pages.at("long"), results.cases.size());
   for (const Json& series :
        series_of(figure(pages.at("long"), "energy"), 0, [](const Json& s) { return s.at("type") == "line"; })) {

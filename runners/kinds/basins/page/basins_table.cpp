@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/basins/page/page.hpp"
+#include "runners/report/axis_rows.hpp"
+#include "runners/report/html.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
+
+namespace ricochet::report {
+namespace {
+
+std::string name_of(const CaseView& view, const std::string& id) {
+  for (const CaseRecord* record : view.all())
+    if (record->id == id) {
+      const std::string label = view.label(*record);
+      return label.empty() ? "the one case" : label;
+    }
+  return id;
+}
+
+/// Attractors × cases: share of the cells.
+std::string fractions_html(const CaseView& view) {
+  const AxisRows rows(view.results(), "basin_fractions");
+  if (rows.empty()) return "";
+  std::map<std::pair<std::string, std::string>, size_t> place;
+  std::map<std::string, std::string> classes;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    place[{rows.text(row, "attractor"), rows.text(row, "case")}] = row;
+    const auto period = rows.number(row, "period");
+    classes[rows.text(row, "attractor")] = regime_text(rows.text(row, "class"), period);
+  }
+  std::string head, body;
+  const std::vector<std::string> cases = rows.values("case");
+  for (const std::string& one : cases) head += "<th scope=\"col\">" + escape(name_of(view, one)) + "</th>";
+  for (const std::string& attractor : rows.values("attractor")) {
+    body += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>",
+                        escape(attractor.empty() ? "none" : "attractor " + attractor), escape(classes[attractor]));
+    for (const std::string& one : cases) {
+      const auto found = place.find({attractor, one});
+      const auto share = found == place.end() ? std::nullopt : rows.number(found->second, "fraction");
+      if (!share) {
+        body += "<td class=\"number absent\">–</td>";
+        continue;
+      }
+      const auto low = rows.number(found->second, "low"), high = rows.number(found->second, "high");
+      body += fmt::format("<td class=\"number\" title=\"{} cells\">{}{}</td>",
+                          number_text(rows.number(found->second, "cells").value_or(0)), share_text(*share),
+                          low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : "");
+    }
+    body += "</tr>\n";
+  }
+  return fmt::format(
+      "<div class=\"scroll\"><table class=\"matrix\"><caption>Share of the grid that ends in each attractor, with its "
+      "95 % interval.</caption>\n<thead><tr><th scope=\"col\">ends in</th><th "
+      "scope=\"col\">class</th>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      head, body);
+}
+
+std::string uncertainty_html(const CaseView& view) {
+  const AxisRows rows(view.results(), "basin_uncertainty");
+  if (rows.empty()) return "";
+  std::string body;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto value = rows.number(row, "exponent"), low = rows.number(row, "low"), high = rows.number(row, "high"),
+               share = rows.number(row, "boundary_share");
+    std::string text = "too few scales to say";
+    if (value) text = number_text(*value, 3);
+    if (value && low && high) text += fmt::format(" ({} to {})", number_text(*low, 3), number_text(*high, 3));
+    const char* said = !value || !high ? "–" : *high < 1 ? "fractal boundary" : "a smooth boundary is not excluded";
+    body += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td><td>{}</td></tr>\n",
+                        escape(name_of(view, rows.text(row, "case"))), share ? share_text(*share) : "–", text, said);
+  }
+  return "<div class=\"scroll\"><table class=\"matrix\"><caption>Uncertainty exponent s: the share of cells with an "
+         "uncertain end falls as (uncertainty)<sup>s</sup>; 1 is a smooth boundary, 0 one that no accuracy resolves "
+         "(Grebogi, McDonald, Ott and Yorke 1983). With its 95 % interval.</caption>\n<thead><tr><th "
+         "scope=\"col\">case</th><th scope=\"col\" class=\"number\">cells at the boundary</th><th "
+         "scope=\"col\">s</th><th "
+         "scope=\"col\"></th></tr></thead>\n<tbody>\n" +
+         body + "</tbody></table></div>\n";
+}
+
+std::string differences_html(const CaseView& view) {
+  const AxisRows rows(view.results(), "basin_differences");
+  std::set<std::pair<std::string, std::string>> said;
+  std::string body;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const std::string one = rows.text(row, "case"), other = rows.text(row, "other_case");
+    if (one == other || !said.emplace(std::min(one, other), std::max(one, other)).second) continue;  // each pair once
+    body += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
+        "class=\"number\">{}</td></tr>\n",
+        escape(name_of(view, one)), escape(name_of(view, other)), number_text(rows.number(row, "cells").value_or(0)),
+        number_text(rows.number(row, "differ").value_or(0)),
+        rows.number(row, "share") ? share_text(*rows.number(row, "share")) : "–");
+  }
+  if (body.empty()) return "";
+  return "<div class=\"scroll\"><table class=\"matrix\"><caption>Cells that end elsewhere with another "
+         "method.</caption>\n<thead><tr><th scope=\"col\">case</th><th scope=\"col\">and</th><th scope=\"col\" "
+         "class=\"number\">decided in both</th><th scope=\"col\" class=\"number\">differ</th><th scope=\"col\" "
+         "class=\"number\">share</th></tr></thead>\n<tbody>\n" +
+         body + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string basins_html(const CaseView& view) {
+  const Basins basins = basins_of(view.results());
+  if (basins.grids.empty()) return "";
+  size_t attractors = 0, known = 0, decided = 0;
+  for (const BasinLabel& label : basins.labels) attractors += label.decided;
+  for (const BasinGrid& grid : basins.grids)
+    for (const std::uint8_t cell : grid.cells) {
+      known += cell != BasinGrid::absent;
+      decided += cell != BasinGrid::absent && basins.labels[cell].decided;
+    }
+  std::string out =
+      fmt::format("<p class=\"lead\">Over {} × {} cells in {}: {}; {} of the cells end in one of them.",
+                  basins.xs.size(), basins.ys.size(), count_text(basins.grids.size(), "case", "cases"),
+                  count_text(attractors, "attractor", "attractors"),
+                  known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none");
+  double most = -1;
+  std::string who;
+  const AxisRows differences(view.results(), "basin_differences");
+  for (size_t row = 0; row < differences.size(); ++row)
+    if (const auto share = differences.number(row, "share"); share && *share > most) {
+      most = *share;
+      who = name_of(view, differences.text(row, "case")) + " and " + name_of(view, differences.text(row, "other_case"));
+    }
+  if (most >= 0 && basins.grids.size() > 1)
+    out += fmt::format(" At most {} of them depend on the method ({}).", share_text(most), escape(who));
+  return out + "</p>\n" + fractions_html(view) + differences_html(view) + uncertainty_html(view);
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "runners/kinds/bifurcation/page/page.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/interval.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet::report {
+namespace {
+
+constexpr size_t most_sentences = 8;
+
+std::string value_text(double value, const Quantity& parameter) {
+  return number_text(value, 7) + (parameter.unit.empty() ? "" : " " + parameter.unit);
+}
+
+/// What the methods say over the range, from `verdict_shares`.
+std::string verdict_lead(const StudyResults& results, const Quantity& parameter) {
+  const Table* shares = find_table(results.derived, "verdict_shares");
+  if (!shares || shares->rows.empty()) return "";
+  const TableReader rows(*shares);
+  size_t all = 0;
+  std::string parts;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const std::string verdict = rows.text(row, "verdict"), choice = rows.text(row, "choice");
+    const auto intervals = static_cast<size_t>(rows.number(row, "intervals").value_or(0));
+    const auto share = rows.number(row, "share");
+    all += intervals;
+    parts += fmt::format("{}<strong>{}</strong> in {}{}", parts.empty() ? "" : "; ",
+                         escape(verdict == "depends" && !choice.empty() ? "depends on " + choice : verdict), intervals,
+                         share ? fmt::format(" ({} of the range)", share_text(*share)) : "");
+  }
+  const auto from = rows.number(0, "from"), to = rows.number(0, "to");
+  const std::string range = from && to ? fmt::format(" of {} from {} to {}", escape(parameter.name),
+                                                     number_text(*from, 5), value_text(*to, parameter))
+                                       : "";
+  return fmt::format("<p class=\"lead\">What the methods say over {}{}: {}.</p>\n",
+                     count_text(all, "interval", "intervals"), range, parts);
+}
+
+std::vector<std::string> verdict_sentences(const StudyResults& results) {
+  std::vector<std::string> out;
+  const Table* verdicts = find_table(results.derived, "verdicts");
+  if (!verdicts) return out;
+  const TableReader rows(*verdicts);
+  for (size_t row = 0; row < rows.size(); ++row)
+    if (std::string sentence = rows.text(row, "sentence"); !sentence.empty()) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::string sentences_html(const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return "";
+  std::string out = "<ul class=\"answer\">\n", rest;
+  for (size_t k = 0; k < sentences.size(); ++k)
+    (k < most_sentences ? out : rest) += "<li>" + escape(sentences[k]) + "</li>\n";
+  out += "</ul>\n";
+  if (!rest.empty())
+    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n",
+                       count_text(sentences.size() - most_sentences, "interval", "intervals"), rest);
+  return out;
+}
+
+/// Orbits by group of classes.
+using GroupCounts = std::array<size_t, regime_groups.size()>;
+
+/// Those of each case, from `class_counts`.
+std::map<std::string, GroupCounts> count_groups(const StudyResults& results) {
+  std::map<std::string, GroupCounts> out;
+  const Table* counts = find_table(results.derived, "class_counts");
+  if (!counts) return out;
+  const TableReader rows(*counts);
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto period = rows.number(row, "period");
+    const size_t group =
+        regime_group(rows.text(row, "class"), period ? std::optional(static_cast<int>(*period)) : std::nullopt);
+    out[rows.text(row, "case")][group] += static_cast<size_t>(rows.number(row, "orbits").value_or(0));
+  }
+  return out;
+}
+
+GroupCounts total_of(const std::map<std::string, GroupCounts>& counts) {
+  GroupCounts out{};
+  for (const auto& [id, own] : counts)
+    for (size_t group = 0; group < own.size(); ++group) out[group] += own[group];
+  return out;
+}
+
+std::string regime_sentence(const GroupCounts& counts) {
+  size_t all = 0;
+  for (const size_t count : counts) all += count;
+  std::string parts;
+  for (size_t group = 0; group < counts.size(); ++group)
+    if (counts[group] > 0)
+      parts += fmt::format("{}<span class=\"swatch\" style=\"background:{}\"></span>{}: {}", parts.empty() ? "" : ", ",
+                           regime_groups[group].colour, regime_groups[group].name, counts[group]);
+  return fmt::format("<p>Regimes of {}: {}.</p>\n", count_text(all, "orbit", "orbits"), parts);
+}
+
+/// Where motion first touches, over the methods, for each start.
+std::string grazing_sentence(const StudyResults& results, const Cases& cases, const Quantity& parameter) {
+  const Table* ranges = find_table(results.derived, "grazing_ranges");
+  if (!ranges) return "";
+  const TableReader rows(*ranges);
+  std::string out;
+  for (const std::string& start : starts_in(cases))
+    for (size_t row = 0; row < rows.size(); ++row) {
+      if (rows.text(row, "start") != start) continue;
+      const double low = rows.number(row, "low").value_or(0), high = rows.number(row, "high").value_or(0);
+      const std::string text =
+          low == high ? value_text(low, parameter) : number_text(low, 7) + " to " + value_text(high, parameter);
+      out += fmt::format("<p>Grazing, start {}: {} ({}; each located to {}).</p>\n", escape(start), text,
+                         count_text(static_cast<size_t>(rows.number(row, "changes").value_or(0)), "change", "changes"),
+                         value_text(rows.number(row, "bracket").value_or(0), parameter));
+    }
+  return out;
+}
+
+/// A row of `numerical_viscosity`.
+struct Viscosity {
+  Interval numerical = Interval::nothing(), physical = Interval::nothing();
+  std::optional<double> share;  ///< largest |α_eq|/α
+  bool small = true;
+};
+
+std::map<std::string, Viscosity> viscosities_of(const StudyResults& results) {
+  std::map<std::string, Viscosity> out;
+  const Table* table = find_table(results.derived, "numerical_viscosity");
+  if (!table) return out;
+  const TableReader rows(*table);
+  for (size_t row = 0; row < rows.size(); ++row) {
+    Viscosity& one = out[rows.text(row, "case")];
+    for (const char* end : {"low", "high"})
+      if (const auto value = rows.number(row, end)) one.numerical.include(*value);
+    for (const char* end : {"physical_low", "physical_high"})
+      if (const auto value = rows.number(row, end)) one.physical.include(*value);
+    one.share = rows.number(row, "share");
+    one.small = rows.truth(row, "small").value_or(true);
+  }
+  return out;
+}
+
+std::string range_text(const Interval& range) {
+  const std::string low = number_text(range.low, 3), high = number_text(range.high, 3);
+  return low == high ? low : low + " to " + high;
+}
+
+/// α_eq with its share of α; below 1e-12 of it, nothing is told from round-off.
+std::string viscosity_cell(const Viscosity* v) {
+  if (!v) return "<td class=\"absent\">–</td>";
+  if (v->numerical.low == 0 && v->numerical.high == 0) return "<td class=\"text\">0</td>";
+  if (!v->share) return fmt::format("<td class=\"warned\">{}: no α to compare with</td>", range_text(v->numerical));
+  if (*v->share < 1e-12) return "<td class=\"text\">0 to round-off</td>";
+  const std::string text = fmt::format("{}: {} of α", range_text(v->numerical), share_text(*v->share));
+  if (v->small) return "<td class=\"text\">" + text + "</td>";
+  const bool feeds = v->numerical.low < 0 && -v->numerical.low >= v->numerical.high;
+  return fmt::format("<td class=\"warned\">▲ {}{}</td>", text, feeds ? ", feeding energy" : "");
+}
+
+/// Methods × regimes, with the viscosity of each method.
+std::string regime_table(const CaseView& view, const Cases& cases, const std::map<std::string, GroupCounts>& by_case) {
+  const GroupCounts all = total_of(by_case);
+  std::string head;
+  for (size_t group = 0; group < all.size(); ++group)
+    if (all[group] > 0)
+      head += fmt::format(
+          "<th scope=\"col\" class=\"number\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th>",
+          regime_groups[group].colour, regime_groups[group].name);
+  const std::map<std::string, Viscosity> viscosities = viscosities_of(view.results());
+  Interval physical = Interval::nothing();
+  size_t not_small = 0;
+  for (const auto& [id, v] : viscosities) {
+    physical.include(v.physical);
+    not_small += !v.small;
+  }
+  const size_t known = viscosities.size();
+  const bool any = known > 0;
+  std::string rows;
+  for (const CaseRecord* record : cases) {
+    const GroupCounts& counts = by_case.at(record->id);
+    size_t total = 0;
+    for (const size_t count : counts) total += count;
+    std::string cells;
+    for (size_t group = 0; group < all.size(); ++group)
+      if (all[group] > 0)
+        cells += counts[group] == 0
+                     ? "<td class=\"number absent\">–</td>"
+                     : fmt::format("<td class=\"number\" title=\"{}\">{}</td>",
+                                   share_text(static_cast<double>(counts[group]) / static_cast<double>(total)),
+                                   counts[group]);
+    const std::string label = view.label(*record);
+    const auto viscosity = viscosities.find(record->id);
+    rows += fmt::format("<tr><th scope=\"row\">{}{}</th>{}{}</tr>\n", escape(label.empty() ? "the one method" : label),
+                        record->partial ? " <em>(partial)</em>" : "", cells,
+                        any ? viscosity_cell(viscosity == viscosities.end() ? nullptr : &viscosity->second) : "");
+  }
+  std::string caption = "Orbits (values × starts) by regime.";
+  if (any)
+    caption += fmt::format(
+        " α_eq: the stiffness viscosity (s) that the scheme adds to α = {} of the scene, fitted on the free decay of "
+        "the "
+        "first modes. ▲: more than {} of α, so not ≪ α: {} of {} methods.",
+        physical.empty() ? "0" : range_text(physical) + " s", "1 %", not_small, known);
+  return fmt::format(
+      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>{}</caption>\n<thead><tr><th "
+      "scope=\"col\">method</th>{}{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+      cases.size() > 24 ? " tall" : "", caption, head, any ? "<th scope=\"col\">α_eq</th>" : "", rows);
+}
+
+}  // namespace
+
+std::string dynamics_answer_html(const CaseView& view) {
+  const std::map<std::string, GroupCounts> counts = count_groups(view.results());
+  Cases cases;
+  for (const CaseRecord* record : view.all())
+    if (counts.contains(record->id)) cases.push_back(record);
+  if (cases.empty()) return "";
+  const Quantity parameter = swept_parameter(view.results());
+  return verdict_lead(view.results(), parameter) + regime_sentence(total_of(counts)) +
+         grazing_sentence(view.results(), cases, parameter) + sentences_html(verdict_sentences(view.results())) +
+         regime_table(view, cases, counts);
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,13 @@
+#include "runners/kinds/stability/page/page.hpp"
+
+namespace ricochet::report {
+
+KindPage stability_page() {
+  KindPage page;
+  page.scripts = scripts({"stability_tables", "spectral_radius", "stability_map"});
+  page.tables = {"stability_cells", "step_limits", "stability_disagreements"};
+  page.answer = stability_html;
+  return page;
+}
+
+}  // namespace ricochet::report

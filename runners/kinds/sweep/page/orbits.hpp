@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runners/report/case_view.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet::report {
+
+/// An exponent in 1/s with its interval where one was found.
+struct OrbitExponent {
+  double value = 0;
+  std::optional<double> low, high;
+};
+
+/// One row of a case's table `values`: what came of one value of the parameter from one start.
+struct Orbit {
+  double parameter = 0;
+  std::string start, regime, status, reason, exponent_method, marginal;
+  std::optional<int> period;
+  std::optional<double> alpha_equivalent;  ///< s
+  std::vector<OrbitExponent> exponents;
+  std::optional<double> twin;
+  bool done() const { return status.empty() || status == "done"; }
+};
+
+/// The rows of a case, in its order; empty where it has no such table.
+std::vector<Orbit> orbits_of(const CaseRecord& record);
+
+/// "periodic 3", "chaotic": the words of the table `bifurcations`.
+std::string regime_text(const Orbit& orbit);
+std::string regime_text(const std::string& regime, std::optional<double> period);
+
+/// What orbits are coloured by. The list, its order and its colours are the same for every study.
+struct RegimeGroup {
+  const char* name;
+  const char* colour;
+};
+inline constexpr std::array<RegimeGroup, 11> regime_groups = {{{"no contact", "#5B5B5B"},
+                                                               {"period 1", "#0072B2"},
+                                                               {"period 2", "#56B4E9"},
+                                                               {"period 3", "#009E73"},
+                                                               {"period 4", "#E69F00"},
+                                                               {"periods 5–8", "#CC79A7"},
+                                                               {"periods 9–64", "#6A3D9A"},
+                                                               {"quasi-periodic", "#6B4C2A"},
+                                                               {"chaotic", "#D55E00"},
+                                                               {"undecided", "#B3B3B3"},
+                                                               {"failed", "#111111"}}};
+inline constexpr size_t undecided_group = 9, failed_group = 10;
+/// Index into regime_groups; what did not finish is `failed`.
+size_t regime_group(const Orbit& orbit);
+/// The same for words such as "periodic 3".
+size_t regime_group(std::string_view regime, std::optional<int> period);
+
+/// Kinds of starts, told apart by symbols; random states share one.
+struct StartKind {
+  const char* name;
+  const char* symbol;  ///< as the page's legends have it
+};
+inline constexpr std::array<StartKind, 5> start_kinds = {{{"from rest", "circle"},
+                                                          {"from the scene's state", "diamond"},
+                                                          {"upwards", "triangle"},
+                                                          {"downwards", "triangle-down"},
+                                                          {"from random states", "rect"}}};
+size_t start_kind(std::string_view start);
+
+/// The starts of some cases: rest, state, up, down, then random states by their number.
+std::vector<std::string> starts_in(const Cases& cases);
+
+/// Whether a sweep is drawn on a logarithmic axis: values above zero over a factor of fifty.
+inline bool logarithmic_sweep(double low, double high) {
+  return low > 0 && high >= 50 * low;
+}
+
+/// The parameter that a study of kind `bifurcation` sweeps.
+Quantity swept_parameter(const StudyResults& results);
+
+/// A pointer such as "/scene/support/amplitude" as the axes of a study name it, with its unit.
+Quantity pointer_quantity(std::string_view pointer);
+/// The same in a study, where a value that is swept through a formula is a factor of it, without a unit.
+Quantity scene_quantity(const nlohmann::ordered_json& study, const std::string& pointer);
+
+}  // namespace ricochet::report
