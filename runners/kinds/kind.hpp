@@ -62,8 +62,13 @@ struct Kind {
 
   /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
   std::function<void(StudyResults&)> tables;
-  /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". Empty, or "": energies and impacts.
+  /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
+  Table curve;
+  /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". Empty, or "": nothing.
   std::function<std::string(const CaseRecord&)> outcome;
+  /// What is wrong with a finished case that contradicts itself, for the totals and the exit code: "spectrum and march
+  /// disagree". "": nothing. Empty: no case can.
+  std::function<std::string(const CaseRecord&)> contradiction;
   /// Measures that this kind adds to those of the kinds registered before it.
   std::vector<MeasureInfo> measures;
   /// Whether its measures stand in cases.csv even where no case has one.

@@ -66,7 +66,7 @@ std::vector<std::string> AxisRows::values(std::string_view column) const {
 }
 
 std::optional<size_t> AxisRows::find(const CaseRecord& record, const std::vector<std::string>& keys,
-                                         const std::vector<std::string>& but) const {
+                                     const std::vector<std::string>& but) const {
   std::string key;
   for (const std::string& column : axes_)
     if (std::find(but.begin(), but.end(), column) == but.end()) extend_key(key, column, CaseView::text(record, column));

@@ -142,6 +142,16 @@ std::string CaseView::label(const CaseRecord& record, const std::vector<std::str
   return out;
 }
 
+std::string CaseView::name(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  const std::string known = label(record, columns);
+  return known.empty() ? "the one method" : known;
+}
+
+std::string CaseView::name_of(const std::string& id) const {
+  const CaseRecord* record = find(id);
+  return record ? name(*record) : id;
+}
+
 std::string CaseView::mass_label(const CaseRecord& record) const {
   std::string out = text(record, "mass");
   for (const std::string& column : results_.columns) {

@@ -49,6 +49,11 @@ class CaseView {
   std::string label(const CaseRecord& record, const std::vector<std::string>& columns) const;
   /// Label out of every varying column.
   std::string label(const CaseRecord& record) const { return label(record, varying_); }
+  /// The same, never empty: "the one method" where nothing varies.
+  std::string name(const CaseRecord& record, const std::vector<std::string>& columns) const;
+  std::string name(const CaseRecord& record) const { return name(record, varying_); }
+  /// The name of the case of this id; the id where there is none.
+  std::string name_of(const std::string& id) const;
   /// The mass matrix with every parameter that varies; never empty where the study has a mass.
   std::string mass_label(const CaseRecord& record) const;
   /// Mass matrices in order of appearance.

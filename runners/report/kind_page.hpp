@@ -13,8 +13,8 @@ namespace ricochet::report {
 /// What a kind puts on the page of its studies; what every page has (cases, effects, tables, environment) is not its
 /// to say. Anything may be left empty.
 struct KindPage {
-  std::vector<std::string_view> scripts;  ///< the figures as JavaScript, in the page's order; what they share before
-  std::vector<std::string_view> tables;   ///< tables of all cases that they read
+  std::vector<std::string_view> scripts;     ///< the figures as JavaScript, in the page's order; what they share before
+  std::vector<std::string_view> tables;      ///< tables of all cases that they read
   std::vector<std::string_view> own_tables;  ///< tables of single cases
   std::vector<std::string_view> curves;      ///< columns of the sampled curves, over t
   /// Tables that are worked out so that the page has nothing to work out; one without rows is left out.

@@ -4,19 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "runners/report/html.hpp"
 #include "runners/report/template.hpp"
 
 namespace ricochet::report {
 namespace {
-
-/// Measures that a first look leaves aside (shown by "all columns").
-const std::set<std::string> aside = {
-    "scheme_energy_start", "scheme_energy_end", "energy_start",       "work_of_loads",
-    "projection_energy",   "kernel_energy",     "active_set_changes", "complementarity_residual",
-    "drift_per_impact",    "first_impact",      "first_release"};
 
 std::string words_of(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -76,7 +69,7 @@ Fill case_columns(const CaseView& view, const std::vector<std::string>& measures
   for (const std::string& name : measures) {
     const MeasureInfo* info = measure_info(name);
     out << header_fill(with_unit({words_of(name), info ? info->unit : ""}), info ? info->text : "",
-                       aside.contains(name) ? "number extra" : "number");
+                       info && info->aside ? "number extra" : "number");
   }
   return out;
 }
@@ -109,14 +102,14 @@ Fill case_cells(const CaseView& view, const CaseRecord& record, const std::vecto
     out << timed(record.run_seconds, "");
   }
   for (const std::string& name : measures) {
-    const std::string extra = aside.contains(name) ? " extra" : "";
+    const MeasureInfo* info = measure_info(name);
+    const std::string extra = info && info->aside ? " extra" : "";
     const auto value = CaseView::measure(record, name);
     if (!value || !std::isfinite(*value)) {
       out << text_fill("–", "number absent" + extra);
       continue;
     }
     // Ratios are near 1, where what counts is far behind the point.
-    const MeasureInfo* info = measure_info(name);
     Fill cell = number_fill(*value, number_text(*value, info && std::string_view(info->unit) == "1" ? 9 : 5), extra);
     cell.set("title", exact_text(*value));
     out << cell;

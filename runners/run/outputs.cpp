@@ -4,10 +4,9 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/trajectory/curves_head.hpp"
-#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_tables.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/table/csv_text.hpp"
 #include "runners/table/dictionary.hpp"
 
@@ -65,12 +64,12 @@ class TableFolder {
   }
   /// Curves are written one by one; their columns are those that any case has.
   void remember_curves(const StudyResults& results) {
-    Table curves = curves_head();
-    curves.columns.clear();
+    const Kind* kind = find_kind(results.kind);
+    Table curves{"curves", kind ? kind->curve.text : "", {}, {}};
     for (const CaseRecord& record : results.cases)
       for (const std::string& name : record.curve.names)
         if (!find_column(curves.columns, name)) curves.columns.push_back({name, "", ""});
-    describe(curves, curves_head());
+    if (kind) describe(curves, kind->curve);
     if (!curves.columns.empty()) remember(curves);
   }
   /// Last, when every table is known.

@@ -10,7 +10,6 @@
 #include <mutex>
 #include <thread>
 
-#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/march/crash_record.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/run/derive.hpp"
@@ -22,6 +21,7 @@
 #include "runners/run/summary.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/table/plain_text.hpp"

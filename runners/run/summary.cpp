@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <map>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
@@ -18,32 +17,14 @@ std::string cell(const CaseRecord& record, const std::string& column) {
   return axis(record, column).text();
 }
 
-std::string signed_percent(double ratio) {
-  const double percent = 100 * ratio;
-  constexpr double tenth = 0.05, double_noise = 1e-13;  // percent
-  if (std::abs(percent) < double_noise) return "unchanged";
-  const char* sign = percent < 0 ? "−" : "+";
-  const double size = std::abs(percent);
-  return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
-}
-
-bool contradicts_itself(const CaseRecord& record) {
-  return measure(record, "contradictions").value_or(0) > 0;
-}
-
-std::string done_text(const CaseRecord& record) {
-  std::vector<std::string> parts;
-  auto start = measure(record, "energy_start");
-  auto end = measure(record, "energy_end");
-  if (start && end) {
-    std::string text = fmt::format("energy {:.4g} J → {:.4g} J", *start, *end);
-    if (*start != 0) text += fmt::format(" ({})", signed_percent((*end - *start) / std::abs(*start)));
-    parts.push_back(text);
-  }
-  if (const auto impacts = measure(record, "impacts"))
-    parts.push_back(fmt::format("{:.0f} impact{}", *impacts, *impacts == 1 ? "" : "s"));
-  if (const auto cost = measure(record, "microseconds_per_step")) parts.push_back(fmt::format("{:.3g} µs/step", *cost));
-  return parts.empty() ? "done" : fmt::format("done: {}", fmt::join(parts, ", "));
+// What is wrong with the finished cases, and with how many of them.
+std::map<std::string, int> contradictions(const StudyResults& results) {
+  std::map<std::string, int> found;
+  const Kind* kind = find_kind(results.kind);
+  if (kind && kind->contradiction)
+    for (const CaseRecord& record : results.cases)
+      if (const std::string wrong = kind->contradiction(record); !wrong.empty()) ++found[wrong];
+  return found;
 }
 
 int count(const StudyResults& results, const char* status) {
@@ -59,7 +40,7 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
   if (record.status == "done") {
     const Kind* known = find_kind(kind);
     const std::string own = known && known->outcome ? known->outcome(record) : "";
-    return own.empty() ? done_text(record) : "done: " + own;
+    return own.empty() ? "done" : "done: " + own;
   }
   return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
 }
@@ -96,8 +77,7 @@ std::string totals_text(const StudyResults& results) {
   const std::size_t cases = results.cases.size();
   std::string text = fmt::format("{} case{}", cases, cases == 1 ? "" : "s");
   if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
-  if (const auto number = std::count_if(results.cases.begin(), results.cases.end(), contradicts_itself))
-    text += fmt::format("; in {} spectrum and march disagree without contact", number);
+  for (const auto& [wrong, number] : contradictions(results)) text += fmt::format("; in {} {}", number, wrong);
   if (const int missing = results.expected_cases - static_cast<int>(cases); missing > 0)
     text += fmt::format("; {} not run yet", missing);
   return text;
@@ -105,8 +85,8 @@ std::string totals_text(const StudyResults& results) {
 
 int results_exit_code(const StudyResults& results) {
   constexpr int some_failed = 3;
-  const bool wrong = std::any_of(results.cases.begin(), results.cases.end(), contradicts_itself);
-  return wrong || count(results, "diverged") + count(results, "failed") > 0 ? some_failed : 0;
+  return !contradictions(results).empty() || count(results, "diverged") + count(results, "failed") > 0 ? some_failed
+                                                                                                       : 0;
 }
 
 }  // namespace ricochet

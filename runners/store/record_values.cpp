@@ -8,6 +8,10 @@
 
 namespace ricochet {
 
+bool went_wrong(const CaseRecord& record) {
+  return record.status == "diverged" || record.status == "failed";
+}
+
 std::optional<double> measure(const CaseRecord& record, const std::string& name) {
   for (const auto& [key, value] : record.measures)
     if (key == name) return value;

@@ -7,6 +7,9 @@
 /// What a record holds, by name, and how the rows of tables begin.
 namespace ricochet {
 
+/// Whether the case diverged or failed, rather than being refused or done.
+bool went_wrong(const CaseRecord& record);
+
 /// The measure of this name, if the case has it.
 std::optional<double> measure(const CaseRecord& record, const std::string& name);
 

@@ -191,20 +191,19 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
       {"runners/study", {"core/contract", "core/loader", "core/scene", "runners/table"}},
       {"runners/store", {"runners/table", "runners/study"}},
       {"runners/march", {"core/contract", "core/engine", "runners/table", "runners/study", "runners/store"}},
+      {"runners/report", {"runners/table", "runners/study", "runners/store"}},
       {"runners/kinds",
-       {"core/contract", "core/loader", "core/scene", "core/engine", "core/measure", "runners/table", "runners/study", "runners/store",
-        "runners/march"}},
-      // The words of the classes of motion and the quantiles are those of core.
-      {"runners/report", {"core/measure", "runners/table", "runners/study", "runners/store"}},
+       {"core/contract", "core/loader", "core/scene", "core/engine", "core/measure", "runners/table", "runners/study",
+        "runners/store", "runners/march", "runners/report"}},
       {"runners/run",
-       {"core/contract", "core/loader", "core/measure", "runners/table", "runners/study", "runners/store", "runners/march",
-        "runners/kinds", "runners/report"}},
+       {"core/contract", "core/loader", "core/measure", "runners/table", "runners/study", "runners/store",
+        "runners/march", "runners/kinds", "runners/report"}},
       {"runners/check",
        {"core/contract", "core/loader", "core/algebra", "core/scene", "core/engine", "core/measure", "runners/study",
         "runners/command"}},
       {"runners/command",
-       {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store", "runners/kinds",
-        "runners/run", "runners/report", "runners/check"}},
+       {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
+        "runners/kinds", "runners/run", "runners/report", "runners/check"}},
   };
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {
@@ -216,6 +215,21 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
         const std::string other = layer_of(include);
         INFO("includes " << include);
         CHECK((other.empty() || other == room || below.at(room).count(other)));
+      }
+    }
+}
+
+TEST_CASE("a kind of study is known by name in the rooms of the kinds alone") {
+  std::set<std::string> kinds;
+  for (const auto& folder : fs::directory_iterator(root / "runners" / "kinds"))
+    if (folder.is_directory()) kinds.insert(folder.path().filename().string());
+  REQUIRE(kinds.count("bifurcation") == 1);
+  for (const std::string folder : {"core", "runners"})
+    for (const Source& source : sources(folder)) {
+      if (room_of(source.name) == "runners/kinds") continue;
+      for (const Literal& literal : literals(source.text)) {
+        INFO(source.name << ": \"" << literal.text << '"');
+        CHECK(kinds.count(literal.text) == 0);
       }
     }
 }

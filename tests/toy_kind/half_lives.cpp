@@ -9,6 +9,7 @@
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
+#include "runners/table/table_reader.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -56,6 +57,20 @@ Kind half_lives() {
   kind.outcome = [](const CaseRecord& record) {
     return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
   };
+  kind.page.scripts = {
+      R"js(ricochet.figure("half-lives", (data) => { window.drawnHalfLives = data.rows("halves"); return []; });)js"};
+  kind.page.tables = {"halves"};
+  kind.page.derived = {[](const report::CaseView& view) {
+    Table out{"halves", "One row per case: when half is reached.", {{"case", "", ""}, {"after", "s", "Time."}}, {}};
+    for (const CaseRecord* record : view.all())
+      if (const Table* own = find_table(record->tables, "half_lives"))
+        out.rows.push_back({record->id, own->rows[0][1]});
+    return out;
+  }};
+  kind.page.answer = [](const report::CaseView& view) {
+    const Table* halves = find_table(view.results().derived, "halves");
+    return "<p>Half is reached in " + std::to_string(halves ? halves->rows.size() : 0) + " cases.</p>\n";
+  };
   kind.measures = {{"longest_half_life", "s", "Time after which the smallest share is reached."}};
   return kind;
 }
@@ -92,7 +107,13 @@ TEST_CASE("a kind of study is one record: the program runs one that it has never
   CHECK(table.find("0.25,5.545177444479562") != std::string::npos);
   CHECK(read_text(folder / "cases.csv").find("longest_half_life") != std::string::npos);
   CHECK(std::filesystem::exists(folder / "report.html"));
-  CHECK(read_text(folder / "report.html").find("half-lives") != std::string::npos);
+  const std::string page = read_text(folder / "report.html");
+  CHECK(page.find("half-lives") != std::string::npos);
+  CHECK(page.find("Half is reached in 2 cases.") != std::string::npos);
+  CHECK(page.find("window.drawnHalfLives") != std::string::npos);
+  CHECK(page.find("\"halves\":{\"columns\"") != std::string::npos);
+  CHECK(read_text(folder / "halves.csv").find("after") != std::string::npos);
+  CHECK(read_text(folder / "dictionary.csv").find("halves,after,s,Time.") != std::string::npos);
 
   REQUIRE(command({"report", folder.string()}, said) == 0);
   REQUIRE(command({"export", folder.string(), "--to", (scratch.path() / "export").string()}, said) == 0);

@@ -6,6 +6,7 @@
 
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/comparison/run_comparison.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 
 namespace ricochet {
 namespace {
@@ -65,7 +66,7 @@ std::string errors_text(const CaseRecord& record) {
   for (const auto& [name, value] : record.measures)
     if (name.starts_with(prefix) && parts.size() < shown)
       parts.push_back(fmt::format("{} {:.2e}", name.substr(prefix.size()), value));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return parts.empty() ? energies_text(record) : fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::vector<MeasureInfo> comparison_measures() {

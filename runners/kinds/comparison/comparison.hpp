@@ -12,7 +12,7 @@ Json comparison_settings(const Json& resolved);
 /// anything runs.
 CaseRunner compare_cases(const RunContext& context);
 
-/// "tip-linf 1.23e-04, …": the first errors of a case.
+/// "tip-linf 1.23e-04, …": the first errors of a case; without any, what it says as a trajectory.
 std::string errors_text(const CaseRecord& record);
 
 /// The measures of every comparison: errors, their floors, how they were found.

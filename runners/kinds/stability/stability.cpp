@@ -109,6 +109,9 @@ Kind stability_kind() {
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   };
   kind.outcome = limits_text;
+  kind.contradiction = [](const CaseRecord& record) {
+    return measure(record, "contradictions").value_or(0) > 0 ? "spectrum and march disagree without contact" : "";
+  };
   kind.measures = stability_measures();
   kind.page = report::stability_page();
   return kind;

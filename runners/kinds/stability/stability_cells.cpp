@@ -30,20 +30,19 @@ Table table_of_ranges(std::string name, std::string text, const std::vector<Colu
 }  // namespace
 
 Table stability_cells_table(const StudyResults& results) {
-  Table out =
-      table_of_ranges("stability_cells",
-                      "One row per case, contact state and step: what was predicted there, and what was observed.",
-                      {{"step", "s", "The step."},
-                       {"radius", "1", "Spectral radius of one step of this contact state."},
-                       {"growth", "1", "Spectral radius less one."},
-                       {"worst", "1", "Largest radius of the states that a marched scene meets: it is open as well."},
-                       {"prediction", "", "predicted stable, marginal or unstable; not predicted."},
-                       {"behaviour", "", "What marching showed; nothing where the cell was not marched."},
-                       {"unstable", "", "Whether it was observed to grow."},
-                       {"disagrees", "", "Whether prediction and observation differ."},
-                       {"marginal", "", "Roots on the unit circle, where there are any."},
-                       {"status", "", "stable, marginal, unstable, failed or refused."},
-                       {"reason", "", "Why, where it is not stable."}});
+  Table out = table_of_ranges(
+      "stability_cells", "One row per case, contact state and step: what was predicted there, and what was observed.",
+      {{"step", "s", "The step."},
+       {"radius", "1", "Spectral radius of one step of this contact state."},
+       {"growth", "1", "Spectral radius less one."},
+       {"worst", "1", "Largest radius of the states that a marched scene meets: it is open as well."},
+       {"prediction", "", "predicted stable, marginal or unstable; not predicted."},
+       {"behaviour", "", "What marching showed; nothing where the cell was not marched."},
+       {"unstable", "", "Whether it was observed to grow."},
+       {"disagrees", "", "Whether prediction and observation differ."},
+       {"marginal", "", "Roots on the unit circle, where there are any."},
+       {"status", "", "stable, marginal, unstable, failed or refused."},
+       {"reason", "", "Why, where it is not stable."}});
   each_range(results, [&](const CaseRecord& record, bool closed, const StepRange& range) {
     for (const StepCell& cell : range.cells) {
       const auto growth = cell.radius ? std::optional(*cell.radius - 1) : std::nullopt;

@@ -19,10 +19,6 @@ Json::json_pointer scene_pointer(std::string column) {
 
 }  // namespace
 
-bool went_wrong(const CaseRecord& record) {
-  return record.status == "diverged" || record.status == "failed";
-}
-
 Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json scene = results.study.at("scene"), methods = Json::object();
   for (const std::string& role : roles) methods[role] = Json::object();

@@ -7,7 +7,4 @@ namespace ricochet {
 /// replaced by the case's value, without excludes. Runs as it stands.
 nlohmann::ordered_json minimal_study(const StudyResults& results, const CaseRecord& record);
 
-/// Whether a case deserves one: it went wrong (diverged, failed), rather than being refused or done.
-bool went_wrong(const CaseRecord& record);
-
 }  // namespace ricochet

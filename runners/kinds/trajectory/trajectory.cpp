@@ -1,10 +1,16 @@
 #include "runners/kinds/trajectory/trajectory.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -77,7 +83,31 @@ std::vector<MeasureInfo> trajectory_measures() {
   };
 }
 
+std::string signed_percent(double ratio) {
+  const double percent = 100 * ratio;
+  constexpr double tenth = 0.05, double_noise = 1e-13;  // percent
+  if (std::abs(percent) < double_noise) return "unchanged";
+  const char* sign = percent < 0 ? "−" : "+";
+  const double size = std::abs(percent);
+  return size < tenth ? fmt::format("{}{:.1e} %", sign, size) : fmt::format("{}{:.1f} %", sign, size);
+}
+
 }  // namespace
+
+std::string energies_text(const CaseRecord& record) {
+  std::vector<std::string> parts;
+  auto start = measure(record, "energy_start");
+  auto end = measure(record, "energy_end");
+  if (start && end) {
+    std::string text = fmt::format("energy {:.4g} J → {:.4g} J", *start, *end);
+    if (*start != 0) text += fmt::format(" ({})", signed_percent((*end - *start) / std::abs(*start)));
+    parts.push_back(text);
+  }
+  if (const auto impacts = measure(record, "impacts"))
+    parts.push_back(fmt::format("{:.0f} impact{}", *impacts, *impacts == 1 ? "" : "s"));
+  if (const auto cost = measure(record, "microseconds_per_step")) parts.push_back(fmt::format("{:.3g} µs/step", *cost));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
 
 Kind trajectory_kind() {
   Kind kind;
@@ -99,6 +129,8 @@ Kind trajectory_kind() {
                         choice_worth_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   };
+  kind.curve = curves_head();
+  kind.outcome = energies_text;
   kind.measures = trajectory_measures();
   kind.measures_stand = true;
   kind.alone = minimal_study;

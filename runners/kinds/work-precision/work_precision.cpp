@@ -6,6 +6,7 @@
 #include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/comparison/run_comparison.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
@@ -39,6 +40,7 @@ Kind work_precision_kind() {
     results.derived.push_back(precision_targets_table(results));
     collect_tables(results);
   };
+  kind.curve = curves_head();
   kind.outcome = errors_text;
   kind.measures = {
       {"timed_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats.",

@@ -1,8 +1,7 @@
-#include "runners/kinds/trajectory/page/page.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/page.hpp"
 #include "tests/runners/report/synthetic.hpp"
 

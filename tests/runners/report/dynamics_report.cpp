@@ -1,6 +1,4 @@
 // The sections of kinds `bifurcation` and `basins`: what is told and written for the page is what the cases left.
-#include "runners/kinds/bifurcation/page/page.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/bifurcation/page/orbit_data.hpp"
+#include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/store/record_values.hpp"
 #include "tests/runners/report/rendered.hpp"
@@ -175,7 +174,7 @@ TEST_CASE("nothing is written of cases that left nothing", "[report]") {
   const CaseView view(results);
   CHECK(orbit_data(view, curves).is_null());
   CHECK(curves.blocks().empty());
-  CHECK(page_tables(results, page_of(results.kind)).empty());
+  CHECK(page_tables(results, bifurcation_page()).empty());
   CHECK(dynamics_answer_html(view).empty());
   const std::string page = synthetic::rendered(results, "/* charts */", "6");
   CHECK_THAT(page, Contains("No case has finished with a result"));

@@ -1,15 +1,14 @@
 // The report's evidence: what is told is what the derived tables hold.
-#include "runners/kinds/comparison/page/page.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "runners/kinds/comparison/page/page.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
+#include "runners/kinds/work-precision/page/work_precision.hpp"
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/effects.hpp"
-#include "runners/kinds/work-precision/page/work_precision.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 
 using namespace ricochet;

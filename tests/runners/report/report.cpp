@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "runners/kinds/kind.hpp"
 #include "runners/report/html.hpp"
 #include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic.hpp"

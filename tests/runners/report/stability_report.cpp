@@ -1,8 +1,7 @@
 // What the report of kind `stability` tells is what the cases' tables hold.
-#include "runners/kinds/stability/page/page.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "runners/kinds/stability/page/page.hpp"
 #include "runners/kinds/stability/step_range.hpp"
 #include "runners/run/derive.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"

@@ -6,21 +6,13 @@
 
 #include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
-#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {
-
-std::string name_of(const CaseView& view, const std::string& id) {
-  for (const CaseRecord* record : view.all())
-    if (record->id == id) {
-      const std::string label = view.label(*record);
-      return label.empty() ? "the one case" : label;
-    }
-  return id;
-}
 
 /// Attractors × cases: share of the cells.
 std::string fractions_html(const CaseView& view) {
@@ -33,37 +25,34 @@ std::string fractions_html(const CaseView& view) {
     const auto period = rows.number(row, "period");
     classes[rows.text(row, "attractor")] = regime_text(rows.text(row, "class"), period);
   }
-  std::string head, body;
   const std::vector<std::string> cases = rows.values("case");
-  for (const std::string& one : cases) head += "<th scope=\"col\">" + escape(name_of(view, one)) + "</th>";
+  HtmlTable table("Share of the grid that ends in each attractor, with its 95 % interval.", {{"ends in"}, {"class"}});
+  for (const std::string& one : cases) table.add({view.name_of(one)});
   for (const std::string& attractor : rows.values("attractor")) {
-    body += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>",
-                        escape(attractor.empty() ? "none" : "attractor " + attractor), escape(classes[attractor]));
+    table.row(attractor.empty() ? "none" : "attractor " + attractor).text(classes[attractor]);
     for (const std::string& one : cases) {
       const auto found = place.find({attractor, one});
       const auto share = found == place.end() ? std::nullopt : rows.number(found->second, "fraction");
       if (!share) {
-        body += "<td class=\"number absent\">–</td>";
+        table.absent();
         continue;
       }
       const auto low = rows.number(found->second, "low"), high = rows.number(found->second, "high");
-      body += fmt::format("<td class=\"number\" title=\"{} cells\">{}{}</td>",
-                          number_text(rows.number(found->second, "cells").value_or(0)), share_text(*share),
-                          low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : "");
+      table.number(
+          share_text(*share) + (low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : ""),
+          number_text(rows.number(found->second, "cells").value_or(0)) + " cells");
     }
-    body += "</tr>\n";
   }
-  return fmt::format(
-      "<div class=\"scroll\"><table class=\"matrix\"><caption>Share of the grid that ends in each attractor, with its "
-      "95 % interval.</caption>\n<thead><tr><th scope=\"col\">ends in</th><th "
-      "scope=\"col\">class</th>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      head, body);
+  return table.html();
 }
 
 std::string uncertainty_html(const CaseView& view) {
   const AxisRows rows(view.results(), "basin_uncertainty");
-  if (rows.empty()) return "";
-  std::string body;
+  HtmlTable table(
+      "Uncertainty exponent s: the share of cells with an uncertain end falls as (uncertainty)<sup>s</sup>; 1 is a "
+      "smooth boundary, 0 one that no accuracy resolves (Grebogi, McDonald, Ott and Yorke 1983). With its 95 % "
+      "interval.",
+      {{"case"}, {"cells at the boundary", true}, {"s"}, {""}});
   for (size_t row = 0; row < rows.size(); ++row) {
     const auto value = rows.number(row, "exponent"), low = rows.number(row, "low"), high = rows.number(row, "high"),
                share = rows.number(row, "boundary_share");
@@ -71,38 +60,25 @@ std::string uncertainty_html(const CaseView& view) {
     if (value) text = number_text(*value, 3);
     if (value && low && high) text += fmt::format(" ({} to {})", number_text(*low, 3), number_text(*high, 3));
     const char* said = !value || !high ? "–" : *high < 1 ? "fractal boundary" : "a smooth boundary is not excluded";
-    body += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td><td>{}</td></tr>\n",
-                        escape(name_of(view, rows.text(row, "case"))), share ? share_text(*share) : "–", text, said);
+    table.row(view.name_of(rows.text(row, "case"))).number(share ? share_text(*share) : "–").text(text).text(said);
   }
-  return "<div class=\"scroll\"><table class=\"matrix\"><caption>Uncertainty exponent s: the share of cells with an "
-         "uncertain end falls as (uncertainty)<sup>s</sup>; 1 is a smooth boundary, 0 one that no accuracy resolves "
-         "(Grebogi, McDonald, Ott and Yorke 1983). With its 95 % interval.</caption>\n<thead><tr><th "
-         "scope=\"col\">case</th><th scope=\"col\" class=\"number\">cells at the boundary</th><th "
-         "scope=\"col\">s</th><th "
-         "scope=\"col\"></th></tr></thead>\n<tbody>\n" +
-         body + "</tbody></table></div>\n";
+  return table.html();
 }
 
 std::string differences_html(const CaseView& view) {
   const AxisRows rows(view.results(), "basin_differences");
+  HtmlTable table("Cells that end elsewhere with another method.",
+                  {{"case"}, {"and"}, {"decided in both", true}, {"differ", true}, {"share", true}});
   std::set<std::pair<std::string, std::string>> said;
-  std::string body;
   for (size_t row = 0; row < rows.size(); ++row) {
     const std::string one = rows.text(row, "case"), other = rows.text(row, "other_case");
     if (one == other || !said.emplace(std::min(one, other), std::max(one, other)).second) continue;  // each pair once
-    body += fmt::format(
-        "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
-        "class=\"number\">{}</td></tr>\n",
-        escape(name_of(view, one)), escape(name_of(view, other)), number_text(rows.number(row, "cells").value_or(0)),
-        number_text(rows.number(row, "differ").value_or(0)),
-        rows.number(row, "share") ? share_text(*rows.number(row, "share")) : "–");
+    const auto share = rows.number(row, "share");
+    table.row(view.name_of(one)).text(view.name_of(other));
+    table.number(number_text(rows.number(row, "cells").value_or(0)));
+    table.number(number_text(rows.number(row, "differ").value_or(0))).number(share ? share_text(*share) : "–");
   }
-  if (body.empty()) return "";
-  return "<div class=\"scroll\"><table class=\"matrix\"><caption>Cells that end elsewhere with another "
-         "method.</caption>\n<thead><tr><th scope=\"col\">case</th><th scope=\"col\">and</th><th scope=\"col\" "
-         "class=\"number\">decided in both</th><th scope=\"col\" class=\"number\">differ</th><th scope=\"col\" "
-         "class=\"number\">share</th></tr></thead>\n<tbody>\n" +
-         body + "</tbody></table></div>\n";
+  return table.html();
 }
 
 }  // namespace
@@ -128,7 +104,7 @@ std::string basins_html(const CaseView& view) {
   for (size_t row = 0; row < differences.size(); ++row)
     if (const auto share = differences.number(row, "share"); share && *share > most) {
       most = *share;
-      who = name_of(view, differences.text(row, "case")) + " and " + name_of(view, differences.text(row, "other_case"));
+      who = view.name_of(differences.text(row, "case")) + " and " + view.name_of(differences.text(row, "other_case"));
     }
   if (most >= 0 && basins.grids.size() > 1)
     out += fmt::format(" At most {} of them depend on the method ({}).", share_text(most), escape(who));

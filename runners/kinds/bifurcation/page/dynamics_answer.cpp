@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
+#include "runners/kinds/bifurcation/page/interval.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
-#include "runners/report/html.hpp"
-#include "runners/report/interval.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/html_table.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -90,13 +92,12 @@ GroupCounts total_of(const std::map<std::string, GroupCounts>& counts) {
 }
 
 std::string regime_sentence(const GroupCounts& counts) {
-  size_t all = 0;
-  for (const size_t count : counts) all += count;
+  const size_t all = std::accumulate(counts.begin(), counts.end(), size_t{0});
   std::string parts;
   for (size_t group = 0; group < counts.size(); ++group)
     if (counts[group] > 0)
-      parts += fmt::format("{}<span class=\"swatch\" style=\"background:{}\"></span>{}: {}", parts.empty() ? "" : ", ",
-                           regime_groups[group].colour, regime_groups[group].name, counts[group]);
+      parts += fmt::format("{}{}{}: {}", parts.empty() ? "" : ", ", swatch(regime_groups[group].colour),
+                           regime_groups[group].name, counts[group]);
   return fmt::format("<p>Regimes of {}: {}.</p>\n", count_text(all, "orbit", "orbits"), parts);
 }
 
@@ -149,65 +150,64 @@ std::string range_text(const Interval& range) {
 }
 
 /// α_eq with its share of α; below 1e-12 of it, nothing is told from round-off.
-std::string viscosity_cell(const Viscosity* v) {
-  if (!v) return "<td class=\"absent\">–</td>";
-  if (v->numerical.low == 0 && v->numerical.high == 0) return "<td class=\"text\">0</td>";
-  if (!v->share) return fmt::format("<td class=\"warned\">{}: no α to compare with</td>", range_text(v->numerical));
-  if (*v->share < 1e-12) return "<td class=\"text\">0 to round-off</td>";
-  const std::string text = fmt::format("{}: {} of α", range_text(v->numerical), share_text(*v->share));
-  if (v->small) return "<td class=\"text\">" + text + "</td>";
+void viscosity_cell(HtmlTable& table, const Viscosity* v) {
+  if (!v) {
+    table.absent(false);
+    return;
+  }
+  const std::string range = range_text(v->numerical);
   const bool feeds = v->numerical.low < 0 && -v->numerical.low >= v->numerical.high;
-  return fmt::format("<td class=\"warned\">▲ {}{}</td>", text, feeds ? ", feeding energy" : "");
+  if (v->numerical.low == 0 && v->numerical.high == 0)
+    table.text("0", "text");
+  else if (!v->share)
+    table.text(range + ": no α to compare with", "warned");
+  else if (*v->share < 1e-12)
+    table.text("0 to round-off", "text");
+  else if (v->small)
+    table.text(range + ": " + share_text(*v->share) + " of α", "text");
+  else
+    table.text("▲ " + range + ": " + share_text(*v->share) + " of α" + (feeds ? ", feeding energy" : ""), "warned");
 }
 
-/// Methods × regimes, with the viscosity of each method.
-std::string regime_table(const CaseView& view, const Cases& cases, const std::map<std::string, GroupCounts>& by_case) {
-  const GroupCounts all = total_of(by_case);
-  std::string head;
-  for (size_t group = 0; group < all.size(); ++group)
-    if (all[group] > 0)
-      head += fmt::format(
-          "<th scope=\"col\" class=\"number\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th>",
-          regime_groups[group].colour, regime_groups[group].name);
-  const std::map<std::string, Viscosity> viscosities = viscosities_of(view.results());
+/// What the viscosities of the methods are told against.
+std::string viscosity_caption(const std::map<std::string, Viscosity>& viscosities) {
+  if (viscosities.empty()) return "";
   Interval physical = Interval::nothing();
   size_t not_small = 0;
   for (const auto& [id, v] : viscosities) {
     physical.include(v.physical);
     not_small += !v.small;
   }
-  const size_t known = viscosities.size();
-  const bool any = known > 0;
-  std::string rows;
+  return fmt::format(
+      " α_eq: the stiffness viscosity (s) that the scheme adds to α = {} of the scene, fitted on the free decay of the "
+      "first modes. ▲: more than 1 % of α, so not ≪ α: {} of {} methods.",
+      physical.empty() ? "0" : range_text(physical) + " s", not_small, viscosities.size());
+}
+
+/// Methods × regimes, with the viscosity of each method.
+std::string regime_table(const CaseView& view, const Cases& cases, const std::map<std::string, GroupCounts>& by_case) {
+  const GroupCounts all = total_of(by_case);
+  const std::map<std::string, Viscosity> viscosities = viscosities_of(view.results());
+  HtmlTable table("Orbits (values × starts) by regime." + viscosity_caption(viscosities), {{"method"}});
+  for (size_t group = 0; group < all.size(); ++group)
+    if (all[group] > 0) table.add({regime_groups[group].name, true, "", regime_groups[group].colour});
+  if (!viscosities.empty()) table.add({"α_eq"});
   for (const CaseRecord* record : cases) {
     const GroupCounts& counts = by_case.at(record->id);
-    size_t total = 0;
-    for (const size_t count : counts) total += count;
-    std::string cells;
-    for (size_t group = 0; group < all.size(); ++group)
-      if (all[group] > 0)
-        cells += counts[group] == 0
-                     ? "<td class=\"number absent\">–</td>"
-                     : fmt::format("<td class=\"number\" title=\"{}\">{}</td>",
-                                   share_text(static_cast<double>(counts[group]) / static_cast<double>(total)),
-                                   counts[group]);
-    const std::string label = view.label(*record);
+    const size_t total = std::accumulate(counts.begin(), counts.end(), size_t{0});
+    table.row(view.name(*record), "", record->partial ? " <em>(partial)</em>" : "");
+    for (size_t group = 0; group < all.size(); ++group) {
+      if (all[group] == 0) continue;
+      if (counts[group] == 0)
+        table.absent();
+      else
+        table.number(std::to_string(counts[group]),
+                     share_text(static_cast<double>(counts[group]) / static_cast<double>(total)));
+    }
     const auto viscosity = viscosities.find(record->id);
-    rows += fmt::format("<tr><th scope=\"row\">{}{}</th>{}{}</tr>\n", escape(label.empty() ? "the one method" : label),
-                        record->partial ? " <em>(partial)</em>" : "", cells,
-                        any ? viscosity_cell(viscosity == viscosities.end() ? nullptr : &viscosity->second) : "");
+    if (!viscosities.empty()) viscosity_cell(table, viscosity == viscosities.end() ? nullptr : &viscosity->second);
   }
-  std::string caption = "Orbits (values × starts) by regime.";
-  if (any)
-    caption += fmt::format(
-        " α_eq: the stiffness viscosity (s) that the scheme adds to α = {} of the scene, fitted on the free decay of "
-        "the "
-        "first modes. ▲: more than {} of α, so not ≪ α: {} of {} methods.",
-        physical.empty() ? "0" : range_text(physical) + " s", "1 %", not_small, known);
-  return fmt::format(
-      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>{}</caption>\n<thead><tr><th "
-      "scope=\"col\">method</th>{}{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      cases.size() > 24 ? " tall" : "", caption, head, any ? "<th scope=\"col\">α_eq</th>" : "", rows);
+  return table.html();
 }
 
 }  // namespace

@@ -5,61 +5,18 @@
 #include <map>
 
 #include "runners/kinds/bifurcation/page/page.hpp"
+#include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
-#include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {
-
-constexpr size_t most_rows = 400;
-
-std::string table_html(const std::string& caption, const std::vector<std::string>& headers,
-                       const std::vector<std::string>& rows) {
-  if (rows.empty()) return "";
-  std::string out = fmt::format("<div class=\"scroll{}\"><table class=\"matrix\"><caption>{}</caption>\n<thead><tr>",
-                                rows.size() > 24 ? " tall" : "", caption);
-  for (const std::string& header : headers) out += "<th scope=\"col\">" + escape(header) + "</th>";
-  out += "</tr></thead>\n<tbody>\n";
-  for (size_t k = 0; k < std::min(rows.size(), most_rows); ++k) out += "<tr>" + rows[k] + "</tr>\n";
-  out += "</tbody></table></div>\n";
-  if (rows.size() > most_rows)
-    out += fmt::format("<p class=\"fine\">{} more rows are in the table's CSV file.</p>\n", rows.size() - most_rows);
-  return out;
-}
-
-std::string number_cell(std::optional<double> value, int digits = 6) {
-  return value
-             ? fmt::format("<td class=\"number\" title=\"{}\">{}</td>", exact_text(*value), number_text(*value, digits))
-             : "<td class=\"number absent\">–</td>";
-}
-
-std::string text_cell(const std::string& text) {
-  return "<td>" + (text.empty() ? "–" : escape(text)) + "</td>";
-}
 
 std::string interval_text(const AxisRows& rows, size_t row, const char* low, const char* high, int digits = 7) {
   const auto a = rows.number(row, low), b = rows.number(row, high);
   return a && b ? number_text(*a, digits) + " to " + number_text(*b, digits) : "";
 }
-
-/// What a case is called, by its id.
-class Names {
- public:
-  explicit Names(const CaseView& view) {
-    for (const CaseRecord* record : view.all()) {
-      const std::string label = view.label(*record);
-      names_[record->id] = label.empty() ? "the one method" : label;
-    }
-  }
-  std::string of(const std::string& id) const {
-    const auto found = names_.find(id);
-    return found == names_.end() ? id : found->second;
-  }
-
- private:
-  std::map<std::string, std::string> names_;
-};
 
 std::string percent_range(const AxisRows& rows, size_t row) {
   const auto value = rows.number(row, "fraction");
@@ -70,81 +27,72 @@ std::string percent_range(const AxisRows& rows, size_t row) {
   return out;
 }
 
+/// The table under its title; "" without rows.
+std::string titled(const char* title, const HtmlTable& table) {
+  return table.size() == 0 ? "" : fmt::format("<h3>{}</h3>\n", title) + table.html();
+}
+
 std::string attractors_html(const StudyResults& results) {
   const AxisRows rows(results, "attractors");
-  std::vector<std::string> html;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto period = rows.number(row, "period");
-    const std::string regime = rows.text(row, "class");
-    const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
-    const std::string what = regime_text(regime, period);
-    const std::string symmetric = rows.text(row, "symmetric").empty() ? "" : rows.flag(row, "symmetric") ? "yes" : "no";
-    html.push_back(
-        fmt::format("<th scope=\"row\">{}</th><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",
-                    escape(rows.text(row, "attractor")), regime_groups[group].colour, escape(what)) +
-        text_cell(symmetric) + text_cell(rows.text(row, "label")) + number_cell(rows.number(row, "cases")) +
-        text_cell(interval_text(rows, row, "from", "to", 6)) + text_cell(percent_range(rows, row)) +
-        "<td class=\"reason\">" +
-        escape(rows.text(row, "sentence").empty() ? rows.text(row, "presence") : rows.text(row, "sentence")) + "</td>");
-  }
-  const std::string table = table_html(
+  HtmlTable table(
       "One identity along the parameter and over all methods. Fraction: of the starts that lead there where it exists, "
       "with its 95 % interval. Orbits that are each other's image under x → −x, t → t + T/2 count as one.",
-      {"attractor", "class", "symmetric", "label", "cases", "from, to", "fraction of starts", "where"}, html);
-  return table.empty() ? "" : "<h3>Attractors</h3>\n" + table;
+      {{"attractor"}, {"class"}, {"symmetric"}, {"label"}, {"cases"}, {"from, to"}, {"fraction of starts"}, {"where"}});
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto period = rows.number(row, "period");
+    const std::string regime = rows.text(row, "class"), sentence = rows.text(row, "sentence");
+    const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
+    const std::string symmetric = rows.text(row, "symmetric").empty() ? "" : rows.flag(row, "symmetric") ? "yes" : "no";
+    table.row(rows.text(row, "attractor"));
+    table.cell(swatch(regime_groups[group].colour) + escape(regime_text(regime, period)));
+    table.text(symmetric).text(rows.text(row, "label")).number(rows.number(row, "cases"));
+    table.text(interval_text(rows, row, "from", "to", 6)).text(percent_range(rows, row));
+    table.text(sentence.empty() ? rows.text(row, "presence") : sentence, "reason");
+  }
+  return titled("Attractors", table);
 }
 
-std::string shifts_html(const StudyResults& results, const Names& names, const Quantity& parameter) {
-  const AxisRows rows(results, "shifts");
-  std::vector<std::string> html;
-  std::string reference;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    reference = rows.text(row, "reference_case");
-    std::string shift = "<td class=\"number\">–</td>", interval = "–";
-    if (const auto value = rows.number(row, "shift")) {
-      const auto low = rows.number(row, "low"), high = rows.number(row, "high");
-      const bool beyond = low && high && (*low > 0 || *high < 0);
-      shift = fmt::format("<td class=\"number{}\" title=\"{}\">{}</td>", beyond ? " kept" : "", exact_text(*value),
-                          number_text(*value, 3));
-      if (low && high) interval = number_text(*low, 3) + " to " + number_text(*high, 3);
-    }
-    html.push_back("<th scope=\"row\">" + escape(names.of(rows.text(row, "case"))) + "</th>" +
-                   text_cell(rows.text(row, "start")) +
-                   text_cell(rows.text(row, "from") + " → " + rows.text(row, "to")) +
-                   text_cell(rows.text(row, "kind")) + number_cell(rows.number(row, "reference_value"), 7) +
-                   number_cell(rows.number(row, "value"), 7) + shift + "<td class=\"number\">" + interval + "</td>" +
-                   text_cell(rows.number(row, "value")         ? ""
-                             : rows.text(row, "found").empty() ? ""
-                                                               : "not found"));
-  }
-  const std::string table = table_html(
+std::string shifts_html(const CaseView& view, const Quantity& parameter) {
+  const AxisRows rows(view.results(), "shifts");
+  if (rows.empty()) return "";
+  HtmlTable table(
       fmt::format("Where the changes of the reference ({}) lie in the other methods, in {}. Bold: the interval of the "
                   "shift leaves out zero.",
-                  escape(names.of(reference)), escape(with_unit(parameter))),
-      {"method", "start", "change", "kind", "reference", "here", "shift", "interval", ""}, html);
-  return table.empty() ? "" : "<h3>Shifts of the changes</h3>\n" + table;
+                  escape(view.name_of(rows.text(rows.size() - 1, "reference_case"))), escape(with_unit(parameter))),
+      {{"method"}, {"start"}, {"change"}, {"kind"}, {"reference"}, {"here"}, {"shift"}, {"interval"}, {""}});
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const auto here = rows.number(row, "value"), shift = rows.number(row, "shift"), low = rows.number(row, "low"),
+               high = rows.number(row, "high");
+    const bool beyond = low && high && (*low > 0 || *high < 0), known = shift && low && high;
+    table.row(view.name_of(rows.text(row, "case"))).text(rows.text(row, "start"));
+    table.text(rows.text(row, "from") + " → " + rows.text(row, "to")).text(rows.text(row, "kind"));
+    table.number(rows.number(row, "reference_value"), 7).number(here, 7);
+    if (shift)
+      table.number(number_text(*shift, 3), exact_text(*shift), beyond ? "kept" : "");
+    else
+      table.number("–");
+    table.number(known ? number_text(*low, 3) + " to " + number_text(*high, 3) : "–");
+    table.text(here || rows.text(row, "found").empty() ? "" : "not found");
+  }
+  return titled("Shifts of the changes", table);
 }
 
-std::string changes_html(const CaseView& view, const Names& names, const Quantity& parameter) {
-  std::vector<std::string> html;
+std::string changes_html(const CaseView& view, const Quantity& parameter) {
+  HtmlTable table(fmt::format("Where regimes change, as {}; width: of the interval that holds the change.",
+                              escape(with_unit(parameter))),
+                  {{"method"}, {"start"}, {"kind"}, {"change"}, {"value"}, {"width"}});
   for (const CaseRecord* record : view.all()) {
-    const Table* table = find_table(record->tables, "bifurcations");
-    if (!table) continue;
-    const TableReader rows(*table);
+    const Table* own = find_table(record->tables, "bifurcations");
+    if (!own) continue;
+    const TableReader rows(*own);
     for (size_t row = 0; row < rows.size(); ++row) {
       const auto low = rows.number(row, "low"), high = rows.number(row, "high");
-      html.push_back("<th scope=\"row\">" + escape(names.of(record->id)) + "</th>" +
-                     text_cell(rows.text(row, "start")) + text_cell(rows.text(row, "kind")) +
-                     text_cell(rows.text(row, "from") + " → " + rows.text(row, "to")) +
-                     number_cell(rows.number(row, "value"), 9) +
-                     (low && high ? number_cell(*high - *low, 2) : number_cell(std::nullopt)));
+      table.row(view.name(*record)).text(rows.text(row, "start")).text(rows.text(row, "kind"));
+      table.text(rows.text(row, "from") + " → " + rows.text(row, "to")).number(rows.number(row, "value"), 9);
+      table.number(low && high ? std::optional(*high - *low) : std::nullopt, 2);
     }
   }
-  const std::string table =
-      table_html(fmt::format("Where regimes change, as {}; width: of the interval that holds the change.",
-                             escape(with_unit(parameter))),
-                 {"method", "start", "kind", "change", "value", "width"}, html);
-  return table.empty() ? "" : "<h3>Located changes</h3>\n" + table;
+  return titled("Located changes", table);
 }
 
 /// White to blue; the text turns white where the ground is dark.
@@ -154,52 +102,45 @@ std::string heat_style(double share) {
                      share > 0.6 ? "#fff" : "#222");
 }
 
-std::string agreement_html(const StudyResults& results, const Names& names) {
-  const AxisRows rows(results, "agreement");
+std::string agreement_html(const CaseView& view) {
+  const AxisRows rows(view.results(), "agreement");
   if (rows.empty()) return "";
   const std::vector<std::string> cases = rows.values("case"), others = rows.values("other_case");
   std::map<std::pair<std::string, std::string>, size_t> place;
   for (size_t row = 0; row < rows.size(); ++row) place[{rows.text(row, "case"), rows.text(row, "other_case")}] = row;
-  std::string head, body;
-  for (size_t k = 0; k < others.size(); ++k)
-    head += fmt::format("<th scope=\"col\" class=\"number\" title=\"{}\">{}</th>", escape(names.of(others[k])), k + 1);
-  size_t number = 0;
+  HtmlTable table("Values and starts at which two methods find the same class, in per cent of those that both decide.",
+                  {{"method"}}, "matrix heat");
+  for (size_t k = 0; k < others.size(); ++k) table.add({std::to_string(k + 1), true, view.name_of(others[k])});
   for (const std::string& one : cases) {
-    const auto at = std::find(others.begin(), others.end(), one);
-    number = static_cast<size_t>(at - others.begin()) + 1;
-    body += fmt::format("<tr><th scope=\"row\">{} {}</th>", number, escape(names.of(one)));
+    const auto number = std::find(others.begin(), others.end(), one) - others.begin() + 1;
+    table.row(fmt::format("{} {}", number, view.name_of(one)));
     for (const std::string& other : others) {
       const auto found = place.find({one, other});
       const auto share = found == place.end() ? std::nullopt : rows.number(found->second, "share");
       if (!share) {
-        body += "<td class=\"number absent\">–</td>";
+        table.absent();
         continue;
       }
       const double compared = rows.number(found->second, "compared").value_or(0);
       const auto attractors = rows.number(found->second, "share_attractor");
-      body += fmt::format(
-          "<td class=\"number\" style=\"{}\" title=\"{} and {}: the same class in {} of {} values and "
-          "starts{}\">{:.0f}</td>",
-          heat_style(std::clamp(*share, 0.0, 1.0)), escape(names.of(one)), escape(names.of(other)),
-          number_text(rows.number(found->second, "same_class").value_or(std::round(*share * compared))),
-          number_text(compared), attractors ? ", the same attractor in " + share_text(*attractors) : "", 100 * *share);
+      table.cell(
+          fmt::format("{:.0f}", 100 * *share),
+          fmt::format(
+              " class=\"number\" style=\"{}\" title=\"{} and {}: the same class in {} of {} values and starts{}\"",
+              heat_style(std::clamp(*share, 0.0, 1.0)), escape(view.name_of(one)), escape(view.name_of(other)),
+              number_text(rows.number(found->second, "same_class").value_or(std::round(*share * compared))),
+              number_text(compared), attractors ? ", the same attractor in " + share_text(*attractors) : ""));
     }
-    body += "</tr>\n";
   }
-  return fmt::format(
-      "<h3>Agreement of methods</h3>\n<div class=\"scroll\"><table class=\"matrix heat\"><caption>Values and starts at "
-      "which two methods find the same class, in per cent of those that both decide.</caption>\n<thead><tr><th "
-      "scope=\"col\">method</th>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      head, body);
+  return titled("Agreement of methods", table);
 }
 
 }  // namespace
 
 std::string dynamics_tables_html(const CaseView& view) {
-  const Names names(view);
   const Quantity parameter = swept_parameter(view.results());
-  return attractors_html(view.results()) + agreement_html(view.results(), names) +
-         shifts_html(view.results(), names, parameter) + changes_html(view, names, parameter);
+  return attractors_html(view.results()) + agreement_html(view) + shifts_html(view, parameter) +
+         changes_html(view, parameter);
 }
 
 }  // namespace ricochet::report

@@ -60,8 +60,7 @@ Cases cases_along(const CaseView& view, const std::string& refined) {
 }  // namespace
 
 Table order_lines(const CaseView& view) {
-  const AxisRows errors(view.results(), "errors", {"error"}),
-      orders(view.results(), "orders", {"refined", "error"});
+  const AxisRows errors(view.results(), "errors", {"error"}), orders(view.results(), "orders", {"refined", "error"});
   Table out{"order_lines",
             "One row per line of a convergence figure: the longest run of points above their floor within a factor of "
             "two of e = C x^p.",

@@ -5,6 +5,7 @@
 #include "runners/kinds/comparison/page/page.hpp"
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -20,23 +21,19 @@ std::string verdict_class(const std::string& verdict) {
 }
 
 /// One order as "0.99 ✓": ✓ confirmed, ✕ refuted, ? undecided, none where nothing is declared.
-std::string cell(const AxisRows& rows, std::optional<size_t> row) {
-  if (!row) return "<td class=\"number absent\">–</td>";
-  const std::string verdict = rows.text(*row, "verdict");
-  const auto order = rows.number(*row, "order");
-  const bool declared = rows.number(*row, "declared").has_value();
-  return fmt::format("<td class=\"number {}\" title=\"{}{}{}: {}\">{}{}</td>", verdict_class(declared ? verdict : ""),
-                     interval_text(rows, *row), order ? " " : "", escape(verdict), escape(rows.text(*row, "reason")),
-                     order ? order_number(*order) : "–",
-                     !declared                ? ""
-                     : verdict == "confirmed" ? " ✓"
-                     : verdict == "refuted"   ? " ✕"
-                                              : " ?");
+void order_cell(HtmlTable& table, const AxisRows& rows, size_t row) {
+  const std::string verdict = rows.text(row, "verdict"), interval = interval_text(rows, row);
+  const auto order = rows.number(row, "order");
+  const bool declared = rows.number(row, "declared").has_value();
+  const char* mark = !declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
+  table.number((order ? order_number(*order) : "–") + mark,
+               fmt::format("{}{}{}: {}", interval, order ? " " : "", verdict, rows.text(row, "reason")),
+               verdict_class(declared ? verdict : ""));
 }
 
 /// What a row is about, without the kind of error.
 struct Method {
-  std::string head, key, refined;
+  std::string label, colour, key, refined;
   std::vector<size_t> rows;
 };
 
@@ -53,11 +50,11 @@ std::vector<Method> methods(const CaseView& view, const AxisRows& rows) {
     auto found = std::find_if(out.begin(), out.end(), [&](const Method& m) { return m.key == key; });
     if (found == out.end()) {
       const CaseRecord* example = rows.example(row, view.results());
-      const std::string label = example ? view.label(*example, columns) : "";
-      std::string head =
-          example ? fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", view.colour(*example)) : "";
-      head += escape(label.empty() ? "the one method" : label);
-      found = out.insert(out.end(), {std::move(head), key, rows.text(row, "refined"), {}});
+      found = out.insert(out.end(), {example ? view.name(*example, columns) : "the one method",
+                                     example ? view.colour(*example) : "",
+                                     key,
+                                     rows.text(row, "refined"),
+                                     {}});
     }
     found->rows.push_back(row);
   }
@@ -78,50 +75,43 @@ std::string declared_text(const AxisRows& rows, const Method& method) {
 /// Methods × errors.
 std::string matrix(const AxisRows& rows, const std::vector<Method>& all) {
   const std::vector<std::string> errors = rows.values("error");
-  std::string out = fmt::format(
-      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>Order p of e ≈ C r<sup>p</sup>, r the step or the "
-      "length "
-      "of an element, fitted over the range that behaves so. ✓ confirms the declared order, ✕ refutes it, ? does not "
-      "decide; the tooltip has the 95 % interval and the reason.</caption>\n<thead><tr><th "
-      "scope=\"col\">method</th><th scope=\"col\">refined</th><th scope=\"col\" class=\"number\">declared</th>",
-      all.size() > 24 ? " tall" : "");
-  for (const std::string& error : errors) out += "<th scope=\"col\" class=\"number\">" + escape(error) + "</th>";
-  out += "</tr></thead>\n<tbody>\n";
+  HtmlTable table(
+      "Order p of e ≈ C r<sup>p</sup>, r the step or the length of an element, fitted over the range that behaves so. "
+      "✓ "
+      "confirms the declared order, ✕ refutes it, ? does not decide; the tooltip has the 95 % interval and the reason.",
+      {{"method"}, {"refined"}, {"declared", true}});
+  for (const std::string& error : errors) table.add({error, true});
   for (const Method& method : all) {
-    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td>", method.head,
-                       escape(method.refined), declared_text(rows, method));
+    table.row(method.label, method.colour).text(method.refined).number(declared_text(rows, method));
     for (const std::string& error : errors) {
       const auto found = std::find_if(method.rows.begin(), method.rows.end(),
                                       [&](size_t row) { return rows.text(row, "error") == error; });
-      out += cell(rows, found == method.rows.end() ? std::nullopt : std::optional(*found));
+      if (found == method.rows.end())
+        table.absent();
+      else
+        order_cell(table, rows, *found);
     }
-    out += "</tr>\n";
   }
-  return out + "</tbody></table></div>\n";
+  return table.html();
 }
 
 /// Every order with its interval and reason, what is not confirmed first.
 std::string details(const AxisRows& rows, const std::vector<Method>& all) {
-  std::string out =
-      "<details><summary>Every order with its interval, verdict and reason</summary>\n<div class=\"scroll\"><table "
-      "class=\"matrix\"><thead><tr><th scope=\"col\">method</th><th scope=\"col\">refined</th><th "
-      "scope=\"col\">error</th><th scope=\"col\" class=\"number\">order</th><th scope=\"col\" "
-      "class=\"number\">declared</th><th scope=\"col\">verdict</th><th "
-      "scope=\"col\">reason</th></tr></thead>\n<tbody>\n";
+  HtmlTable table("",
+                  {{"method"}, {"refined"}, {"error"}, {"order", true}, {"declared", true}, {"verdict"}, {"reason"}});
   for (const char* wanted : {"refuted", "undecided", "confirmed"})
     for (const Method& method : all)
       for (const size_t row : method.rows) {
         const std::string verdict = rows.text(row, "verdict");
         if (verdict != wanted) continue;
         const auto order = rows.number(row, "order"), declared = rows.number(row, "declared");
-        out += fmt::format(
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"text\">{}</td><td class=\"number\">{} {}</td><td "
-            "class=\"number\">{}</td><td class=\"{}\">{}</td><td class=\"reason\">{}</td></tr>\n",
-            method.head, escape(method.refined), escape(rows.text(row, "error")), order ? order_number(*order) : "–",
-            interval_text(rows, row), declared ? number_text(*declared, 3) : "–", verdict_class(verdict), verdict,
-            escape(rows.text(row, "reason")));
+        table.row(method.label, method.colour).text(method.refined).text(rows.text(row, "error"), "text");
+        table.number((order ? order_number(*order) : "–") + " " + interval_text(rows, row));
+        table.number(declared ? number_text(*declared, 3) : "–");
+        table.text(verdict, verdict_class(verdict)).text(rows.text(row, "reason"), "reason");
       }
-  return out + "</tbody></table></div></details>\n";
+  return "<details><summary>Every order with its interval, verdict and reason</summary>\n" + table.html() +
+         "</details>\n";
 }
 
 /// "24 orders against what the methods declare: 18 confirmed, 2 refuted, 4 undecided."

@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
-#include "runners/report/html.hpp"
 #include "runners/kinds/stability/page/page.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/html_table.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -50,35 +51,30 @@ std::string stability_html(const CaseView& view) {
   const Table* limits = find_table(view.results().derived, "step_limits");
   if (!limits) return "";
   const TableReader rows(*limits);
-  std::string lines;
-  size_t ranges = 0;
+  HtmlTable table(
+      "Step limits in seconds. Open: the structure alone. Closed: predicted with points held on both sides, the worst "
+      "of "
+      "several sets; observed in the scene itself, which is open as well: the ratio is to the smaller of both "
+      "predictions.",
+      {{"method"},
+       {"contact"},
+       {"predicted limit", true},
+       {"observed limit", true},
+       {"observed / predicted", true},
+       {"marginal roots, and what grows at the first step that is not stable"}});
   for (size_t row = 0; row < rows.size(); ++row) {
-    if (rows.truth(row, "counted") != true) continue;
     const CaseRecord* record = view.find(rows.text(row, "case"));
-    if (!record) continue;
-    ++ranges;
+    if (!record || rows.truth(row, "counted") != true) continue;
     const bool closed = rows.truth(row, "closed") == true;
-    const std::string label = view.label(*record, closed ? view.varying() : view.varying_without({"contact"}));
+    const auto columns = closed ? view.varying() : view.varying_without({"contact"});
     const auto ratio = rows.number(row, "ratio");
-    lines += fmt::format(
-        "<tr><th scope=\"row\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th><td>{}</td><td "
-        "class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
-        "class=\"reason\">{}</td></tr>\n",
-        view.colour(*record), escape(label.empty() ? "the one method" : label), closed ? "closed" : "open",
-        limit_text(rows, row, "predicted", "prediction"), limit_text(rows, row, "observed", "observation"),
-        ratio ? number_text(*ratio, 4) : "–", escape(why(rows, row)));
+    table.row(view.name(*record, columns), view.colour(*record)).text(closed ? "closed" : "open");
+    table.number(limit_text(rows, row, "predicted", "prediction"));
+    table.number(limit_text(rows, row, "observed", "observation"));
+    table.number(ratio ? number_text(*ratio, 4) : "–").text(why(rows, row), "reason");
   }
-  if (ranges == 0) return "";
-  return fmt::format(
-      "<p class=\"lead\">{}</p>\n<div class=\"scroll{}\"><table class=\"matrix\"><caption>Step limits in seconds. "
-      "Open: "
-      "the structure alone. Closed: predicted with points held on both sides, the worst of several sets; observed in "
-      "the scene itself, which is open as well: the ratio is to the smaller of both "
-      "predictions.</caption>\n<thead><tr><th scope=\"col\">method</th><th scope=\"col\">contact</th><th "
-      "scope=\"col\" class=\"number\">predicted limit</th><th scope=\"col\" class=\"number\">observed limit</th><th "
-      "scope=\"col\" class=\"number\">observed / predicted</th><th scope=\"col\">marginal roots, and what "
-      "grows at the first step that is not stable</th></tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
-      agreement_text(view.results()), ranges > 24 ? " tall" : "", lines);
+  if (table.size() == 0) return "";
+  return "<p class=\"lead\">" + agreement_text(view.results()) + "</p>\n" + table.html();
 }
 
 }  // namespace ricochet::report

@@ -1,12 +1,12 @@
-#include "runners/kinds/trajectory/page/page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -15,10 +15,6 @@ namespace {
 const Table* derived(const CaseView& view, std::string_view name) {
   const Table* table = find_table(view.results().derived, name);
   return table && !table->rows.empty() ? table : nullptr;
-}
-
-std::string swatch(const std::string& colour) {
-  return fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", colour);
 }
 
 std::string item(const std::string& text) {
@@ -219,15 +215,17 @@ std::string mass_sentences(const CaseView& view) {
   return out;
 }
 
-std::string matrix_cell(const CaseRecord* record, const EnergyEnd* end, bool conservative_study) {
-  if (!record) return "<td class=\"number absent\">not run yet</td>";
-  if (record->status != "done")
-    return fmt::format("<td class=\"number status {0}\" title=\"{1}\">{0}</td>", escape(record->status),
-                       escape(record->reason));
-  if (!end) return "<td class=\"number absent\">–</td>";
-  const bool kept = conservative_study && end->kept;
-  return fmt::format("<td class=\"number{}\" title=\"{}{}\">{}</td>", kept ? " kept" : "", exact_text(end->ratio),
-                     kept ? ": kept within the noise floor" : "", percent_text(end->ratio));
+void ratio_cell(HtmlTable& table, const CaseRecord* record, const EnergyEnd* end, bool conservative_study) {
+  const bool kept = end && conservative_study && end->kept;
+  if (!record)
+    table.absent(true, "not run yet");
+  else if (record->status != "done")
+    table.number(record->status, record->reason, "status " + record->status);
+  else if (!end)
+    table.absent();
+  else
+    table.number(percent_text(end->ratio), exact_text(end->ratio) + (kept ? ": kept within the noise floor" : ""),
+                 kept ? "kept" : "");
 }
 
 /// "; diverged at 1e-6", so that a trend is not read without its missing end.
@@ -246,11 +244,11 @@ std::string unfinished_steps(const Cases& cases) {
 /// Methods × steps: energy ratio and trend.
 std::string matrix(const CaseView& view) {
   const std::vector<EnergyEnd> ends = energy_ends(view);
-  const Table* table = derived(view, "energy_trends");
-  if (ends.empty() || !table) return "";
+  const Table* found = derived(view, "energy_trends");
+  if (ends.empty() || !found) return "";
   std::map<const CaseRecord*, const EnergyEnd*> end_of;
   for (const EnergyEnd& end : ends) end_of[end.record] = &end;
-  const TableReader trends(*table);
+  const TableReader trends(*found);
   std::map<std::string, size_t> trend_of;  // by the case that stands for the method
   for (size_t row = 0; row < trends.size(); ++row) trend_of[trends.text(row, "case")] = row;
   const bool keeps = conservative(view);
@@ -262,25 +260,23 @@ std::string matrix(const CaseView& view) {
   std::sort(steps.rbegin(), steps.rend());
   if (steps.empty()) return "";
   const std::vector<CaseGroup> groups = view.group(view.all(), view.varying_without({"step"}));
-  std::string out = fmt::format(
-      "<div class=\"scroll{}\"><table class=\"matrix\"><caption>Energy at the end over energy at the start, E(T)/E(0). "
-      "Columns: step h (s), coarse to fine. {}</caption>\n<thead><tr><th scope=\"col\">method</th>",
-      groups.size() > 24 ? " tall" : "",
-      keeps
-          ? "Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, where it falls."
-          : "Order: of the moves between neighbouring steps, from the three finest, where they shrink.");
-  for (const double step : steps) out += "<th scope=\"col\" class=\"number\">" + exact_text(step) + "</th>";
-  out +=
-      "<th scope=\"col\" class=\"number\">order</th><th scope=\"col\">as the step shrinks</th></tr></thead>\n<tbody>\n";
+  HtmlTable table(
+      fmt::format("Energy at the end over energy at the start, E(T)/E(0). Columns: step h (s), coarse to fine. {}",
+                  keeps ? "Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, "
+                          "where it falls."
+                        : "Order: of the moves between neighbouring steps, from the three finest, where they shrink."),
+      {{"method"}});
+  for (const double step : steps) table.add({exact_text(step), true});
+  table.add({"order", true});
+  table.add({"as the step shrinks"});
   for (const CaseGroup& group : groups) {
-    out += fmt::format("<tr><th scope=\"row\">{}{}</th>", swatch(view.colour(*group.cases.front())),
-                       escape(group.label.empty() ? "all" : group.label));
+    table.row(group.label.empty() ? "all" : group.label, view.colour(*group.cases.front()));
     for (const double step : steps) {
-      const auto found = std::find_if(group.cases.begin(), group.cases.end(),
-                                      [&](const CaseRecord* r) { return CaseView::number(*r, "step") == step; });
-      const CaseRecord* record = found == group.cases.end() ? nullptr : *found;
+      const auto at = std::find_if(group.cases.begin(), group.cases.end(),
+                                   [&](const CaseRecord* r) { return CaseView::number(*r, "step") == step; });
+      const CaseRecord* record = at == group.cases.end() ? nullptr : *at;
       const auto end = end_of.find(record);
-      out += matrix_cell(record, end == end_of.end() ? nullptr : end->second, keeps);
+      ratio_cell(table, record, end == end_of.end() ? nullptr : end->second, keeps);
     }
     std::string order = "–", words = "no finished case";
     for (const CaseRecord* record : group.cases)
@@ -288,49 +284,51 @@ std::string matrix(const CaseView& view) {
         words = trend_sentence(trends, trend->second);
         if (const auto fitted = trends.number(trend->second, "order")) order = number_text(*fitted, 2);
       }
-    out += fmt::format("<td class=\"number\">{}</td><td>{}</td></tr>\n", order, words + unfinished_steps(group.cases));
+    table.number(order).text(words + unfinished_steps(group.cases));
   }
-  return out + "</tbody></table></div>\n";
+  return table.html();
 }
 
 /// What each choice is worth: its rows of `choice_worth`, one for the energy and one for the tip, side by side.
 std::string choice_worth(const CaseView& view) {
-  const Table* table = derived(view, "choice_worth");
-  if (!table) return "";
-  const TableReader worth(*table);
-  struct Line {
-    std::string choice, energy, tip;
-    double comparisons = 0;
-  };
-  std::vector<Line> lines;
+  const Table* found = derived(view, "choice_worth");
+  if (!found) return "";
+  const TableReader worth(*found);
+  std::vector<std::string> choices;
+  std::map<std::string, size_t> energy, tip;  // rows
   bool ratios = false;
   for (size_t row = 0; row < worth.size(); ++row) {
     const std::string choice = worth.text(row, "choice"), measure = worth.text(row, "measure");
-    if (lines.empty() || lines.back().choice != choice) lines.push_back({choice, "", "", 0});
-    Line& line = lines.back();
-    (measure == "tip_displacement_end" ? line.tip : line.energy) =
-        fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>",
-                    number_text(worth.number(row, "median").value_or(0), 3),
-                    number_text(worth.number(row, "largest").value_or(0), 3));
-    line.comparisons = std::max(line.comparisons, worth.number(row, "comparisons").value_or(0));
+    if (choices.empty() || choices.back() != choice) choices.push_back(choice);
+    (measure == "tip_displacement_end" ? tip : energy)[choice] = row;
     ratios = ratios || measure == "energy_ratio";
   }
-  std::string rows;
-  const std::string none = "<td class=\"number absent\">–</td><td class=\"number absent\">–</td>";
-  for (const Line& line : lines)
-    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td>{}{}</tr>\n", escape(line.choice),
-                        line.comparisons, line.energy.empty() ? none : line.energy, line.tip.empty() ? none : line.tip);
-  return fmt::format(
-      "<div class=\"scroll\"><table class=\"matrix\"><caption>What each choice is worth: the spread of a result over "
-      "the finished cases that "
-      "differ in this choice alone. A method's name stands for the method with its "
-      "parameters.</caption>\n<thead><tr><th "
-      "scope=\"col\">choice</th><th scope=\"col\" class=\"number\">comparisons</th><th scope=\"col\" "
-      "class=\"number\">{0}: median</th><th "
-      "scope=\"col\" class=\"number\">{0}: largest</th><th scope=\"col\" class=\"number\">tip at the end (m): "
-      "median</th><th scope=\"col\" "
-      "class=\"number\">tip at the end (m): largest</th></tr></thead>\n<tbody>\n{1}</tbody></table></div>\n",
-      ratios ? "E(T)/E(0)" : "E(T) (J)", rows);
+  const std::string what = ratios ? "E(T)/E(0)" : "E(T) (J)";
+  HtmlTable table(
+      "What each choice is worth: the spread of a result over the finished cases that differ in this choice alone. A "
+      "method's name stands for the method with its parameters.",
+      {{"choice"},
+       {"comparisons", true},
+       {what + ": median", true},
+       {what + ": largest", true},
+       {"tip at the end (m): median", true},
+       {"tip at the end (m): largest", true}});
+  for (const std::string& choice : choices) {
+    double comparisons = 0;
+    for (const auto* rows : {&energy, &tip})
+      if (const auto row = rows->find(choice); row != rows->end())
+        comparisons = std::max(comparisons, worth.number(row->second, "comparisons").value_or(0));
+    table.row(choice).number(fmt::format("{}", comparisons));
+    for (const auto* rows : {&energy, &tip})
+      for (const char* spread : {"median", "largest"}) {
+        const auto row = rows->find(choice);
+        if (row == rows->end())
+          table.absent();
+        else
+          table.number(number_text(worth.number(row->second, spread).value_or(0), 3));
+      }
+  }
+  return table.html();
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "runners/kinds/trajectory/page/page.hpp"
-
 #include <cmath>
+
+#include "runners/kinds/trajectory/page/page.hpp"
 
 namespace ricochet::report {
 

@@ -1,5 +1,4 @@
 #include "tests/runners/report/browser/browser.hpp"
-#include "tests/runners/report/rendered.hpp"
 
 #include <sys/wait.h>
 
@@ -9,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/runners/report/rendered.hpp"
 
 namespace ricochet::browser {
 namespace {

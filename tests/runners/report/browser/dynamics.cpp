@@ -4,6 +4,7 @@
 #include <set>
 
 #include "runners/kinds/basins/page/basins.hpp"
+#include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/synthetic_dynamics.hpp"

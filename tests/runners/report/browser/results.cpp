@@ -114,9 +114,7 @@ void check_work(const Ran& ran, const Json& page) {
           const Json views = times.at("views");
           return std::find(views.begin(), views.end(), row[kind].text()) != views.end();
         })));
-  const auto at = [&](const char* name) {
-    return find_column(points.columns, name).value();
-  };
+  const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
   CHECK(on_front == static_cast<size_t>(std::count_if(points.rows.begin(), points.rows.end(),
                                                       [&](const auto& row) { return row[at("on_front")] == true; })));
   CHECK(on_front > 0);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "runners/run/derive.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
@@ -85,7 +86,7 @@ void check_map(const Json& page) {
 
 TEST_CASE("figures of stability draw cells and limits", "[report][browser]") {
   if (left_out()) return;
-  const StudyResults results = synthetic::stability();
+  const StudyResults results = with_tables(synthetic::stability());
   const Json pages = read_back("stability", {page_of("stability", results)});
   require_works(pages.at("stability"), results.cases.size());
   check_radii(pages.at("stability"));

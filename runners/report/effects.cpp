@@ -1,4 +1,4 @@
-#include "runners/report/effects_words.hpp"
+#include "runners/report/effects.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,27 @@
 
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {
+
+constexpr size_t most_shares = 12;  // that a chart shows
+
+/// The share of a measure's variance that one choice, or an interaction, has.
+struct MeasureShare {
+  std::string factor;
+  double share = 0, low = 0, high = 0;
+  size_t order = 1;  ///< factors that take part; 4 for all that is higher, 0 for repeats
+};
+
+/// The shares of one measure, largest first.
+struct MeasureShares {
+  std::string name;
+  bool log = false;
+  std::vector<MeasureShare> shares;
+  bool told() const { return !shares.empty() && shares.front().share > 0; }
+};
 
 std::vector<std::string> choices_in(const std::string& factor) {
   static const std::string times = " × ";
@@ -41,17 +59,18 @@ std::string source_of_spread(const MeasureShare& share, const std::string& first
   return out;
 }
 
-}  // namespace
-
+/// A name of a column as words.
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
+/// A share in per cent: two digits where it is small, no decimals where it is not.
 std::string effects_percent(double share) {
   return share < 0.095 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
+/// The table `effects` by measure.
 std::vector<MeasureShares> measure_shares(const StudyResults& results) {
   const AxisRows rows(results, "effects");
   std::vector<MeasureShares> out;
@@ -70,6 +89,7 @@ std::vector<MeasureShares> measure_shares(const StudyResults& results) {
   return out;
 }
 
+/// "87 % of the spread of energy end comes from the mass matrix, 9 % from its interaction with the step."
 std::string effects_sentence(const MeasureShares& measure) {
   if (!measure.told()) return fmt::format("No shares for {}.", in_words(measure.name));
   const MeasureShare& largest = measure.shares.front();
@@ -84,6 +104,7 @@ std::string effects_sentence(const MeasureShares& measure) {
   return out + ".";
 }
 
+/// What the shares are not of: cases without the measure, choices that do not vary.
 std::string effects_caveats(const CaseView& view, const MeasureShares& measure) {
   std::string out, statuses;
   size_t without = 0;
@@ -107,6 +128,52 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
                        measure.told() ? "; what they would be is estimated from the others" : "");
   if (!fixed.empty()) out += fmt::format(" One level only, so no share: {}.", fixed);
   return out;
+}
+
+}  // namespace
+
+Table effects_said(const CaseView& view) {
+  Table out{"effects_said",
+            "One row per measure: what the shares of effects.csv say, in words.",
+            {{"measure", "", "Name of the measure, a column of cases.csv."},
+             {"log", "", "Whether its logarithm was taken."},
+             {"sentence", "", "The largest shares as a sentence."},
+             {"caveats", "", "What the shares leave out."},
+             {"rest", "1", "Number of small shares that a chart shows together."},
+             {"rest_share", "1", "What these explain together."}},
+            {}};
+  for (const MeasureShares& measure : measure_shares(view.results())) {
+    size_t rest = 0;
+    double together = 0;
+    for (size_t k = most_shares; k < measure.shares.size(); ++k) {
+      ++rest;
+      together += measure.shares[k].share;
+    }
+    out.rows.push_back(
+        {measure.name, measure.log, effects_sentence(measure), effects_caveats(view, measure), rest, together});
+  }
+  return out;
+}
+
+std::string effects_html(const CaseView& view) {
+  const std::vector<MeasureShares> all = measure_shares(view.results());
+  if (all.empty()) return "";
+  std::string sentences = "<ul class=\"answer\">\n";
+  HtmlTable table("", {{"measure"}, {"choice"}, {"share", true}, {"interval", true}}, "plain");
+  for (const MeasureShares& measure : all) {
+    sentences += fmt::format("<li>{}<span class=\"fine\">{}</span></li>\n", escape(effects_sentence(measure)),
+                             escape(effects_caveats(view, measure)));
+    for (const MeasureShare& share : measure.shares)
+      if (share.share >= 1e-3) {
+        table.row().text(in_words(measure.name) + (measure.log ? " (log)" : "")).text(share.factor);
+        table.number(effects_percent(share.share), exact_text(share.share));
+        table.number(effects_percent(share.low) + " to " + effects_percent(share.high));
+      }
+  }
+  sentences += "</ul>\n";
+  if (table.size() == 0) return sentences;
+  return sentences + "<details><summary>Shares of 0.1 % and more, with 95 % intervals</summary>\n" + table.html() +
+         "</details>\n";
 }
 
 }  // namespace ricochet::report
