@@ -63,11 +63,10 @@ class BasinsRun {
   // The ends of a batch of cells; batches that an interrupted run had finished are read.
   std::vector<CellEnd> march(const std::vector<std::size_t>& batch) {
     const int number = batches_++;
-    if (desk_.shelf.find)
-      if (const std::string bytes = desk_.shelf.find(batch_key(number)); !bytes.empty()) {
-        if (scenes_.scenes().groups() == 0) prepare_some(batch);
-        return cell_ends(bytes);
-      }
+    if (auto known = recall(desk_.shelf, batch_key(number), cell_ends); known && known->size() == batch.size()) {
+      if (scenes_.scenes().groups() == 0) prepare_some(batch);
+      return std::move(*known);
+    }
     const double begun = thread_seconds();
     scenes_.begin();
     std::vector<CellEnd> ends(batch.size());

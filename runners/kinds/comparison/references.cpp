@@ -251,13 +251,12 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
                                   const std::atomic<bool>& stop) {
   const std::string name = key(study_case, choice);
   return once<ReferencePointer>(known_, name, stop, [&]() -> ReferencePointer {
-    if (shelf_.find)
-      if (const std::string stored = shelf_.find(name); !stored.empty()) {
-        const bool marched = choice.name == marched_reference;
-        const bool mesh =
-            marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
-        return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, motion_from_bytes(stored)});
-      }
+    if (auto stored = recall(shelf_, name, motion_from_bytes)) {
+      const bool marched = choice.name == marched_reference;
+      const bool mesh =
+          marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
+      return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, std::move(*stored)});
+    }
     KnownReference known = compute(study_case, choice, stop);
     if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
     return std::make_shared<const KnownReference>(std::move(known));

@@ -13,7 +13,6 @@
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/march/bytes.hpp"
 #include "runners/march/case_watch.hpp"
 #include "runners/march/prepare_case.hpp"
 
@@ -28,17 +27,6 @@ struct Batch {
   int group = 0;
   std::vector<std::size_t> orbits;
 };
-
-template <class Archive, class Exponents>
-void describe_exponents(Archive& archive, Exponents& exponents) {
-  bool twin = exponents.twin.has_value();
-  archive(exponents.values);
-  archive(twin);
-  if (twin && !exponents.twin) exponents.twin.emplace();
-  if (twin)
-    for (auto Interval::*part : {&Interval::value, &Interval::low, &Interval::high}) archive((*exponents.twin).*part);
-  archive(exponents.method);
-}
 
 bool usable(const std::vector<double>& rates) {
   return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
@@ -126,17 +114,17 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     const double began = thread_seconds();
     try {
       for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
-        const std::string known = task.find ? task.find(i) : "";
-        if (!known.empty()) {
-          ByteReader reader(known);
-          for (const std::size_t orbit : batches[i].orbits) describe_exponents(reader, found[orbit]);
+        const std::vector<std::size_t>& members = batches[i].orbits;
+        std::vector<OrbitExponents> known = task.find ? task.find(i) : std::vector<OrbitExponents>();
+        if (known.size() == members.size()) {
+          for (std::size_t b = 0; b < members.size(); ++b) found[members[b]] = std::move(known[b]);
           continue;
         }
         measure(batches[i]);
         if (!task.keep) continue;
-        ByteWriter writer;
-        for (const std::size_t orbit : batches[i].orbits) describe_exponents(writer, found[orbit]);
-        task.keep(i, writer.bytes);
+        known.clear();
+        for (const std::size_t orbit : members) known.push_back(found[orbit]);
+        task.keep(i, known);
       }
     } catch (...) {
       const std::lock_guard guard(mutex);
