@@ -10,7 +10,8 @@
 
 namespace ricochet {
 
-/// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once stored, or "".
+/// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once
+/// stored, or "".
 struct MotionShelf {
   std::function<std::string(const std::string& key)> find;
   std::function<void(const std::string& key, const std::string& content)> keep;

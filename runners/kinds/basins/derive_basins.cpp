@@ -199,9 +199,8 @@ class BasinImages {
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
         const auto [regime, period] = class_cells(attractors_[a]);
-        Row row = place_of(results_, *images_[c].record);
-        row.insert(row.end(), {a + 1, regime, period, count, share.value, share.low, share.high});
-        table.rows.push_back(std::move(row));
+        add_row(table, place_of(results_, *images_[c].record),
+                {a + 1, regime, period, count, share.value, share.low, share.high});
       }
     }
     return table;
@@ -222,16 +221,12 @@ class BasinImages {
     Table table = table_of_cases(results_, basin_uncertainty_head());
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::vector<int> labels = attractors_of(grids_[c]);
-      Row row = place_of(results_, *images_[c].record);
-      row.emplace_back(boundary_share(grids_[c]));
       const auto exponent =
           labels.empty() ? std::nullopt
                          : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
-      if (exponent)
-        row.insert(row.end(), {exponent->value, exponent->low, exponent->high});
-      else
-        row.insert(row.end(), {nullptr, nullptr, nullptr});
-      table.rows.push_back(std::move(row));
+      Row row = {boundary_share(grids_[c]), nullptr, nullptr, nullptr};
+      if (exponent) row = {row.front(), exponent->value, exponent->low, exponent->high};
+      add_row(table, place_of(results_, *images_[c].record), row);
     }
     return table;
   }

@@ -15,6 +15,7 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -216,10 +217,10 @@ class BasinsRun {
       complete += end.status == "done";
       if (end.status != "done" && !bad) bad = &end;
     }
-    put("orbits", static_cast<double>(complete));
+    put_measure(record_, "orbits", static_cast<double>(complete));
     if (lane_periods_ > 0)
-      put("lane_steps_per_second",
-          static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));
+      put_measure(record_, "lane_steps_per_second",
+                  static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));
     if (refines(case_))
       record_.notes.push_back(fmt::format(
           "{} of {} cells were marched, {} filled from a marched one of their basin: only boundaries are refined",
@@ -235,10 +236,6 @@ class BasinsRun {
       record_.notes.push_back(fmt::format("{} of {} marched cells were refused or stopped; their rows say why",
                                           marched + refused - complete, marched + refused));
     }
-  }
-
-  void put(const char* name, double value) {
-    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
   }
 
   const StudyCase& case_;

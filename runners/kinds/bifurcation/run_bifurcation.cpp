@@ -20,6 +20,7 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -281,7 +282,7 @@ class BifurcationRun {
       const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
       record_.run_seconds += seconds;
       for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
-      put("exponent_seconds", seconds);
+      put_measure(record_, "exponent_seconds", seconds);
     }
     classify_all(all);
     write_tables(record_, all);
@@ -293,10 +294,11 @@ class BifurcationRun {
     long long marched = 0, bad = 0;
     for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
     record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
-    put("orbits", static_cast<double>(marched));
+    put_measure(record_, "orbits", static_cast<double>(marched));
     add_shares(record_, all);
     if (scheduler_->lane_periods() > 0)
-      put("lane_steps_per_second", static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
+      put_measure(record_, "lane_steps_per_second",
+                  static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
     record_.status = marched > 0 ? "done" : "diverged";
     if (scheduler_->over_budget()) {
       record_.status = "failed";
@@ -326,10 +328,6 @@ class BifurcationRun {
       return overlap(*known->second, scene.lane);
     };
     for (const Grazing& one : find_grazings(values_, excess)) add_grazing_row(record_, one);
-  }
-
-  void put(const char* name, double value) {
-    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
   }
 
   const StudyCase& case_;

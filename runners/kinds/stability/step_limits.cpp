@@ -128,21 +128,16 @@ bool is_contact(const std::string& column) {
 }
 
 // Of the cases that differ in the contact law alone: the first that was done, or the first.
-std::vector<const CaseRecord*> counted_open(const StudyResults& results) {
+Cases counted_open(const StudyResults& results) {
   std::vector<std::string> others;
   for (const std::string& column : results.columns)
     if (!is_contact(column)) others.push_back(column);
-  std::map<std::string, std::size_t> known;
-  std::vector<const CaseRecord*> out;
-  for (const CaseRecord& record : results.cases) {
-    if (!own_range(record, false)) continue;
-    std::string key;
-    for (const Cell& cell : axes_of(record, others)) key += cell.text() + '\x1f';
-    const auto [found, fresh] = known.emplace(key, out.size());
-    if (fresh)
-      out.push_back(&record);
-    else if (out[found->second]->status != "done" && record.status == "done")
-      out[found->second] = &record;
+  Cases open = all_cases(results), out;
+  std::erase_if(open, [](const CaseRecord* record) { return !own_range(*record, false); });
+  for (const Cases& group : groups_of(open, others)) {
+    const auto done =
+        std::find_if(group.begin(), group.end(), [](const CaseRecord* record) { return record->status == "done"; });
+    out.push_back(done == group.end() ? group.front() : *done);
   }
   return out;
 }
@@ -170,7 +165,7 @@ Table step_limits_table(const StudyResults& results) {
        {"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
        {"grows", "", "What grows there, or why it is refused."},
        {"refused", "", "Whether that step is refused."}});
-  const std::vector<const CaseRecord*> counted = counted_open(results);
+  const Cases counted = counted_open(results);
   for (const bool closed : {false, true})
     for (const CaseRecord& record : results.cases) {
       const std::optional<StepRange> range = range_of(record, closed);
@@ -179,15 +174,14 @@ Table step_limits_table(const StudyResults& results) {
       std::optional<double> ratio;
       if (range->expected && range->observed) ratio = *range->observed / *range->expected;
       const StepCell* grows = first_unstable(*range);
-      Row row = place_of(results, record);
-      row.insert(row.end(), {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
-                             range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
-                             std::count_if(range->cells.begin(), range->cells.end(),
-                                           [](const StepCell& cell) { return cell.disagrees(); }),
-                             marginal(*range), grows ? Cell(grows->step) : Cell(),
-                             grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
-                             grows ? Cell(grows->status == "refused") : Cell()});
-      table.rows.push_back(std::move(row));
+      add_row(table, place_of(results, record),
+              {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
+               range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
+               std::count_if(range->cells.begin(), range->cells.end(),
+                             [](const StepCell& cell) { return cell.disagrees(); }),
+               marginal(*range), grows ? Cell(grows->step) : Cell(),
+               grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
+               grows ? Cell(grows->status == "refused") : Cell()});
     }
   return table;
 }

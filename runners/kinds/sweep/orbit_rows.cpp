@@ -12,6 +12,8 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -180,16 +182,15 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   record.measures.insert(record.measures.end(), {{"share_periodic", periodic / orbits},
                                                  {"share_chaotic", chaotic / orbits},
                                                  {"impacts_per_period", impacts / orbits}});
-  if (largest && std::isfinite(*largest)) record.measures.emplace_back("largest_exponent", *largest);
+  if (largest) put_measure(record, "largest_exponent", *largest);
 }
 
 void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
   const char *below = contact_word, *above = text(Regime::no_contact);
   if (grazing.opens_below) std::swap(below, above);
-  for (Table& table : record.tables)
-    if (table.name == "bifurcations")
-      table.rows.push_back(
-          {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
+  if (Table* changes = find_table(record.tables, "bifurcations"))
+    changes->rows.push_back(
+        {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
 }
 
 }  // namespace ricochet

@@ -103,12 +103,9 @@ Table class_counts_table(const StudyResults& results) {
       if (found == counts.end()) found = counts.insert(counts.end(), {key, 0});
       ++found->second;
     }
-    for (const auto& [key, count] : counts) {
-      Row row = place_of(results, record);
-      row.insert(row.end(),
-                 {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
-      table.rows.push_back(std::move(row));
-    }
+    for (const auto& [key, count] : counts)
+      add_row(table, place_of(results, record),
+              {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
   }
   return table;
 }
@@ -185,10 +182,9 @@ Table numerical_viscosity_table(const StudyResults& results) {
     }
     if (!numerical.low) continue;
     const bool compared = physical.low && !undamped;
-    Row row = place_of(results, record);
-    row.insert(row.end(), {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
-                           compared ? Cell(share <= small_viscosity) : Cell()});
-    table.rows.push_back(std::move(row));
+    add_row(table, place_of(results, record),
+            {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
+             compared ? Cell(share <= small_viscosity) : Cell()});
   }
   return table;
 }

@@ -14,7 +14,6 @@
 namespace ricochet {
 namespace {
 
-using Cases = std::vector<const CaseRecord*>;
 using Measured = std::function<std::optional<double>(const CaseRecord&)>;
 
 Measured measured(std::string name) {
@@ -56,26 +55,6 @@ Cases done_cases(const StudyResults& results) {
   return out;
 }
 
-/// The cases that agree in these columns, in the study's order.
-std::vector<Cases> groups_of(const Cases& cases, const std::vector<std::string>& columns) {
-  std::vector<Cases> groups;
-  std::map<std::string, std::size_t> place;
-  for (const CaseRecord* record : cases) {
-    std::string key;
-    for (const Cell& cell : axes_of(*record, columns)) key += cell.text() + '\x1f';
-    const auto [at, fresh] = place.emplace(std::move(key), groups.size());
-    if (fresh) groups.emplace_back();
-    groups[at->second].push_back(record);
-  }
-  return groups;
-}
-
-Cases all_cases(const StudyResults& results) {
-  Cases out;
-  for (const CaseRecord& record : results.cases) out.push_back(&record);
-  return out;
-}
-
 double step_of(const CaseRecord& record) {
   return axis(record, "step").number().value_or(std::numeric_limits<double>::infinity());
 }
@@ -110,8 +89,8 @@ Table table_of_groups(const StudyResults& results, const char* name, const char*
 
 Row group_place(const Cases& group, const std::vector<std::string>& shared) {
   const Cases finished = with_ratio(group);
-  Row row = {finest_of(finished.empty() ? group : finished)->id};
-  for (const Cell& cell : axes_of(*group.front(), shared)) row.push_back(cell);
+  Row row = place_of(*group.front(), shared);
+  row.front() = finest_of(finished.empty() ? group : finished)->id;
   return row;
 }
 
@@ -156,12 +135,11 @@ Table energy_ends_table(const StudyResults& results) {
     if (!end && !ratio) continue;
     const auto gain = of_start(*record, "largest_step_gain");
     const double noise = energy_noise(*record);
-    Row row = place_of(results, *record);
-    row.insert(row.end(), {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
-                           ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain,
-                           gain ? Cell(*gain > step_gain_threshold) : Cell(),
-                           of_start(*record, "dissipated_at_contact"), conservative});
-    table.rows.push_back(std::move(row));
+    add_row(table, place_of(results, *record),
+            {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
+             ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain,
+             gain ? Cell(*gain > step_gain_threshold) : Cell(), of_start(*record, "dissipated_at_contact"),
+             conservative});
   }
   return table;
 }
@@ -211,12 +189,11 @@ Table energy_by_mass_table(const StudyResults& results) {
     const auto gaining = std::count_if(done.begin(), done.end(), [](const CaseRecord* record) {
       return of_start(*record, "largest_step_gain").value_or(0) > step_gain_threshold;
     });
-    Row row = group_place(all, shared);
-    row.insert(row.end(), {all.size(), count_status(all, "refused"), count_status(all, "diverged"),
-                           count_status(all, "failed"), ratios.count, ratios.low, ratios.high, finest, fine.low,
-                           fine.high, ends.count, ends.low, ends.high, contact.low, contact.high, gains.count, gaining,
-                           gains.high, gains.highest ? gains.highest->id : std::string()});
-    table.rows.push_back(std::move(row));
+    add_row(table, group_place(all, shared),
+            {all.size(), count_status(all, "refused"), count_status(all, "diverged"), count_status(all, "failed"),
+             ratios.count, ratios.low, ratios.high, finest, fine.low, fine.high, ends.count, ends.low, ends.high,
+             contact.low, contact.high, gains.count, gaining, gains.high,
+             gains.highest ? gains.highest->id : std::string()});
   }
   return table;
 }
@@ -255,12 +232,10 @@ Table energy_trends_table(const StudyResults& results) {
       noise = std::max(noise, energy_noise(*record));
     }
     const EnergyTrend trend = energy_trend(steps, ratios, noise, conservative);
-    Row row = group_place(group, shared);
-    row.insert(row.end(),
-               {steps.size(), steps.empty() ? Cell() : Cell(steps.back()), trend.ratio,
-                steps.empty() ? Cell() : Cell(noise), trend.first_change, trend.last_change, trend.smallest_change,
-                trend.largest_change, trend.last_move, trend.order, trend_word(trend.trend)});
-    table.rows.push_back(std::move(row));
+    add_row(table, group_place(group, shared),
+            {steps.size(), steps.empty() ? Cell() : Cell(steps.back()), trend.ratio,
+             steps.empty() ? Cell() : Cell(noise), trend.first_change, trend.last_change, trend.smallest_change,
+             trend.largest_change, trend.last_move, trend.order, trend_word(trend.trend)});
   }
   return table;
 }
