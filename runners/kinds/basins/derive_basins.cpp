@@ -46,7 +46,9 @@ class BasinImages {
  public:
   explicit BasinImages(StudyResults& results) : results_(results), grid_of_(grid_of(results)) {
     read_places();
-    scale_ = scale_of_points();
+    ScaleOfPoints scale;
+    for (const Image& image : images_) image.sections.add_points(scale);
+    scale_ = scale.scale();
     for (const Image& image : images_) {
       BasinGrid& grid = grids_.emplace_back(grid_from(image));
       const SectionOf section = [&](std::size_t place) { return section_at(image, place, grid.cells[place].motion); };
@@ -92,20 +94,6 @@ class BasinImages {
         if (const auto x = rows.number(r, across), y = rows.number(r, along); x && y)
           image.row_of[index(ys_, *y) * xs_.size() + index(xs_, *x)] = r;
     }
-  }
-
-  CloudPoint scale_of_points() const {
-    ScaleOfPoints scale;
-    for (const Image& image : images_)
-      for (const char* name : {"tip", "opposite"}) {
-        const bool mirrored = name[0] == 'o';
-        const auto *d = image.sections.column(std::string(name) + "_displacement"),
-                   *v = image.sections.column(std::string(name) + "_velocity");
-        if (!d || !v) continue;
-        for (std::size_t k = 0; k < d->size(); ++k)
-          scale.add(mirrored ? CloudPoint{-(*d)[k], -(*v)[k]} : CloudPoint{(*d)[k], (*v)[k]});
-      }
-    return scale.scale();
   }
 
   BasinGrid grid_from(const Image& image) const {

@@ -5,6 +5,7 @@
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
@@ -47,12 +48,8 @@ std::vector<TimedError> fastest(const std::vector<TimedError>& points, double to
   std::vector<std::pair<std::string, TimedError>> best;
   for (const TimedError& point : points) {
     if (point.known > tolerance) continue;
-    const std::string name = key_of(axes_of(*point.record, method));
-    const auto found = std::find_if(best.begin(), best.end(), [&](const auto& one) { return one.first == name; });
-    if (found == best.end())
-      best.emplace_back(name, point);
-    else if (point.seconds < found->second.seconds)
-      found->second = point;
+    TimedError& known = in_order_met(best, key_of(axes_of(*point.record, method)));
+    if (!known.record || point.seconds < known.seconds) known = point;
   }
   std::vector<TimedError> out;
   for (const auto& [name, point] : best) out.push_back(point);
