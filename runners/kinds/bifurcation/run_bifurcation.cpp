@@ -163,54 +163,58 @@ class BifurcationRun {
     if (!wanted.is_number() || scheduler_->over_budget()) return;
     const auto tolerance = wanted.get<double>();
     for (int round = 0; round < most_refinements; ++round) {
-      struct Middle {
-        std::size_t start;
-        double value;
-        int left, right;
-      };
-      std::vector<Middle> middles;
-      for (std::size_t s = 0; s < starts_.size(); ++s) {
-        std::size_t brackets = 0;
-        const Value* before = nullptr;
-        MotionClass was;
-        for (const Value& value : known_) {
-          if (value.tasks[s] < 0) continue;
-          const auto is = rough_class(scheduler_->orbit(value.tasks[s]), section_);
-          if (!is) continue;
-          if (before && !(was == *is) && value.value - before->value > tolerance) {
-            if (brackets++ < most_brackets)
-              middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
-            else
-              crowded_ = true;
-          }
-          before = &value;
-          was = *is;
-        }
-      }
-      if (middles.empty()) return;
       int added = 0;
-      for (const Middle& middle : middles) {
-        const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
-                                            [](const Value& value, double at) { return value.value < at; });
-        auto index = static_cast<std::size_t>(place - known_.begin());
-        if (place == known_.end() || place->value != middle.value) {
-          add_value(middle.value);
-          std::rotate(known_.begin() + static_cast<std::ptrdiff_t>(index), known_.end() - 1, known_.end());
-        }
-        Value& value = known_[index];
-        const StartSpec& start = starts_[middle.start];
-        if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) continue;
-        OrbitTask task = task_at(value, start);
-        if (start.kind == StartSpec::up) task.after = middle.left;
-        if (start.kind == StartSpec::down) task.after = middle.right;
-        value.tasks[middle.start] = scheduler_->add(std::move(task));
-        ++added;
-      }
+      for (const Middle& middle : middles(tolerance)) added += add_middle(middle);
       if (added == 0) return;
       analyse_groups();
       scheduler_->restore(saved_);
       scheduler_->run(stop_, keep);
     }
+  }
+
+  // Half way between two neighbours from one start whose classes differ.
+  struct Middle {
+    std::size_t start;
+    double value;
+    int left, right;  // tasks
+  };
+
+  std::vector<Middle> middles(double tolerance) {
+    std::vector<Middle> all;
+    for (std::size_t s = 0; s < starts_.size(); ++s) {
+      std::vector<std::optional<MotionClass>> classes;
+      for (const Value& value : known_)
+        classes.push_back(value.tasks[s] < 0 ? std::nullopt : rough_class(scheduler_->orbit(value.tasks[s]), section_));
+      std::size_t brackets = 0;
+      for (const auto& [below, above] : class_changes(classes)) {
+        const Value &left = known_[below], &right = known_[above];
+        if (right.value - left.value <= tolerance) continue;
+        if (brackets++ < most_brackets)
+          all.push_back({s, 0.5 * (left.value + right.value), left.tasks[s], right.tasks[s]});
+        else
+          crowded_ = true;
+      }
+    }
+    return all;
+  }
+
+  // Whether there is a new orbit to march.
+  bool add_middle(const Middle& middle) {
+    const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
+                                        [](const Value& value, double at) { return value.value < at; });
+    const auto index = place - known_.begin();
+    if (place == known_.end() || place->value != middle.value) {
+      add_value(middle.value);
+      std::rotate(known_.begin() + index, known_.end() - 1, known_.end());
+    }
+    Value& value = known_[static_cast<std::size_t>(index)];
+    const StartSpec& start = starts_[middle.start];
+    if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) return false;
+    OrbitTask task = task_at(value, start);
+    if (start.kind == StartSpec::up) task.after = middle.left;
+    if (start.kind == StartSpec::down) task.after = middle.right;
+    value.tasks[middle.start] = scheduler_->add(std::move(task));
+    return true;
   }
 
   std::vector<OrbitView> views() const {

@@ -84,9 +84,9 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const auto& events = sampler.contact().events();
   put_measure(record, "horizon", set.horizon);
   put_measure(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
-  put_measure(record, "impacts", static_cast<double>(std::count_if(events.begin(), events.end(), [](const ContactEvent& event) {
-        return event.begins;
-      })));
+  put_measure(record, "impacts",
+              static_cast<double>(
+                  std::count_if(events.begin(), events.end(), [](const ContactEvent& event) { return event.begins; })));
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = "done";
@@ -97,7 +97,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
     put_measure(record, "tip_displacement_end", sampler.motion().tip.back());
     put_measure(record, "energy_start", sampler.motion().energy.front());
     put_measure(record, "energy_end", sampler.motion().energy.back());
-    put_measure(record, "microseconds_per_step", 1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
+    put_measure(record, "microseconds_per_step",
+                1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
     compare(record, sampler.finish(), set, errors_of(study_case));
   } else {
     record_early_end(record, marcher, prepared.steps, budget);

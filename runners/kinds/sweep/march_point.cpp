@@ -83,8 +83,7 @@ CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPl
   scheduler.run(stop, [](const MarchedOrbits&) {});
   const Orbit& orbit = scheduler.orbit(number);
   const CellEnd end = cell_end(orbit, options.section);
-  if (end.status == "done")
-    march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
+  if (end.status == "done") march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
   return end;
 }
 

@@ -23,7 +23,7 @@ class TipMarch {
 
  private:
   Marcher marcher_;
-  long long begin_, made_ = 1;        // of the clock; steps since the strobe
+  long long begin_, made_ = 1;       // of the clock; steps since the strobe
   std::vector<double> before_, at_;  // tips per lane
 };
 

@@ -135,11 +135,11 @@ Table energy_ends_table(const StudyResults& results) {
     if (!end && !ratio) continue;
     const auto gain = of_start(*record, "largest_step_gain");
     const double noise = energy_noise(*record);
-    add_row(table, place_of(results, *record),
-            {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
-             ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain,
-             gain ? Cell(*gain > step_gain_threshold) : Cell(), of_start(*record, "dissipated_at_contact"),
-             conservative});
+    add_row(
+        table, place_of(results, *record),
+        {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
+         ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain, gain ? Cell(*gain > step_gain_threshold) : Cell(),
+         of_start(*record, "dissipated_at_contact"), conservative});
   }
   return table;
 }
