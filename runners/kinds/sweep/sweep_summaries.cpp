@@ -5,7 +5,7 @@
 #include <map>
 #include <ricochet/measure/attractors/opinions.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_diagram.hpp"
+#include "runners/kinds/sweep/study_diagram.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"

@@ -1,6 +1,6 @@
 #include <ricochet/measure/attractors/diagram_changes.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {

@@ -5,7 +5,7 @@
 #include <ricochet/measure/attractors/opinions.hpp>
 #include <set>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::dynamics {

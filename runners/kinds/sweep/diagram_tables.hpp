@@ -1,7 +1,7 @@
 #pragma once
 #include <ricochet/measure/attractors/presence.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_diagram.hpp"
+#include "runners/kinds/sweep/study_diagram.hpp"
 
 /// \file
 /// The steps of derive_dynamics(), each on the diagram that the one before it left.

@@ -1,4 +1,4 @@
-#include "runners/kinds/sweep/derive_dynamics_diagram.hpp"
+#include "runners/kinds/sweep/study_diagram.hpp"
 
 #include <algorithm>
 #include <cmath>

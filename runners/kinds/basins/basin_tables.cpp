@@ -1,4 +1,4 @@
-#include "runners/kinds/basins/derive_basins.hpp"
+#include "runners/kinds/basins/basin_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <ricochet/measure/attractors/uncertainty_exponent.hpp>
 #include <set>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
 

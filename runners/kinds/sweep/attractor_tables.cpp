@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::dynamics {
