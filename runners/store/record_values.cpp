@@ -55,6 +55,12 @@ Cases all_cases(const StudyResults& results) {
   return all;
 }
 
+Cases with_status(const Cases& cases, const std::string& status) {
+  Cases found = cases;
+  std::erase_if(found, [&](const CaseRecord* record) { return record->status != status; });
+  return found;
+}
+
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names) {
   std::vector<Column> columns;
   for (const std::string& name : names) {

@@ -85,12 +85,10 @@ class BasinsRun {
     record_.setup_seconds += thread_seconds() - begun;
     if (tasks.empty()) return ends;
     describe_methods();
-    ScheduleOptions options;
-    options.section = section_;
-    options.workers = desk_.workers;
-    options.budget = budget_of(case_) - record_.run_seconds;
-    options.lean = true;
-    OrbitScheduler scheduler(scenes_.scenes(), options);
+    OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
+                                                .workers = desk_.workers,
+                                                .budget = budget_of(case_) - record_.run_seconds,
+                                                .lean = true});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
     OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
     scheduler.restore(checkpoints.find());
@@ -129,11 +127,8 @@ class BasinsRun {
   void describe_methods() {
     if (described_) return;
     described_ = true;
-    const ForcedScenes& scenes = scenes_.scenes();
-    section_ = section_plan(case_, scenes);
-    record_.operator_name = scenes.operator_chosen();
-    record_.left_out = left_out_pairs(scenes.left_out(0));
-    record_.notes = scenes.notes(0);
+    section_ = section_plan(case_, scenes_.scenes());
+    describe_march(record_, scenes_.scenes(), case_);
     record_.notes.push_back("a motion and its mirror image (x → −x, t → t + T/2) are one end");
   }
 
@@ -273,9 +268,7 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   }
   if (!possible) return out;
   out.refusal.clear();
-  out.operator_name = scenes.scenes().operator_chosen();
-  out.left_out = left_out_pairs(scenes.scenes().left_out(0));
-  out.notes = scenes.scenes().notes(0);
+  describe_march(out, scenes.scenes(), study_case);
   const bool refine = refines(study_case);
   const std::size_t first = GridRefinement::first_cells(columns, rows, refine);
   const std::size_t cells = first + (columns * rows - first) / 4;

@@ -50,11 +50,7 @@ class BifurcationRun {
     if (scenes_.groups() == 0) return refused();
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
-    ScheduleOptions options;
-    options.section = section_;
-    options.workers = desk_.workers;
-    options.budget = budget_of(case_);
-    OrbitScheduler scheduler(scenes_, options);
+    OrbitScheduler scheduler(scenes_, {.section = section_, .workers = desk_.workers, .budget = budget_of(case_)});
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
     ExponentCheckpoints batches(desk_.shelf, desk_.key);
@@ -121,9 +117,7 @@ class BifurcationRun {
   }
 
   void describe_methods() {
-    record_.operator_name = scenes_.operator_chosen();
-    record_.left_out = march_left_out(scenes_, case_);
-    record_.notes = scenes_.notes(0);
+    describe_march(record_, scenes_, case_);
     record_.notes.push_back(fmt::format(
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <ricochet/measure/stability/stability.hpp>
 
@@ -82,23 +83,21 @@ std::optional<StepRange> range_of(const CaseRecord& record, bool closed) {
 }
 
 // Whether the range has a limit, and which way it has none.
-std::string where(const std::optional<double>& limit, bool any, bool bad) {
+template <class Known, class Unstable>
+std::string where(const StepRange& range, const std::optional<double>& limit, Known known, Unstable unstable) {
   if (limit) return "limit";
-  return !any ? "" : bad ? "below the range" : "none";
+  if (std::none_of(range.cells.begin(), range.cells.end(), known)) return "";
+  return std::any_of(range.cells.begin(), range.cells.end(), unstable) ? "below the range" : "none";
 }
 
 std::string prediction(const StepRange& range) {
   const auto known = [](const StepCell& cell) { return cell.radius.has_value(); };
-  const auto bad = [](const StepCell& cell) { return cell.predicted_unstable(); };
-  return where(range.predicted, std::any_of(range.cells.begin(), range.cells.end(), known),
-               std::any_of(range.cells.begin(), range.cells.end(), bad));
+  return where(range, range.predicted, known, std::mem_fn(&StepCell::predicted_unstable));
 }
 
 std::string observation(const StepRange& range) {
   const auto known = [](const StepCell& cell) { return !cell.behaviour.empty(); };
-  const auto bad = [](const StepCell& cell) { return cell.observed_unstable(); };
-  return where(range.observed, std::any_of(range.cells.begin(), range.cells.end(), known),
-               std::any_of(range.cells.begin(), range.cells.end(), bad));
+  return where(range, range.observed, known, std::mem_fn(&StepCell::observed_unstable));
 }
 
 std::string marginal(const StepRange& range) {

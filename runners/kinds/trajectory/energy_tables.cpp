@@ -49,10 +49,7 @@ std::optional<double> of_start(const CaseRecord& record, const char* name) {
 }
 
 Cases done_cases(const StudyResults& results) {
-  Cases out;
-  for (const CaseRecord& record : results.cases)
-    if (record.status == "done") out.push_back(&record);
-  return out;
+  return with_status(all_cases(results), "done");
 }
 
 double step_of(const CaseRecord& record) {
@@ -67,10 +64,9 @@ const CaseRecord* finest_of(const Cases& cases) {
 }
 
 Cases with_ratio(const Cases& cases) {
-  Cases out;
-  for (const CaseRecord* record : cases)
-    if (record->status == "done" && measure(*record, "energy_ratio")) out.push_back(record);
-  return out;
+  Cases done = with_status(cases, "done");
+  std::erase_if(done, [](const CaseRecord* record) { return !measure(*record, "energy_ratio"); });
+  return done;
 }
 
 bool varies(const StudyResults& results, const std::string& column) {
@@ -92,11 +88,6 @@ Row group_place(const Cases& group, const std::vector<std::string>& shared) {
   Row row = place_of(*group.front(), shared);
   row.front() = finest_of(finished.empty() ? group : finished)->id;
   return row;
-}
-
-std::size_t count_status(const Cases& cases, const char* status) {
-  return static_cast<std::size_t>(
-      std::count_if(cases.begin(), cases.end(), [&](const CaseRecord* record) { return record->status == status; }));
 }
 
 }  // namespace
@@ -171,10 +162,7 @@ Table energy_by_mass_table(const StudyResults& results) {
                        {"largest_gain_case", "", "The case that makes it."}});
   const Measured ratio = measured("energy_ratio");
   for (const Cases& all : groups_of(all_cases(results), shared)) {
-    Cases done;
-    for (const CaseRecord* record : all)
-      if (record->status == "done") done.push_back(record);
-    const Cases finished = with_ratio(done);
+    const Cases done = with_status(all, "done"), finished = with_ratio(done);
     Cases at_finest;
     std::optional<double> finest;
     if (!finished.empty() && varies(results, "step") && std::isfinite(step_of(*finest_of(finished)))) {
@@ -190,9 +178,9 @@ Table energy_by_mass_table(const StudyResults& results) {
       return of_start(*record, "largest_step_gain").value_or(0) > step_gain_threshold;
     });
     add_row(table, group_place(all, shared),
-            {all.size(), count_status(all, "refused"), count_status(all, "diverged"), count_status(all, "failed"),
-             ratios.count, ratios.low, ratios.high, finest, fine.low, fine.high, ends.count, ends.low, ends.high,
-             contact.low, contact.high, gains.count, gaining, gains.high,
+            {all.size(), with_status(all, "refused").size(), with_status(all, "diverged").size(),
+             with_status(all, "failed").size(), ratios.count, ratios.low, ratios.high, finest, fine.low, fine.high,
+             ends.count, ends.low, ends.high, contact.low, contact.high, gains.count, gaining, gains.high,
              gains.highest ? gains.highest->id : std::string()});
   }
   return table;
