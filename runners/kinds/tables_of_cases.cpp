@@ -1,8 +1,7 @@
 #include "runners/kinds/tables_of_cases.hpp"
 
-#include <algorithm>
-
 #include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 
@@ -10,10 +9,8 @@ void collect_tables(StudyResults& results, const std::function<bool(const std::s
   for (const CaseRecord& record : results.cases)
     for (const Table& own : record.tables) {
       if (left_out && left_out(own.name)) continue;
-      auto found = std::find_if(results.derived.begin(), results.derived.end(),
-                                [&](const Table& table) { return table.name == own.name; });
-      if (found == results.derived.end())
-        found = results.derived.insert(results.derived.end(), table_of_cases(results, own));
+      Table* found = find_table(results.derived, own.name);
+      if (!found) found = &results.derived.emplace_back(table_of_cases(results, own));
       append_rows(results, record, own, *found);
     }
 }

@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "runners/march/case_watch.hpp"
@@ -8,7 +10,8 @@
 
 namespace ricochet {
 
-/// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once stored, or "".
+/// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once
+/// stored, or "".
 struct MotionShelf {
   std::function<std::string(const std::string& key)> find;
   std::function<void(const std::string& key, const std::string& content)> keep;
@@ -19,6 +22,19 @@ struct MotionShelf {
   /// Whether a case has failed: nothing is computed with its methods for others.
   std::function<bool(const std::string& id)> failed;
 };
+
+/// What `read` makes of what is kept under the key; nothing where nothing is, or where it is not whole or of another
+/// version: what was stored is there to save time, and is computed again.
+template <class T>
+std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*read)(const std::string& bytes)) {
+  const std::string bytes = shelf.find ? shelf.find(key) : "";
+  if (bytes.empty()) return std::nullopt;
+  try {
+    return read(bytes);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
 
 /// Where a case keeps what would be lost if it were killed, and says how far it is.
 struct CaseDesk {

@@ -1,7 +1,5 @@
 #include "runners/run/study_cases.hpp"
 
-#include <algorithm>
-
 #include "runners/store/fingerprint.hpp"
 
 namespace ricochet {
@@ -50,12 +48,6 @@ std::set<std::string> find_missing(const Study& study, const std::map<std::strin
       pending.push_back({&study_case, 0, fingerprints.at(study_case.id)});
   }
   return missing;
-}
-
-const StudyCase* find_case(const Study& study, const std::string& id) {
-  const auto found =
-      std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
-  return found == study.cases.end() ? nullptr : &*found;
 }
 
 }  // namespace ricochet

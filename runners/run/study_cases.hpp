@@ -22,7 +22,4 @@ std::set<std::string> find_missing(const Study& study, const std::map<std::strin
                                    const std::set<std::string>& settled, std::vector<CaseRecord>& excluded,
                                    std::vector<PendingCase>& pending);
 
-/// The case of this id; null where there is none.
-const StudyCase* find_case(const Study& study, const std::string& id);
-
 }  // namespace ricochet

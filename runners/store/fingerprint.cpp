@@ -9,21 +9,12 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <variant>
 
 #include "runners/store/store_error.hpp"
+#include "runners/study/field.hpp"
 
 namespace ricochet {
 namespace {
-
-Json method_json(const MethodChoice& method) {
-  Json parameters = Json::object();
-  for (const auto& [key, value] : method.parameters.values())
-    std::visit([&, name = key](const auto& v) { parameters[name] = v; }, value);
-  Json json = {{"name", method.name}, {"parameters", std::move(parameters)}};
-  if (method.plan) json["plan"] = *method.plan;
-  return json;
-}
 
 /// The core library as the loader mapped it; the program itself where the core is linked into it.
 std::filesystem::path core_file() {
@@ -40,6 +31,14 @@ std::filesystem::path core_file() {
 }
 
 }  // namespace
+
+Json content_of(const MethodChoice& method) {
+  Json parameters = Json::object();
+  for (const auto& [key, value] : method.parameters.values()) parameters[key] = to_json(value);
+  Json json = {{"name", method.name}, {"parameters", std::move(parameters)}};
+  if (method.plan) json["plan"] = *method.plan;
+  return json;
+}
 
 std::string content_hash(std::string_view content) {
   const boost::uuids::name_generator_sha1 generator(boost::uuids::nil_uuid());
@@ -67,9 +66,9 @@ std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std:
                   {"kind", kind_},
                   {"program", program_},
                   {"scene", study_case.scene_json},
-                  {"mass", method_json(study_case.mass)},
-                  {"contact", method_json(study_case.contact)},
-                  {"time", method_json(study_case.time)},
+                  {"mass", content_of(study_case.mass)},
+                  {"contact", content_of(study_case.contact)},
+                  {"time", content_of(study_case.time)},
                   {"elements", study_case.elements},
                   {"step", study_case.step},
                   {"duration", study_case.duration},

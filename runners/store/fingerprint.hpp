@@ -13,6 +13,9 @@ namespace ricochet {
 /// security is claimed.
 std::string content_hash(std::string_view content);
 
+/// A method with its parameters, as it is hashed.
+Json content_of(const MethodChoice& method);
+
 /// content_hash() of a file's bytes. Throws StoreError (path and cause) when it cannot be read.
 std::string file_hash(const std::filesystem::path& file);
 

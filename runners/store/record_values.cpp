@@ -1,7 +1,9 @@
 #include "runners/store/record_values.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "runners/study/axis_meaning.hpp"
@@ -18,6 +20,10 @@ std::optional<double> measure(const CaseRecord& record, const std::string& name)
   return std::nullopt;
 }
 
+void put_measure(CaseRecord& record, const std::string& name, double value) {
+  if (std::isfinite(value)) record.measures.emplace_back(name, value);
+}
+
 Cell axis(const CaseRecord& record, const std::string& column) {
   for (const auto& [name, value] : record.axes)
     if (name == column) return cell_of(value);
@@ -28,6 +34,35 @@ Row axes_of(const CaseRecord& record, const std::vector<std::string>& columns) {
   Row row;
   for (const std::string& column : columns) row.push_back(axis(record, column));
   return row;
+}
+
+std::string key_of(const Row& row) {
+  std::string key;
+  for (const Cell& cell : row) key += cell.text() + '\x1f';
+  return key;
+}
+
+std::vector<Cases> groups_of(const Cases& cases, const std::vector<std::string>& columns) {
+  std::vector<Cases> groups;
+  std::map<std::string, std::size_t> place;
+  for (const CaseRecord* record : cases) {
+    const auto [at, fresh] = place.emplace(key_of(axes_of(*record, columns)), groups.size());
+    if (fresh) groups.emplace_back();
+    groups[at->second].push_back(record);
+  }
+  return groups;
+}
+
+Cases all_cases(const StudyResults& results) {
+  Cases all;
+  for (const CaseRecord& record : results.cases) all.push_back(&record);
+  return all;
+}
+
+Cases with_status(const Cases& cases, const std::string& status) {
+  Cases found = cases;
+  std::erase_if(found, [&](const CaseRecord* record) { return record->status != status; });
+  return found;
 }
 
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names) {
@@ -48,9 +83,18 @@ std::vector<Column> place_columns(const StudyResults& results) {
 }
 
 Row place_of(const StudyResults& results, const CaseRecord& record) {
+  return place_of(record, results.columns);
+}
+
+Row place_of(const CaseRecord& record, const std::vector<std::string>& columns) {
   Row row = {record.id};
-  for (const std::string& column : results.columns) row.push_back(axis(record, column));
+  for (const std::string& column : columns) row.push_back(axis(record, column));
   return row;
+}
+
+void add_row(Table& table, Row place, const Row& cells) {
+  place.insert(place.end(), cells.begin(), cells.end());
+  table.rows.push_back(std::move(place));
 }
 
 void append_rows(const StudyResults& results, const CaseRecord& record, const Table& own, Table& into) {

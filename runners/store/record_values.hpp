@@ -13,11 +13,23 @@ bool went_wrong(const CaseRecord& record);
 /// The measure of this name, if the case has it.
 std::optional<double> measure(const CaseRecord& record, const std::string& name);
 
+/// Adds a measure to the record; one that is not finite is left out.
+void put_measure(CaseRecord& record, const std::string& name, double value);
+
 /// The case's value on this axis; nothing where it has no such axis.
 Cell axis(const CaseRecord& record, const std::string& column);
 
 /// The case's values on these axes, in their order.
 Row axes_of(const CaseRecord& record, const std::vector<std::string>& columns);
+
+/// Tells rows apart.
+std::string key_of(const Row& row);
+
+/// The cases that agree on these axes, in the study's order.
+using Cases = std::vector<const CaseRecord*>;
+std::vector<Cases> groups_of(const Cases& cases, const std::vector<std::string>& columns);
+Cases all_cases(const StudyResults& results);
+Cases with_status(const Cases& cases, const std::string& status);
 
 /// What the axes of these names mean: as the run described them, else as the study format does.
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names);
@@ -29,6 +41,11 @@ Column case_column();
 std::vector<Column> place_columns(const StudyResults& results);
 /// The cells of these columns.
 Row place_of(const StudyResults& results, const CaseRecord& record);
+/// The case and some of its axes.
+Row place_of(const CaseRecord& record, const std::vector<std::string>& columns);
+
+/// Appends a row: where it stands, then what is said there.
+void add_row(Table& table, Row place, const Row& cells);
 
 /// The rows of a table that the case carries, each behind its case and axes; `into` has the columns for them.
 void append_rows(const StudyResults& results, const CaseRecord& record, const Table& own, Table& into);

@@ -276,6 +276,12 @@ Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Regist
   return parse_study(read_text(file), catalogue, registry, file.parent_path());
 }
 
+const StudyCase* find_case(const Study& study, const std::string& id) {
+  const auto found =
+      std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
+  return found == study.cases.end() ? nullptr : &*found;
+}
+
 std::string explain(const InputError& error, const std::filesystem::path& file) {
   std::string place = file.string();
   if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))

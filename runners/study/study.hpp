@@ -50,4 +50,7 @@ struct Study {
   std::vector<StudyCase> cases;
 };
 
+/// The case of this id; null where there is none.
+const StudyCase* find_case(const Study& study, const std::string& id);
+
 }  // namespace ricochet

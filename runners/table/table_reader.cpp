@@ -24,4 +24,8 @@ const Table* find_table(const std::vector<Table>& tables, std::string_view name)
   return found == tables.end() ? nullptr : &*found;
 }
 
+Table* find_table(std::vector<Table>& tables, std::string_view name) {
+  return const_cast<Table*>(find_table(std::as_const(tables), name));
+}
+
 }  // namespace ricochet

@@ -45,5 +45,6 @@ class TableReader {
 
 /// The table of this name; null where there is none.
 const Table* find_table(const std::vector<Table>& tables, std::string_view name);
+Table* find_table(std::vector<Table>& tables, std::string_view name);
 
 }  // namespace ricochet

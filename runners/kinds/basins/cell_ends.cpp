@@ -3,26 +3,25 @@
 #include <algorithm>
 #include <tuple>
 
+#include "runners/kinds/sweep/orbit_bytes.hpp"
 #include "runners/march/bytes.hpp"
 
 namespace ricochet {
 namespace {
 
-constexpr std::uint64_t mark = 0x3173646e65'0002;  // what the bytes are, and their version
-
-template <class Archive, class End>
-void describe(Archive& archive, End& end) {
-  archive(end.motion.regime);
-  archive(end.motion.period);
-  archive(end.period);
-  archive(end.periods);
-  archive(end.status);
-  archive(end.reason);
-  archive(end.section);
-  archive(end.displacements);
-}
+constexpr const char* ends_mark = "ends of cells 3";
 
 }  // namespace
+
+template <class Archive>
+void serialize(Archive& archive, MotionClass& motion) {
+  archive(motion.regime, motion.period);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CellEnd& end) {
+  archive(end.motion, end.period, end.periods, end.status, end.reason, end.section, end.displacements);
+}
 
 CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan) {
   OrbitView view;
@@ -53,21 +52,11 @@ CellEnd refused_end(const std::string& sentence) {
 }
 
 std::string to_bytes(const std::vector<CellEnd>& ends) {
-  ByteWriter writer;
-  writer(mark);
-  writer(static_cast<std::uint64_t>(ends.size()));
-  for (const CellEnd& end : ends) describe(writer, end);
-  return std::move(writer.bytes);
+  return to_bytes(ends, ends_mark);
 }
 
 std::vector<CellEnd> cell_ends(const std::string& bytes) {
-  ByteReader reader(bytes);
-  std::uint64_t found = 0;
-  reader(found);
-  if (found != mark) throw std::runtime_error("stored cells are of another version");
-  std::vector<CellEnd> ends(reader.count(sizeof(std::uint64_t)));
-  for (CellEnd& end : ends) describe(reader, end);
-  return ends;
+  return from_bytes<std::vector<CellEnd>>(bytes, ends_mark);
 }
 
 SettledSection settled_section(const CellEnd& end, const SectionPlan& plan) {

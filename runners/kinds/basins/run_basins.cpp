@@ -15,6 +15,7 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -63,11 +64,10 @@ class BasinsRun {
   // The ends of a batch of cells; batches that an interrupted run had finished are read.
   std::vector<CellEnd> march(const std::vector<std::size_t>& batch) {
     const int number = batches_++;
-    if (desk_.shelf.find)
-      if (const std::string bytes = desk_.shelf.find(batch_key(number)); !bytes.empty()) {
-        if (scenes_.scenes().groups() == 0) prepare_some(batch);
-        return cell_ends(bytes);
-      }
+    if (auto known = recall(desk_.shelf, batch_key(number), cell_ends); known && known->size() == batch.size()) {
+      if (scenes_.scenes().groups() == 0) prepare_some(batch);
+      return std::move(*known);
+    }
     const double begun = thread_seconds();
     scenes_.begin();
     std::vector<CellEnd> ends(batch.size());
@@ -85,12 +85,10 @@ class BasinsRun {
     record_.setup_seconds += thread_seconds() - begun;
     if (tasks.empty()) return ends;
     describe_methods();
-    ScheduleOptions options;
-    options.section = section_;
-    options.workers = desk_.workers;
-    options.budget = budget_of(case_) - record_.run_seconds;
-    options.lean = true;
-    OrbitScheduler scheduler(scenes_.scenes(), options);
+    OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
+                                                .workers = desk_.workers,
+                                                .budget = budget_of(case_) - record_.run_seconds,
+                                                .lean = true});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
     OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
     scheduler.restore(checkpoints.find());
@@ -129,11 +127,8 @@ class BasinsRun {
   void describe_methods() {
     if (described_) return;
     described_ = true;
-    const ForcedScenes& scenes = scenes_.scenes();
-    section_ = section_plan(case_, scenes);
-    record_.operator_name = scenes.operator_chosen();
-    record_.left_out = left_out_pairs(scenes.left_out(0));
-    record_.notes = scenes.notes(0);
+    section_ = section_plan(case_, scenes_.scenes());
+    describe_march(record_, scenes_.scenes(), case_);
     record_.notes.push_back("a motion and its mirror image (x → −x, t → t + T/2) are one end");
   }
 
@@ -217,10 +212,10 @@ class BasinsRun {
       complete += end.status == "done";
       if (end.status != "done" && !bad) bad = &end;
     }
-    put("orbits", static_cast<double>(complete));
+    put_measure(record_, "orbits", static_cast<double>(complete));
     if (lane_periods_ > 0)
-      put("lane_steps_per_second",
-          static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));
+      put_measure(record_, "lane_steps_per_second",
+                  static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));
     if (refines(case_))
       record_.notes.push_back(fmt::format(
           "{} of {} cells were marched, {} filled from a marched one of their basin: only boundaries are refined",
@@ -236,10 +231,6 @@ class BasinsRun {
       record_.notes.push_back(fmt::format("{} of {} marched cells were refused or stopped; their rows say why",
                                           marched + refused - complete, marched + refused));
     }
-  }
-
-  void put(const char* name, double value) {
-    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
   }
 
   const StudyCase& case_;
@@ -277,9 +268,7 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   }
   if (!possible) return out;
   out.refusal.clear();
-  out.operator_name = scenes.scenes().operator_chosen();
-  out.left_out = left_out_pairs(scenes.scenes().left_out(0));
-  out.notes = scenes.scenes().notes(0);
+  describe_march(out, scenes.scenes(), study_case);
   const bool refine = refines(study_case);
   const std::size_t first = GridRefinement::first_cells(columns, rows, refine);
   const std::size_t cells = first + (columns * rows - first) / 4;

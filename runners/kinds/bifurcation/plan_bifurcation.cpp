@@ -25,9 +25,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   }
   if (representative < 0) return out;
   out.refusal.clear();
-  out.operator_name = scenes.operator_chosen();
-  out.left_out = march_left_out(scenes, study_case);
-  out.notes = scenes.notes(0);
+  describe_march(out, scenes, study_case);
   const Json& settings = study_case.settings;
   // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
   // cost 0.7 of free flight on top of it.

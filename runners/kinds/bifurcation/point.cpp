@@ -49,23 +49,6 @@ std::string description(const TableReader& values, std::size_t row) {
   return text;
 }
 
-// The displacements that the run stored at the strobes of one orbit; empty where the section is another one.
-std::vector<double> stored_strobes(const CaseRecord& record, const StudyCase& study_case, double parameter,
-                                   const std::string& start) {
-  std::vector<double> strobes;
-  if (study_case.settings.at("section") != "strobe") return strobes;
-  const NumberTable* table = find_table(record.numbers, "points");
-  const auto* starts = table ? table->words_of("start") : nullptr;
-  const auto *parameters = table ? table->numbers("parameter") : nullptr,
-             *froms = table ? table->numbers("start") : nullptr,
-             *displacements = table ? table->numbers("tip_displacement") : nullptr;
-  if (!starts || !parameters || !froms || !displacements) return strobes;
-  const auto word = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
-  for (std::size_t i = 0; i < table->rows(); ++i)
-    if ((*parameters)[i] == parameter && (*froms)[i] == word) strobes.push_back((*displacements)[i]);
-  return strobes;
-}
-
 }  // namespace
 
 int march_orbit_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
@@ -92,7 +75,9 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
 
   const StoredStudy stored(results, asked);
   const StudyCase& study_case = stored.find(record.id);
-  const std::vector<double> strobes = stored_strobes(record, study_case, task.parameter, task.start);
+  std::vector<double> strobes;  // as the run stored them; none where its section is another one
+  if (study_case.settings.at("section") == "strobe")
+    strobes = orbit_numbers(record, "points", "tip_displacement", task.parameter, task.start);
   std::size_t compared = 0, equal = 0;
   SamplePrinter print(out);
   march_point(study_case, stored.registry, task, [&](const PointSample& sample) {

@@ -20,6 +20,7 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -49,11 +50,7 @@ class BifurcationRun {
     if (scenes_.groups() == 0) return refused();
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
-    ScheduleOptions options;
-    options.section = section_;
-    options.workers = desk_.workers;
-    options.budget = budget_of(case_);
-    OrbitScheduler scheduler(scenes_, options);
+    OrbitScheduler scheduler(scenes_, {.section = section_, .workers = desk_.workers, .budget = budget_of(case_)});
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
     ExponentCheckpoints batches(desk_.shelf, desk_.key);
@@ -120,9 +117,7 @@ class BifurcationRun {
   }
 
   void describe_methods() {
-    record_.operator_name = scenes_.operator_chosen();
-    record_.left_out = march_left_out(scenes_, case_);
-    record_.notes = scenes_.notes(0);
+    describe_march(record_, scenes_, case_);
     record_.notes.push_back(fmt::format(
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
@@ -162,54 +157,58 @@ class BifurcationRun {
     if (!wanted.is_number() || scheduler_->over_budget()) return;
     const auto tolerance = wanted.get<double>();
     for (int round = 0; round < most_refinements; ++round) {
-      struct Middle {
-        std::size_t start;
-        double value;
-        int left, right;
-      };
-      std::vector<Middle> middles;
-      for (std::size_t s = 0; s < starts_.size(); ++s) {
-        std::size_t brackets = 0;
-        const Value* before = nullptr;
-        MotionClass was;
-        for (const Value& value : known_) {
-          if (value.tasks[s] < 0) continue;
-          const auto is = rough_class(scheduler_->orbit(value.tasks[s]), section_);
-          if (!is) continue;
-          if (before && !(was == *is) && value.value - before->value > tolerance) {
-            if (brackets++ < most_brackets)
-              middles.push_back({s, 0.5 * (before->value + value.value), before->tasks[s], value.tasks[s]});
-            else
-              crowded_ = true;
-          }
-          before = &value;
-          was = *is;
-        }
-      }
-      if (middles.empty()) return;
       int added = 0;
-      for (const Middle& middle : middles) {
-        const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
-                                            [](const Value& value, double at) { return value.value < at; });
-        auto index = static_cast<std::size_t>(place - known_.begin());
-        if (place == known_.end() || place->value != middle.value) {
-          add_value(middle.value);
-          std::rotate(known_.begin() + static_cast<std::ptrdiff_t>(index), known_.end() - 1, known_.end());
-        }
-        Value& value = known_[index];
-        const StartSpec& start = starts_[middle.start];
-        if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) continue;
-        OrbitTask task = task_at(value, start);
-        if (start.kind == StartSpec::up) task.after = middle.left;
-        if (start.kind == StartSpec::down) task.after = middle.right;
-        value.tasks[middle.start] = scheduler_->add(std::move(task));
-        ++added;
-      }
+      for (const Middle& middle : middles(tolerance)) added += add_middle(middle);
       if (added == 0) return;
       analyse_groups();
       scheduler_->restore(saved_);
       scheduler_->run(stop_, keep);
     }
+  }
+
+  // Half way between two neighbours from one start whose classes differ.
+  struct Middle {
+    std::size_t start;
+    double value;
+    int left, right;  // tasks
+  };
+
+  std::vector<Middle> middles(double tolerance) {
+    std::vector<Middle> all;
+    for (std::size_t s = 0; s < starts_.size(); ++s) {
+      std::vector<std::optional<MotionClass>> classes;
+      for (const Value& value : known_)
+        classes.push_back(value.tasks[s] < 0 ? std::nullopt : rough_class(scheduler_->orbit(value.tasks[s]), section_));
+      std::size_t brackets = 0;
+      for (const auto& [below, above] : class_changes(classes)) {
+        const Value &left = known_[below], &right = known_[above];
+        if (right.value - left.value <= tolerance) continue;
+        if (brackets++ < most_brackets)
+          all.push_back({s, 0.5 * (left.value + right.value), left.tasks[s], right.tasks[s]});
+        else
+          crowded_ = true;
+      }
+    }
+    return all;
+  }
+
+  // Whether there is a new orbit to march.
+  bool add_middle(const Middle& middle) {
+    const auto place = std::lower_bound(known_.begin(), known_.end(), middle.value,
+                                        [](const Value& value, double at) { return value.value < at; });
+    const auto index = place - known_.begin();
+    if (place == known_.end() || place->value != middle.value) {
+      add_value(middle.value);
+      std::rotate(known_.begin() + index, known_.end() - 1, known_.end());
+    }
+    Value& value = known_[static_cast<std::size_t>(index)];
+    const StartSpec& start = starts_[middle.start];
+    if (value.tasks[middle.start] >= 0 || !scenes_[scene_of(value, start)].refusal.empty()) return false;
+    OrbitTask task = task_at(value, start);
+    if (start.kind == StartSpec::up) task.after = middle.left;
+    if (start.kind == StartSpec::down) task.after = middle.right;
+    value.tasks[middle.start] = scheduler_->add(std::move(task));
+    return true;
   }
 
   std::vector<OrbitView> views() const {
@@ -281,7 +280,7 @@ class BifurcationRun {
       const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
       record_.run_seconds += seconds;
       for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
-      put("exponent_seconds", seconds);
+      put_measure(record_, "exponent_seconds", seconds);
     }
     classify_all(all);
     write_tables(record_, all);
@@ -293,10 +292,11 @@ class BifurcationRun {
     long long marched = 0, bad = 0;
     for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
     record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
-    put("orbits", static_cast<double>(marched));
+    put_measure(record_, "orbits", static_cast<double>(marched));
     add_shares(record_, all);
     if (scheduler_->lane_periods() > 0)
-      put("lane_steps_per_second", static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
+      put_measure(record_, "lane_steps_per_second",
+                  static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
     record_.status = marched > 0 ? "done" : "diverged";
     if (scheduler_->over_budget()) {
       record_.status = "failed";
@@ -326,10 +326,6 @@ class BifurcationRun {
       return overlap(*known->second, scene.lane);
     };
     for (const Grazing& one : find_grazings(values_, excess)) add_grazing_row(record_, one);
-  }
-
-  void put(const char* name, double value) {
-    if (std::isfinite(value)) record_.measures.emplace_back(name, value);
   }
 
   const StudyCase& case_;

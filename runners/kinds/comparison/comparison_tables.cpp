@@ -25,28 +25,8 @@ std::vector<std::string> errors_of(const StudyResults& results) {
   return errors.get<std::vector<std::string>>();
 }
 
-// Tells places apart.
-std::string key_of(const Row& place) {
-  std::string key;
-  for (const Cell& cell : place) key += cell.text() + '\x1f';
-  return key;
-}
-
 const Column error_column{"error", "", "Which error: a quantity of the motion and how its difference is measured."};
 const Column value_column{"value", "that of the error", "The error of the case against its reference."};
-
-// The cases that differ in `refined` alone, in the study's order.
-std::vector<std::vector<const CaseRecord*>> refinements(const StudyResults& results, const std::string& refined) {
-  const std::vector<std::string> columns = without(results.columns, refined);
-  std::map<std::string, std::size_t> known;
-  std::vector<std::vector<const CaseRecord*>> groups;
-  for (const CaseRecord& record : results.cases) {
-    const auto [found, fresh] = known.emplace(key_of(axes_of(record, columns)), groups.size());
-    if (fresh) groups.emplace_back();
-    groups[found->second].push_back(&record);
-  }
-  return groups;
-}
 
 double size_of(const CaseRecord& record, const std::string& refined) {
   const double value = axis(record, refined).number().value();
@@ -92,13 +72,9 @@ Table errors_table(const StudyResults& results) {
        {"floor", "that of the error",
         "What the reference itself may be wrong by: below it the error says nothing, and below four of it no order."}});
   for (const CaseRecord& record : results.cases)
-    for (const std::string& name : errors_of(results)) {
-      const auto value = measure(record, "error." + name);
-      if (!value) continue;
-      Row row = place_of(results, record);
-      row.insert(row.end(), {name, *value, measure(record, "floor." + name)});
-      table.rows.push_back(std::move(row));
-    }
+    for (const std::string& name : errors_of(results))
+      if (const auto value = measure(record, "error." + name))
+        add_row(table, place_of(results, record), {name, *value, measure(record, "floor." + name)});
   return table;
 }
 
@@ -132,7 +108,7 @@ Table orders_table(const StudyResults& results) {
       const auto [found, fresh] = finest_other.emplace(key_of(axes_of(record, methods)), size);
       if (!fresh) found->second = std::min(found->second, size);
     }
-    for (const auto& group : refinements(results, refined)) {
+    for (const Cases& group : groups_of(all_cases(results), without(results.columns, refined))) {
       const CaseRecord& first = *group.front();
       const bool fine = size_of(first, other) == finest_other.at(key_of(axes_of(first, methods)));
       if (refined == "elements" && !fine) continue;
@@ -184,14 +160,10 @@ Table work_precision_table(const StudyResults& results) {
               {"steps", "1", "Steps of time that were marched."},
               {"status", "", "done, refused, diverged or failed, as in cases.csv."}});
   for (const CaseRecord& record : results.cases)
-    for (const std::string& name : errors_of(results)) {
-      Row row = {record.id};
-      for (const Cell& cell : axes_of(record, methods)) row.push_back(cell);
-      row.insert(row.end(),
-                 {axis(record, "step"), name, measure(record, "error." + name), measure(record, "timed_seconds"),
-                  measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status});
-      table.rows.push_back(std::move(row));
-    }
+    for (const std::string& name : errors_of(results))
+      add_row(table, place_of(record, methods),
+              {axis(record, "step"), name, measure(record, "error." + name), measure(record, "timed_seconds"),
+               measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status});
   return table;
 }
 

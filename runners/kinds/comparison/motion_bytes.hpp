@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-/// A reference motion as bytes: each vector as its length and its numbers (little-endian doubles), texts likewise.
+/// A reference motion as bytes, bit for bit.
 std::string to_bytes(const ReferenceMotion& motion);
 
 /// The motion that to_bytes() was given; throws std::runtime_error for bytes that are none.

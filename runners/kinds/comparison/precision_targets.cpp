@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
@@ -35,12 +35,6 @@ std::vector<std::string> columns_that(const StudyResults& results, Wanted wanted
   return out;
 }
 
-std::string place_text(const CaseRecord& record, const std::vector<std::string>& columns) {
-  std::string out;
-  for (const Cell& cell : axes_of(record, columns)) out += cell.text() + '\x1f';
-  return out;
-}
-
 std::optional<TimedError> timed_error(const CaseRecord& record, const std::string& error) {
   const auto value = measure(record, "error." + error), seconds = measure(record, "timed_seconds");
   if (record.status != "done" || !value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
@@ -54,12 +48,8 @@ std::vector<TimedError> fastest(const std::vector<TimedError>& points, double to
   std::vector<std::pair<std::string, TimedError>> best;
   for (const TimedError& point : points) {
     if (point.known > tolerance) continue;
-    const std::string name = place_text(*point.record, method);
-    const auto found = std::find_if(best.begin(), best.end(), [&](const auto& one) { return one.first == name; });
-    if (found == best.end())
-      best.emplace_back(name, point);
-    else if (point.seconds < found->second.seconds)
-      found->second = point;
+    TimedError& known = in_order_met(best, key_of(axes_of(*point.record, method)));
+    if (!known.record || point.seconds < known.seconds) known = point;
   }
   std::vector<TimedError> out;
   for (const auto& [name, point] : best) out.push_back(point);
@@ -88,16 +78,10 @@ Table precision_targets_table(const StudyResults& results) {
                           {"other_high", "s", "Its slowest repeat."},
                           {"speed_up", "1", "other_seconds over seconds."},
                           {"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."}});
-  std::vector<std::vector<const CaseRecord*>> scenes;
-  std::map<std::string, std::size_t> known;
-  for (const CaseRecord& record : results.cases) {
-    const auto [place, fresh] = known.emplace(place_text(record, scene), scenes.size());
-    if (fresh) scenes.emplace_back();
-    scenes[place->second].push_back(&record);
-  }
+  const std::vector<Cases> scenes = groups_of(all_cases(results), scene);
   const nlohmann::ordered_json errors = results.study.value("errors", nlohmann::ordered_json::array());
   for (const auto& error : errors)
-    for (const auto& cases : scenes) {
+    for (const Cases& cases : scenes) {
       std::vector<TimedError> points;
       for (const CaseRecord* record : cases)
         if (const auto point = timed_error(*record, error.get<std::string>())) points.push_back(*point);
@@ -111,8 +95,7 @@ Table precision_targets_table(const StudyResults& results) {
         const std::vector<TimedError> entries = fastest(points, tolerance, method);
         if (entries.empty()) break;
         const TimedError& first = entries[0];
-        Row row = {first.record->id};
-        for (const Cell& cell : axes_of(*first.record, scene)) row.push_back(cell);
+        Row row = place_of(*first.record, scene);
         row.insert(row.end(), {error.get<std::string>(), tolerance, first.seconds, first.low, first.high});
         if (entries.size() > 1) {
           const TimedError& second = entries[1];

@@ -14,19 +14,11 @@
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/study/field.hpp"
 
 namespace ricochet {
 namespace {
 
 constexpr int cells = 64;
-
-Json method_json(const MethodChoice& choice) {
-  Json json = {{"name", choice.name}};
-  for (const auto& [key, value] : choice.parameters.values()) json[key] = to_json(value);
-  if (choice.plan) json["plan"] = *choice.plan;
-  return json;
-}
 
 // A motion marched to the end of the grid, or why there is none.
 struct Marched {
@@ -150,7 +142,7 @@ Value References::once(std::map<std::string, Promised<Value>>& known, const std:
 
 std::string References::key(const StudyCase& study_case, const MethodChoice& choice) const {
   Json content = {{"program", program_hash()},
-                  {"reference", method_json(choice)},
+                  {"reference", content_of(choice)},
                   {"scene", study_case.scene_json},
                   {"duration", study_case.duration},
                   {"samples", study_case.samples}};
@@ -159,15 +151,15 @@ std::string References::key(const StudyCase& study_case, const MethodChoice& cho
   if (entry && !entry->file.empty()) content["library"] = file_hash(entry->file);
   const bool of_the_mesh = marched || entry->make(choice.parameters)->of_the_mesh();
   if (of_the_mesh) {
-    content["mass"] = method_json(study_case.mass);
-    content["contact"] = method_json(study_case.contact);
+    content["mass"] = content_of(study_case.mass);
+    content["contact"] = content_of(study_case.contact);
     for (const auto& [role, name] :
          {std::pair(Role::mass, study_case.mass.name), {Role::contact, study_case.contact.name}})
       if (const std::string file = registry_.file(role, name); !file.empty())
         content["libraries"].push_back(file_hash(file));
   }
   if (marched) {
-    content["time"] = method_json(study_case.time);
+    content["time"] = content_of(study_case.time);
     if (const std::string file = registry_.file(Role::time, study_case.time.name); !file.empty())
       content["libraries"].push_back(file_hash(file));
     content["elements"] = study_case.elements;
@@ -251,13 +243,12 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
                                   const std::atomic<bool>& stop) {
   const std::string name = key(study_case, choice);
   return once<ReferencePointer>(known_, name, stop, [&]() -> ReferencePointer {
-    if (shelf_.find)
-      if (const std::string stored = shelf_.find(name); !stored.empty()) {
-        const bool marched = choice.name == marched_reference;
-        const bool mesh =
-            marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
-        return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, motion_from_bytes(stored)});
-      }
+    if (auto stored = recall(shelf_, name, motion_from_bytes)) {
+      const bool marched = choice.name == marched_reference;
+      const bool mesh =
+          marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
+      return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, std::move(*stored)});
+    }
     KnownReference known = compute(study_case, choice, stop);
     if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
     return std::make_shared<const KnownReference>(std::move(known));

@@ -7,16 +7,13 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
 
 std::vector<std::string> errors_of(const StudyCase& study_case) {
   return study_case.settings.at("errors").get<std::vector<std::string>>();
-}
-
-void put(CaseRecord& record, const std::string& name, double value) {
-  if (std::isfinite(value)) record.measures.emplace_back(name, value);
 }
 
 void say_references(CaseRecord& record, const ReferenceSet& set) {
@@ -48,8 +45,8 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
       record.notes.push_back(fmt::format("no error {}: {}", names[i], found[i].reason));
       continue;
     }
-    put(record, "error." + names[i], *found[i].value);
-    put(record, "floor." + names[i], floors[i]);
+    put_measure(record, "error." + names[i], *found[i].value);
+    put_measure(record, "floor." + names[i], floors[i]);
   }
 }
 
@@ -85,22 +82,23 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   record.steps = std::min(marcher.step(), prepared.steps);
   const bool whole = sampler.sampled() == set.grid.times.size();
   const auto& events = sampler.contact().events();
-  put(record, "horizon", set.horizon);
-  put(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
-  put(record, "impacts", static_cast<double>(std::count_if(events.begin(), events.end(), [](const ContactEvent& event) {
-        return event.begins;
-      })));
-  put(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
+  put_measure(record, "horizon", set.horizon);
+  put_measure(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
+  put_measure(record, "impacts",
+              static_cast<double>(
+                  std::count_if(events.begin(), events.end(), [](const ContactEvent& event) { return event.begins; })));
+  put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = "done";
     if (events.empty())
-      put(record, "declared_order", facts.order);
+      put_measure(record, "declared_order", facts.order);
     else if (rigid && point_mass && facts.contact_order)
-      put(record, "declared_order", std::min(facts.order, *facts.contact_order));
-    put(record, "tip_displacement_end", sampler.motion().tip.back());
-    put(record, "energy_start", sampler.motion().energy.front());
-    put(record, "energy_end", sampler.motion().energy.back());
-    put(record, "microseconds_per_step", 1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
+      put_measure(record, "declared_order", std::min(facts.order, *facts.contact_order));
+    put_measure(record, "tip_displacement_end", sampler.motion().tip.back());
+    put_measure(record, "energy_start", sampler.motion().energy.front());
+    put_measure(record, "energy_end", sampler.motion().energy.back());
+    put_measure(record, "microseconds_per_step",
+                1e6 * record.run_seconds / static_cast<double>(std::max(record.steps, 1LL)));
     compare(record, sampler.finish(), set, errors_of(study_case));
   } else {
     record_early_end(record, marcher, prepared.steps, budget);

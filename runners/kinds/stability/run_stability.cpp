@@ -12,6 +12,7 @@
 #include "runners/kinds/stability/stability_steps.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -318,9 +319,6 @@ class StabilityRun {
   }
 
   void measure(const std::vector<Side>& sides) {
-    const auto put = [&](const char* name, double value) {
-      if (std::isfinite(value)) record_.measures.emplace_back(name, value);
-    };
     const double none = std::numeric_limits<double>::infinity();
     double predicted = none, observed = none, radius = -1, agreement = none;
     for (const Side& side : sides) {
@@ -331,10 +329,10 @@ class StabilityRun {
       const auto limit = expected(sides, side);
       if (limit && side.observed.step && !std::isfinite(agreement)) agreement = *side.observed.step / *limit;
     }
-    put("limit_predicted", predicted);
-    put("limit_observed", observed);
-    if (radius >= 0) put("largest_radius", radius);
-    put("agreement", agreement);
+    put_measure(record_, "limit_predicted", predicted);
+    put_measure(record_, "limit_observed", observed);
+    if (radius >= 0) put_measure(record_, "largest_radius", radius);
+    put_measure(record_, "agreement", agreement);
   }
 
   const StudyCase& case_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "runners/kinds/stability/step_range.hpp"
@@ -14,23 +15,21 @@ namespace ricochet {
 namespace {
 
 // Whether the range has a limit, and which way it has none.
-std::string where(const std::optional<double>& limit, bool any, bool bad) {
+template <class Known, class Unstable>
+std::string where(const StepRange& range, const std::optional<double>& limit, Known known, Unstable unstable) {
   if (limit) return "limit";
-  return !any ? "" : bad ? "below the range" : "none";
+  if (std::none_of(range.cells.begin(), range.cells.end(), known)) return "";
+  return std::any_of(range.cells.begin(), range.cells.end(), unstable) ? "below the range" : "none";
 }
 
 std::string prediction(const StepRange& range) {
   const auto known = [](const StepCell& cell) { return cell.radius.has_value(); };
-  const auto bad = [](const StepCell& cell) { return cell.predicted_unstable(); };
-  return where(range.predicted, std::any_of(range.cells.begin(), range.cells.end(), known),
-               std::any_of(range.cells.begin(), range.cells.end(), bad));
+  return where(range, range.predicted, known, std::mem_fn(&StepCell::predicted_unstable));
 }
 
 std::string observation(const StepRange& range) {
   const auto known = [](const StepCell& cell) { return !cell.behaviour.empty(); };
-  const auto bad = [](const StepCell& cell) { return cell.observed_unstable(); };
-  return where(range.observed, std::any_of(range.cells.begin(), range.cells.end(), known),
-               std::any_of(range.cells.begin(), range.cells.end(), bad));
+  return where(range, range.observed, known, std::mem_fn(&StepCell::observed_unstable));
 }
 
 std::string marginal(const StepRange& range) {
@@ -60,21 +59,16 @@ bool is_contact(const std::string& column) {
 }
 
 // Of the cases that differ in the contact law alone: the first that was done, or the first.
-std::vector<const CaseRecord*> counted_open(const StudyResults& results) {
+Cases counted_open(const StudyResults& results) {
   std::vector<std::string> others;
   for (const std::string& column : results.columns)
     if (!is_contact(column)) others.push_back(column);
-  std::map<std::string, std::size_t> known;
-  std::vector<const CaseRecord*> out;
-  for (const CaseRecord& record : results.cases) {
-    if (!step_range(record, false)) continue;
-    std::string key;
-    for (const Cell& cell : axes_of(record, others)) key += cell.text() + '\x1f';
-    const auto [found, fresh] = known.emplace(key, out.size());
-    if (fresh)
-      out.push_back(&record);
-    else if (out[found->second]->status != "done" && record.status == "done")
-      out[found->second] = &record;
+  Cases open = all_cases(results), out;
+  std::erase_if(open, [](const CaseRecord* record) { return !step_range(*record, false); });
+  for (const Cases& group : groups_of(open, others)) {
+    const auto done =
+        std::find_if(group.begin(), group.end(), [](const CaseRecord* record) { return record->status == "done"; });
+    out.push_back(done == group.end() ? group.front() : *done);
   }
   return out;
 }
@@ -102,7 +96,7 @@ Table step_limits_table(const StudyResults& results) {
        {"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
        {"grows", "", "What grows there, or why it is refused."},
        {"refused", "", "Whether that step is refused."}});
-  const std::vector<const CaseRecord*> counted = counted_open(results);
+  const Cases counted = counted_open(results);
   for (const bool closed : {false, true})
     for (const CaseRecord& record : results.cases) {
       const std::optional<StepRange> range = step_range(record, closed);
@@ -111,15 +105,14 @@ Table step_limits_table(const StudyResults& results) {
       std::optional<double> ratio;
       if (range->expected && range->observed) ratio = *range->observed / *range->expected;
       const StepCell* grows = first_unstable(*range);
-      Row row = place_of(results, record);
-      row.insert(row.end(), {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
-                             range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
-                             std::count_if(range->cells.begin(), range->cells.end(),
-                                           [](const StepCell& cell) { return cell.disagrees(); }),
-                             marginal(*range), grows ? Cell(grows->step) : Cell(),
-                             grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
-                             grows ? Cell(grows->status == "refused") : Cell()});
-      table.rows.push_back(std::move(row));
+      add_row(table, place_of(results, record),
+              {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
+               range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
+               std::count_if(range->cells.begin(), range->cells.end(),
+                             [](const StepCell& cell) { return cell.disagrees(); }),
+               marginal(*range), grows ? Cell(grows->step) : Cell(),
+               grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
+               grows ? Cell(grows->status == "refused") : Cell()});
     }
   return table;
 }

@@ -61,4 +61,12 @@ class ForcedScenes {
 std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScenes& scenes,
                                                                 const StudyCase& study_case);
 
+/// What a plan or a record says of the march of a case: its operator, what it does without, notes.
+template <class PlanOrRecord>
+void describe_march(PlanOrRecord& out, const ForcedScenes& scenes, const StudyCase& study_case) {
+  out.operator_name = scenes.operator_chosen();
+  out.left_out = march_left_out(scenes, study_case);
+  out.notes = scenes.notes(0);
+}
+
 }  // namespace ricochet

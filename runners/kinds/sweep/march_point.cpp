@@ -5,6 +5,7 @@
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
+#include "runners/kinds/sweep/tip_march.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
@@ -35,32 +36,21 @@ class PointScenes {
   ForcedScenes scenes_;
 };
 
-// Marches a lane on from one step after a strobe, sample by sample.
-void march_on(Program program, const LaneSpec& lane, const LaneState& entry, const SectionPlan& plan, SampleCount count,
+// Marches an orbit on from where its kept periods began, sample by sample.
+void march_on(const ForcedScenes& scenes, int scene, const Orbit& orbit, const SectionPlan& plan, SampleCount count,
               const std::function<void(const PointSample&)>& use) {
-  Marcher marcher(std::move(program));
-  const int whole = plan.steps_per_period, origin = plan.strobe + 1, samples = std::min(count.samples, whole);
-  const double h = marcher.program().h;
-  marcher.set_clock(origin);
-  marcher.set_lane(0, lane, entry);
-  double before = 0, at = marcher.tip(0);
+  TipMarch tips(scenes.program(scenes[scene].group, {orbit.lane}), {&orbit}, plan);
+  const int whole = plan.steps_per_period, samples = std::min(count.samples, whole);
   for (int period = 0; period < count.periods; ++period) {
     int taken = 0;  // of this period
-    // The clock of the march is turned back once per period, as in the run.
-    for (int step_of_period = 1; step_of_period <= whole; ++step_of_period) {
-      marcher.march(1);
-      const double after = marcher.tip(0);
-      // `at` stands step_of_period after the strobe; a sample for each k with step_of_period = ⌈k·whole/samples⌉.
-      if (static_cast<long long>(step_of_period) * samples >= static_cast<long long>(taken + 1) * whole) {
-        ++taken;
-        const long long step = static_cast<long long>(period) * whole + step_of_period;
-        if (step > 1)
-          use({static_cast<double>(step) * h, at, (after - before) / (2 * h), step_of_period == whole ? period : -1});
-      }
-      before = at;
-      at = after;
-    }
-    marcher.set_clock(origin);
+    tips.march(whole, [&](std::size_t, long long step, double displacement, double velocity) {
+      // A sample for each k with step_of_period = ⌈k·whole/samples⌉.
+      const long long step_of_period = step - static_cast<long long>(period) * whole;
+      if (step_of_period * samples < static_cast<long long>(taken + 1) * whole) return;
+      ++taken;
+      use({static_cast<double>(step) * tips.h(), displacement, velocity, step_of_period == whole ? period : -1});
+    });
+    tips.turn_back();
   }
 }
 
@@ -69,10 +59,13 @@ void march_on(Program program, const LaneSpec& lane, const LaneState& entry, con
 void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
                  const std::function<void(const PointSample&)>& use) {
   PointScenes made(study_case, registry);
-  const ForcedScene& scene = made.scenes()[made.add(task.parameter, task.start)];
-  if (!scene.refusal.empty()) throw InputError("", scene.refusal);
-  march_on(made.scenes().program(scene.group, {scene.lane}), scene.lane, task.entry,
-           section_plan(study_case, made.scenes()), task.count, use);
+  const int scene = made.add(task.parameter, task.start);
+  const ForcedScene& found = made.scenes()[scene];
+  if (!found.refusal.empty()) throw InputError("", found.refusal);
+  Orbit orbit;
+  orbit.lane = found.lane;
+  orbit.entry = task.entry;
+  march_on(made.scenes(), scene, orbit, section_plan(study_case, made.scenes()), task.count, use);
 }
 
 CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
@@ -90,9 +83,7 @@ CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPl
   scheduler.run(stop, [](const MarchedOrbits&) {});
   const Orbit& orbit = scheduler.orbit(number);
   const CellEnd end = cell_end(orbit, options.section);
-  if (end.status == "done")
-    march_on(scenes.program(scenes[scheduler.task(number).scene].group, {orbit.lane}), orbit.lane, orbit.entry,
-             options.section, count, use);
+  if (end.status == "done") march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
   return end;
 }
 

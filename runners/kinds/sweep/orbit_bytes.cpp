@@ -5,82 +5,72 @@
 namespace ricochet {
 namespace {
 
-// One description of an orbit serves both ways.
-template <class Archive, class State>
-void describe_state(Archive& archive, State& state) {
-  archive(state.slots);
-  archive(state.efforts);
-  archive(state.fastest);
-  archive(state.memory);
-}
-
-template <class Archive, class End>
-void describe_end(Archive& archive, End& end) {
-  archive(end.cause);
-  archive(end.value);
-  archive(end.bound);
-  archive(end.factor);
-  archive(end.count);
-}
-
-template <class Archive, class One>
-void describe_orbit(Archive& archive, One& orbit) {
-  archive(orbit.task);
-  archive(orbit.stage);
-  archive(orbit.transient_periods);
-  archive(orbit.kept_periods);
-  archive(orbit.settled);
-  describe_end(archive, orbit.end);
-  archive(orbit.stopped_period);
-  archive(orbit.settling.scale);
-  archive(orbit.settling.tolerance);
-  archive(orbit.settling.longest);
-  archive(orbit.settling.ring);
-  archive(orbit.settling.repeats);
-  archive(orbit.settling.periods);
-  archive(orbit.readings.width);
-  archive(orbit.readings.values);
-  archive(orbit.strobed);
-  archive(orbit.points);
-  archive(orbit.impacts);
-  archive(orbit.impact_counts);
-  archive(orbit.contact_steps);
-  archive(orbit.most_on_a_side);
-  archive(orbit.closed[0]);
-  archive(orbit.closed[1]);
-  describe_state(archive, orbit.entry);
-  describe_state(archive, orbit.now);
-}
-
-constexpr std::uint64_t mark = 0x3174696272'0002;  // what the bytes are, and their version
+constexpr const char* orbits_mark = "orbits 3";
+constexpr const char* exponents_mark = "exponents 2";
 
 }  // namespace
 
+template <class Archive>
+void serialize(Archive& archive, LaneState& state) {
+  archive(state.slots, state.efforts, state.fastest, state.memory);
+}
+
+template <class Archive>
+void serialize(Archive& archive, LaneEnd& end) {
+  archive(end.cause, end.value, end.bound, end.factor, end.count);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Settling& settling) {
+  archive(settling.scale, settling.tolerance, settling.longest, settling.ring, settling.repeats, settling.periods);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SectionSeries& series) {
+  archive(series.width, series.values);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ImpactPoint& impact) {
+  archive(impact.phase, impact.side, impact.speed);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Orbit& orbit) {
+  archive(orbit.task, orbit.stage, orbit.transient_periods, orbit.kept_periods, orbit.settled, orbit.end,
+          orbit.stopped_period, orbit.settling, orbit.readings, orbit.strobed, orbit.points, orbit.impacts,
+          orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.entry, orbit.now);
+}
+
+template <class Archive>
+void serialize(Archive& archive, MarchedOrbits& marched) {
+  archive(marched.finished, marched.running);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Interval& interval) {
+  archive(interval.value, interval.low, interval.high);
+}
+
+template <class Archive>
+void serialize(Archive& archive, OrbitExponents& exponents) {
+  archive(exponents.values, exponents.twin, exponents.method);
+}
+
 std::string to_bytes(const MarchedOrbits& marched) {
-  ByteWriter writer;
-  writer(mark);
-  for (const auto* orbits : {&marched.finished, &marched.running}) {
-    writer(static_cast<std::uint64_t>(orbits->size()));
-    for (const Orbit& orbit : *orbits) describe_orbit(writer, orbit);
-  }
-  return std::move(writer.bytes);
+  return to_bytes(marched, orbits_mark);
 }
 
 MarchedOrbits marched_orbits(const std::string& bytes) {
-  ByteReader reader(bytes);
-  std::uint64_t found = 0;
-  reader(found);
-  if (found != mark) throw std::runtime_error("stored orbits are of another version");
-  MarchedOrbits marched;
-  for (auto* orbits : {&marched.finished, &marched.running}) {
-    std::uint64_t count = 0;
-    reader(count);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      orbits->emplace_back();
-      describe_orbit(reader, orbits->back());
-    }
-  }
-  return marched;
+  return from_bytes<MarchedOrbits>(bytes, orbits_mark);
+}
+
+std::string to_bytes(const std::vector<OrbitExponents>& batch) {
+  return to_bytes(batch, exponents_mark);
+}
+
+std::vector<OrbitExponents> orbit_exponents(const std::string& bytes) {
+  return from_bytes<std::vector<OrbitExponents>>(bytes, exponents_mark);
 }
 
 }  // namespace ricochet

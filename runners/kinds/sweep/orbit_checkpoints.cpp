@@ -15,12 +15,15 @@ std::string OrbitCheckpoints::part(int number) const {
 MarchedOrbits OrbitCheckpoints::find() {
   MarchedOrbits all;
   if (!shelf_.find) return all;
-  for (std::string bytes = shelf_.find(part(parts_)); !bytes.empty(); bytes = shelf_.find(part(parts_))) {
-    MarchedOrbits some = marched_orbits(bytes);
-    std::move(some.finished.begin(), some.finished.end(), std::back_inserter(all.finished));
-    ++parts_;
+  bool whole = true;
+  for (; !shelf_.find(part(parts_)).empty(); ++parts_) {
+    auto some = recall(shelf_, part(parts_), marched_orbits);
+    whole = whole && some;
+    if (some) std::move(some->finished.begin(), some->finished.end(), std::back_inserter(all.finished));
   }
-  if (const std::string bytes = shelf_.find(part(-1)); !bytes.empty()) all.running = marched_orbits(bytes).running;
+  // An orbit on its way that follows one of a part that is lost would be begun again when that one ends.
+  if (!whole) return all;
+  if (auto now = recall(shelf_, part(-1), marched_orbits)) all.running = std::move(now->running);
   return all;
 }
 
@@ -48,12 +51,12 @@ void ExponentCheckpoints::note(std::size_t batch) {
 void ExponentCheckpoints::serve(ExponentTask& task) {
   if (!shelf_.find || !shelf_.keep) return;
   task.find = [this](std::size_t batch) {
-    const std::string bytes = shelf_.find(part(batch));
-    if (!bytes.empty()) note(batch);
-    return bytes;
+    auto exponents = recall(shelf_, part(batch), orbit_exponents);
+    if (exponents) note(batch);
+    return exponents.value_or(std::vector<OrbitExponents>());
   };
-  task.keep = [this](std::size_t batch, const std::string& bytes) {
-    shelf_.keep(part(batch), bytes);
+  task.keep = [this](std::size_t batch, const std::vector<OrbitExponents>& exponents) {
+    shelf_.keep(part(batch), to_bytes(exponents));
     note(batch);
   };
 }

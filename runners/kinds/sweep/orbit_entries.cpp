@@ -61,16 +61,23 @@ void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const 
   record.numbers.push_back(std::move(table));
 }
 
-std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
-  const NumberTable* table = find_table(record.numbers, "entries");
-  const auto* starts = table ? table->words_of("start") : nullptr;
-  const auto *parameters = table ? table->numbers("parameter") : nullptr,
-             *froms = table ? table->numbers("start") : nullptr, *values = table ? table->numbers("value") : nullptr;
-  if (!starts || !parameters || !froms || !values) return std::nullopt;
+std::vector<double> orbit_numbers(const CaseRecord& record, const char* table, const char* column, double parameter,
+                                  const std::string& start) {
+  std::vector<double> found;
+  const NumberTable* numbers = find_table(record.numbers, table);
+  const auto* starts = numbers ? numbers->words_of("start") : nullptr;
+  const auto *parameters = numbers ? numbers->numbers("parameter") : nullptr,
+             *froms = numbers ? numbers->numbers("start") : nullptr,
+             *values = numbers ? numbers->numbers(column) : nullptr;
+  if (!starts || !parameters || !froms || !values) return found;
   const auto index = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
-  std::vector<double> all;
-  for (std::size_t row = 0; row < table->rows(); ++row)
-    if ((*parameters)[row] == parameter && (*froms)[row] == index) all.push_back((*values)[row]);
+  for (std::size_t row = 0; row < numbers->rows(); ++row)
+    if ((*parameters)[row] == parameter && (*froms)[row] == index) found.push_back((*values)[row]);
+  return found;
+}
+
+std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
+  const std::vector<double> all = orbit_numbers(record, "entries", "value", parameter, start);
   if (all.size() >= state_counts) return lane_state(all);
   return std::nullopt;
 }

@@ -16,6 +16,10 @@ constexpr std::size_t most_entry_numbers = 2000000;
 /// too much room.
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts);
 
+/// A column of a table of numbers in the rows of one orbit; empty where the case keeps none.
+std::vector<double> orbit_numbers(const CaseRecord& record, const char* table, const char* column, double parameter,
+                                  const std::string& start);
+
 /// The entry of one orbit of a stored case; none where the case keeps none. Throws std::runtime_error for numbers that
 /// add_entries() did not write.
 std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start);

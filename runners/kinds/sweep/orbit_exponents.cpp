@@ -1,21 +1,15 @@
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
-#include <exception>
 #include <map>
-#include <mutex>
 #include <ricochet/measure/orbits/exponent_intervals.hpp>
 #include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/kinds/sweep/case_workers.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/march/bytes.hpp"
-#include "runners/march/case_watch.hpp"
-#include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
 namespace {
@@ -28,17 +22,6 @@ struct Batch {
   int group = 0;
   std::vector<std::size_t> orbits;
 };
-
-template <class Archive, class Exponents>
-void describe_exponents(Archive& archive, Exponents& exponents) {
-  bool twin = exponents.twin.has_value();
-  archive(exponents.values);
-  archive(twin);
-  if (twin && !exponents.twin) exponents.twin.emplace();
-  if (twin)
-    for (auto Interval::*part : {&Interval::value, &Interval::low, &Interval::high}) archive((*exponents.twin).*part);
-  archive(exponents.method);
-}
 
 bool usable(const std::vector<double>& rates) {
   return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
@@ -118,41 +101,21 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     }
   };
   std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const TicketPointer ticket = current_ticket();
-  const auto work = [&] {
-    const CaseScope scope(ticket);
-    const double began = thread_seconds();
-    try {
-      for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
-        const std::string known = task.find ? task.find(i) : "";
-        if (!known.empty()) {
-          ByteReader reader(known);
-          for (const std::size_t orbit : batches[i].orbits) describe_exponents(reader, found[orbit]);
-          continue;
-        }
-        measure(batches[i]);
-        if (!task.keep) continue;
-        ByteWriter writer;
-        for (const std::size_t orbit : batches[i].orbits) describe_exponents(writer, found[orbit]);
-        task.keep(i, writer.bytes);
+  seconds += run_workers(task.workers, [&](int) {
+    for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
+      const std::vector<std::size_t>& members = batches[i].orbits;
+      std::vector<OrbitExponents> known = task.find ? task.find(i) : std::vector<OrbitExponents>();
+      if (known.size() == members.size()) {
+        for (std::size_t b = 0; b < members.size(); ++b) found[members[b]] = std::move(known[b]);
+        continue;
       }
-    } catch (...) {
-      const std::lock_guard guard(mutex);
-      failure = std::current_exception();
+      measure(batches[i]);
+      if (!task.keep) continue;
+      known.clear();
+      for (const std::size_t orbit : members) known.push_back(found[orbit]);
+      task.keep(i, known);
     }
-    const std::lock_guard guard(mutex);
-    seconds += thread_seconds() - began;
-  };
-  tbb::task_arena arena(task.workers);
-  arena.execute([&] {
-    tbb::task_group group;
-    for (int worker = 1; worker < task.workers; ++worker) group.run(work);
-    work();
-    group.wait();
   });
-  if (failure) std::rethrow_exception(failure);
   if (stop) throw Interrupted{};
   return found;
 }

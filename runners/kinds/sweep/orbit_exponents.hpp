@@ -31,9 +31,9 @@ struct ExponentTask {
   std::vector<bool> sawtooth;  ///< per group: see MarginalRoots
   int count = 1;               ///< exponents
   int workers = 1;             ///< threads
-  /// Where batches outlive the program: find(number) gives what keep(number, bytes) was given, or "". May be empty.
-  std::function<std::string(std::size_t)> find;
-  std::function<void(std::size_t, const std::string&)> keep;
+  /// Where batches outlive the program: find(number) gives what keep(number, batch) was given, or none. May be empty.
+  std::function<std::vector<OrbitExponents>(std::size_t)> find;
+  std::function<void(std::size_t, const std::vector<OrbitExponents>&)> keep;
 };
 
 /// Measures the exponents over the kept periods of each orbit, by tangent columns in blocks of lanes, and one twin

@@ -10,12 +10,4 @@ namespace ricochet {
 void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::vector<OrbitView>& views,
                    const SectionPlan& plan);
 
-/// One orbit from `entry` (one step after a strobe), `periods` periods, `samples` per period: t from the strobe (s),
-/// tip displacement (m) and velocity (m/s, over two steps).
-struct Portrait {
-  std::vector<double> time, displacement, velocity;
-};
-std::vector<Portrait> march_portraits(Program program, const std::vector<const Orbit*>& orbits, const SectionPlan& plan,
-                                      int periods, int samples);
-
 }  // namespace ricochet

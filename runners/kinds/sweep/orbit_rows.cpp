@@ -12,6 +12,8 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -67,23 +69,32 @@ std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
 
 Table changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
   Table table = bifurcations_head();
-  const OrbitView* before = nullptr;
-  for (const OrbitView& view : views) {
-    if (before && before->start != view.start) before = nullptr;
-    if (!view.complete()) continue;
-    if (before) {
-      const MotionClass &from = before->judged.verdict.motion, &to = view.judged.verdict.motion;
-      const bool grazing = (from.regime == Regime::no_contact) != (to.regime == Regime::no_contact);
-      if (!(from == to))
-        table.rows.push_back({starts[view.start], text(from), text(to), grazing ? "grazing" : "change",
-                              0.5 * (before->value + view.value), before->value, view.value, nullptr});
-    }
-    before = &view;
+  std::vector<std::optional<MotionClass>> classes;
+  for (const OrbitView& view : views)
+    classes.push_back(view.complete() ? std::optional(view.judged.verdict.motion) : std::nullopt);
+  for (const auto& [below, above] : class_changes(classes)) {
+    const OrbitView &before = views[below], &view = views[above];
+    if (before.start != view.start) continue;
+    const MotionClass &from = *classes[below], &to = *classes[above];
+    const bool grazing = (from.regime == Regime::no_contact) != (to.regime == Regime::no_contact);
+    table.rows.push_back({starts[view.start], text(from), text(to), grazing ? "grazing" : "change",
+                          0.5 * (before.value + view.value), before.value, view.value, nullptr});
   }
   return table;
 }
 
 }  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector<std::optional<MotionClass>>& row) {
+  std::vector<std::pair<std::size_t, std::size_t>> changes;
+  std::optional<std::size_t> before;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (!row[i]) continue;
+    if (before && !(*row[*before] == *row[i])) changes.emplace_back(*before, i);
+    before = i;
+  }
+  return changes;
+}
 
 std::pair<std::string, std::string> status_of(const OrbitView& view) {
   if (!view.orbit) return {"refused", view.refusal};
@@ -180,16 +191,15 @@ void add_shares(CaseRecord& record, const std::vector<OrbitView>& views) {
   record.measures.insert(record.measures.end(), {{"share_periodic", periodic / orbits},
                                                  {"share_chaotic", chaotic / orbits},
                                                  {"impacts_per_period", impacts / orbits}});
-  if (largest && std::isfinite(*largest)) record.measures.emplace_back("largest_exponent", *largest);
+  if (largest) put_measure(record, "largest_exponent", *largest);
 }
 
 void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
   const char *below = contact_word, *above = text(Regime::no_contact);
   if (grazing.opens_below) std::swap(below, above);
-  for (Table& table : record.tables)
-    if (table.name == "bifurcations")
-      table.rows.push_back(
-          {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
+  if (Table* changes = find_table(record.tables, "bifurcations"))
+    changes->rows.push_back(
+        {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
 }
 
 }  // namespace ricochet

@@ -40,6 +40,9 @@ void judge(OrbitView& view, const SectionPlan& plan);
 /// Status (done, refused, diverged, failed) and reason of a value, as of a case.
 std::pair<std::string, std::string> status_of(const OrbitView& view);
 
+/// Neighbours in a row of motions that are of different classes, those that are not known passed over.
+std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector<std::optional<MotionClass>>& row);
+
 /// Tables `values` and `bifurcations`, numbers `points` and `impacts`. Views are sorted by start, then by value.
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
                       int exponents, const SectionPlan& plan);

@@ -1,16 +1,12 @@
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <exception>
 #include <mutex>
 
+#include "runners/kinds/sweep/case_workers.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/march/case_watch.hpp"
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
@@ -102,20 +98,15 @@ class OrbitScheduler::Shared {
     snapshots_[static_cast<std::size_t>(worker)] = orbits;
   }
 
-  /// A worker is done, be it by an exception.
-  void end(double seconds, std::exception_ptr failure) {
+  /// A worker is done; one that failed stops the others.
+  void end(bool failed) {
     const std::lock_guard guard(mutex_);
-    owner_.seconds_ += seconds;
-    if (failure) {
-      failure_ = failure;
-      ended_ = true;
-    }
+    ended_ = ended_ || failed;
     changed_.notify_all();
   }
 
   /// What the last worker leaves behind.
   void close() {
-    if (failure_) std::rethrow_exception(failure_);
     checkpoint_(queue_.stock(snapshots_));
     if (stop_) throw Interrupted{};
   }
@@ -128,7 +119,6 @@ class OrbitScheduler::Shared {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool ended_ = false;
-  std::exception_ptr failure_;
   std::vector<std::vector<Orbit>> snapshots_;  // per worker, what is on its way
   Clock::time_point last_ = Clock::now();
   long long wanted_ = 0;          // snapshots asked for so far
@@ -212,27 +202,18 @@ void OrbitScheduler::work(Shared& shared, int worker) {
 
 void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint) {
   Shared shared(*this, stop, checkpoint);
-  const TicketPointer ticket = current_ticket();
-  const auto body = [&](int worker) {
-    const CaseScope scope(ticket);
-    const double began = thread_seconds();
-    std::exception_ptr failure;
+  // A worker waits only for orbits that another one is marching: fewer threads than workers make no difference.
+  seconds_ += run_workers(options_.workers, [&](int worker) {
     try {
       work(shared, worker);
     } catch (const Refusal& refusal) {
-      failure = std::make_exception_ptr(std::runtime_error(refusal.sentence));
+      shared.end(true);
+      throw std::runtime_error(refusal.sentence);
     } catch (...) {
-      failure = std::current_exception();
+      shared.end(true);
+      throw;
     }
-    shared.end(thread_seconds() - began, failure);
-  };
-  // A worker waits only for orbits that another one is marching: fewer threads than workers make no difference.
-  tbb::task_arena arena(options_.workers);
-  arena.execute([&] {
-    tbb::task_group group;
-    for (int worker = 1; worker < options_.workers; ++worker) group.run([&body, worker] { body(worker); });
-    body(0);
-    group.wait();
+    shared.end(false);
   });
   shared.close();
 }

@@ -54,11 +54,8 @@ StoredStudy::StoredStudy(const StudyResults& results, const PointRequest& asked)
     : catalogue(standard_catalogue(asked.plugins)), study(parse_study(results.study.dump(), catalogue, registry)) {}
 
 const StudyCase& StoredStudy::find(const std::string& id) const {
-  const auto found =
-      std::find_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return one.id == id; });
-  if (found == study.cases.end())
-    throw PointRefused(fmt::format("the stored study has no case {} any more: run it again", id));
-  return *found;
+  if (const StudyCase* found = find_case(study, id)) return *found;
+  throw PointRefused(fmt::format("the stored study has no case {} any more: run it again", id));
 }
 
 SamplePrinter::SamplePrinter(std::ostream& out) : out_(out) {

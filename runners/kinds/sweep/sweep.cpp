@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runners/kinds/sweep/derive_dynamics.hpp"
+#include "runners/kinds/sweep/dynamics_tables.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/tables_of_cases.hpp"

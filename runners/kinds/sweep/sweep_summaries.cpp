@@ -5,26 +5,13 @@
 #include <map>
 #include <ricochet/measure/attractors/opinions.hpp>
 
+#include "runners/kinds/sweep/study_diagram.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
-
-constexpr const char* damping_column = "structure.damping.stiffness";
-
-/// α of the scene of a case (s), where it is not what is swept.
-std::optional<double> physical_viscosity(const StudyResults& results, const CaseRecord& record) {
-  if (const auto value = axis(record, damping_column).number()) return value;
-  const nlohmann::ordered_json::json_pointer pointer("/scene/structure/damping/stiffness");
-  if (!results.study.is_object() || !results.study.contains(pointer)) return std::nullopt;
-  return cell_of(results.study.at(pointer)).number();
-}
-
-bool sweeps_viscosity(const StudyResults& results) {
-  const nlohmann::ordered_json::json_pointer pointer("/parameter/pointer");
-  return results.study.contains(pointer) && results.study.at(pointer) == "/scene/structure/damping/stiffness";
-}
 
 /// Smallest and largest of what was met.
 struct Bounds {
@@ -99,16 +86,11 @@ Table class_counts_table(const StudyResults& results) {
       const std::string state = rows.text(row, status);
       const bool done = state.empty() || state == "done";
       const Row key = {done ? rows.text(row, name) : "failed", done ? rows.cell(row, period) : Cell()};
-      auto found = std::find_if(counts.begin(), counts.end(), [&](const auto& one) { return one.first == key; });
-      if (found == counts.end()) found = counts.insert(counts.end(), {key, 0});
-      ++found->second;
+      ++in_order_met(counts, key);
     }
-    for (const auto& [key, count] : counts) {
-      Row row = place_of(results, record);
-      row.insert(row.end(),
-                 {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
-      table.rows.push_back(std::move(row));
-    }
+    for (const auto& [key, count] : counts)
+      add_row(table, place_of(results, record),
+              {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
   }
   return table;
 }
@@ -123,13 +105,12 @@ Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swep
                {"high", unit, "The largest such value."},
                {"bracket", unit, "Width of the widest interval that a change is located to."}},
               {}};
-  struct Grazing {
-    std::string start;
+  struct Grazings {
     int changes = 0;
     Bounds values;
     double bracket = 0;
   };
-  std::vector<Grazing> found;
+  std::vector<std::pair<std::string, Grazings>> found;  // by start
   for (const CaseRecord& record : results.cases) {
     const Table* changes = find_table(record.tables, "bifurcations");
     if (!changes) continue;
@@ -139,17 +120,15 @@ Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swep
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const auto at = rows.number(row, value);
       if (!at || rows.text(row, kind) != "grazing") continue;
-      const std::string from = rows.text(row, start);
-      auto place = std::find_if(found.begin(), found.end(), [&](const Grazing& one) { return one.start == from; });
-      if (place == found.end()) place = found.insert(found.end(), Grazing{from, 0, {}, 0});
-      ++place->changes;
-      place->values.include(*at);
+      Grazings& one = in_order_met(found, rows.text(row, start));
+      ++one.changes;
+      one.values.include(*at);
       if (rows.number(row, low) && rows.number(row, high))
-        place->bracket = std::max(place->bracket, *rows.number(row, high) - *rows.number(row, low));
+        one.bracket = std::max(one.bracket, *rows.number(row, high) - *rows.number(row, low));
     }
   }
-  for (const Grazing& one : found)
-    table.rows.push_back({one.start, one.changes, one.values.low, one.values.high, one.bracket});
+  for (const auto& [start, one] : found)
+    table.rows.push_back({start, one.changes, one.values.low, one.values.high, one.bracket});
   return table;
 }
 
@@ -162,7 +141,6 @@ Table numerical_viscosity_table(const StudyResults& results) {
        {"physical_high", "s", "Largest such α."},
        {"share", "1", "Largest modulus of the equivalent viscosity over α; empty where there is no α to compare with."},
        {"small", "", "Whether that share is at most 1 %."}});
-  const bool swept = sweeps_viscosity(results);
   for (const CaseRecord& record : results.cases) {
     const Table* values = find_table(record.tables, "values");
     if (!values) continue;
@@ -175,7 +153,8 @@ Table numerical_viscosity_table(const StudyResults& results) {
       const auto added = rows.number(row, viscosity);
       if (!added) continue;
       numerical.include(*added);
-      const auto alpha = swept ? rows.number(row, parameter) : physical_viscosity(results, record);
+      const auto at = rows.number(row, parameter);
+      const auto alpha = at ? dynamics::viscosity_of(results, record, *at) : std::nullopt;
       if (!alpha) continue;
       physical.include(*alpha);
       if (*alpha > 0)
@@ -185,10 +164,9 @@ Table numerical_viscosity_table(const StudyResults& results) {
     }
     if (!numerical.low) continue;
     const bool compared = physical.low && !undamped;
-    Row row = place_of(results, record);
-    row.insert(row.end(), {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
-                           compared ? Cell(share <= small_viscosity) : Cell()});
-    table.rows.push_back(std::move(row));
+    add_row(table, place_of(results, record),
+            {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
+             compared ? Cell(share <= small_viscosity) : Cell()});
   }
   return table;
 }

@@ -57,6 +57,12 @@ Column in_units_of(const Column& parameter, const char* name, const char* text) 
 
 }  // namespace
 
+std::string swept_name(const StudyResults& results) {
+  const auto parameter = results.study.find("parameter");
+  if (parameter == results.study.end() || !parameter->is_object()) return "";
+  return column_name(parameter->value("pointer", ""));
+}
+
 SweptColumns swept_columns(const StudyResults& results) {
   SweptColumns out;
   if (results.study.contains("parameter"))

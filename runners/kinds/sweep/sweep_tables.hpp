@@ -14,6 +14,8 @@ struct SweptColumns {
 };
 /// The same with the names and units that the study gives them.
 SweptColumns swept_columns(const StudyResults& results);
+/// The parameter of a study as the column of an axis would be called: "support.amplitude"; "" without one.
+std::string swept_name(const StudyResults& results);
 
 /// Of a case, kept in the store.
 Table values_head(int exponents, const SweptColumns& swept = {});

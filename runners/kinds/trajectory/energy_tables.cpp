@@ -14,7 +14,6 @@
 namespace ricochet {
 namespace {
 
-using Cases = std::vector<const CaseRecord*>;
 using Measured = std::function<std::optional<double>(const CaseRecord&)>;
 
 Measured measured(std::string name) {
@@ -50,30 +49,7 @@ std::optional<double> of_start(const CaseRecord& record, const char* name) {
 }
 
 Cases done_cases(const StudyResults& results) {
-  Cases out;
-  for (const CaseRecord& record : results.cases)
-    if (record.status == "done") out.push_back(&record);
-  return out;
-}
-
-/// The cases that agree in these columns, in the study's order.
-std::vector<Cases> groups_of(const Cases& cases, const std::vector<std::string>& columns) {
-  std::vector<Cases> groups;
-  std::map<std::string, std::size_t> place;
-  for (const CaseRecord* record : cases) {
-    std::string key;
-    for (const Cell& cell : axes_of(*record, columns)) key += cell.text() + '\x1f';
-    const auto [at, fresh] = place.emplace(std::move(key), groups.size());
-    if (fresh) groups.emplace_back();
-    groups[at->second].push_back(record);
-  }
-  return groups;
-}
-
-Cases all_cases(const StudyResults& results) {
-  Cases out;
-  for (const CaseRecord& record : results.cases) out.push_back(&record);
-  return out;
+  return with_status(all_cases(results), "done");
 }
 
 double step_of(const CaseRecord& record) {
@@ -88,10 +64,9 @@ const CaseRecord* finest_of(const Cases& cases) {
 }
 
 Cases with_ratio(const Cases& cases) {
-  Cases out;
-  for (const CaseRecord* record : cases)
-    if (record->status == "done" && measure(*record, "energy_ratio")) out.push_back(record);
-  return out;
+  Cases done = with_status(cases, "done");
+  std::erase_if(done, [](const CaseRecord* record) { return !measure(*record, "energy_ratio"); });
+  return done;
 }
 
 bool varies(const StudyResults& results, const std::string& column) {
@@ -110,14 +85,9 @@ Table table_of_groups(const StudyResults& results, const char* name, const char*
 
 Row group_place(const Cases& group, const std::vector<std::string>& shared) {
   const Cases finished = with_ratio(group);
-  Row row = {finest_of(finished.empty() ? group : finished)->id};
-  for (const Cell& cell : axes_of(*group.front(), shared)) row.push_back(cell);
+  Row row = place_of(*group.front(), shared);
+  row.front() = finest_of(finished.empty() ? group : finished)->id;
   return row;
-}
-
-std::size_t count_status(const Cases& cases, const char* status) {
-  return static_cast<std::size_t>(
-      std::count_if(cases.begin(), cases.end(), [&](const CaseRecord* record) { return record->status == status; }));
 }
 
 }  // namespace
@@ -156,12 +126,11 @@ Table energy_ends_table(const StudyResults& results) {
     if (!end && !ratio) continue;
     const auto gain = of_start(*record, "largest_step_gain");
     const double noise = energy_noise(*record);
-    Row row = place_of(results, *record);
-    row.insert(row.end(), {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
-                           ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain,
-                           gain ? Cell(*gain > step_gain_threshold) : Cell(),
-                           of_start(*record, "dissipated_at_contact"), conservative});
-    table.rows.push_back(std::move(row));
+    add_row(
+        table, place_of(results, *record),
+        {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
+         ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain, gain ? Cell(*gain > step_gain_threshold) : Cell(),
+         of_start(*record, "dissipated_at_contact"), conservative});
   }
   return table;
 }
@@ -193,10 +162,7 @@ Table energy_by_mass_table(const StudyResults& results) {
                        {"largest_gain_case", "", "The case that makes it."}});
   const Measured ratio = measured("energy_ratio");
   for (const Cases& all : groups_of(all_cases(results), shared)) {
-    Cases done;
-    for (const CaseRecord* record : all)
-      if (record->status == "done") done.push_back(record);
-    const Cases finished = with_ratio(done);
+    const Cases done = with_status(all, "done"), finished = with_ratio(done);
     Cases at_finest;
     std::optional<double> finest;
     if (!finished.empty() && varies(results, "step") && std::isfinite(step_of(*finest_of(finished)))) {
@@ -211,12 +177,11 @@ Table energy_by_mass_table(const StudyResults& results) {
     const auto gaining = std::count_if(done.begin(), done.end(), [](const CaseRecord* record) {
       return of_start(*record, "largest_step_gain").value_or(0) > step_gain_threshold;
     });
-    Row row = group_place(all, shared);
-    row.insert(row.end(), {all.size(), count_status(all, "refused"), count_status(all, "diverged"),
-                           count_status(all, "failed"), ratios.count, ratios.low, ratios.high, finest, fine.low,
-                           fine.high, ends.count, ends.low, ends.high, contact.low, contact.high, gains.count, gaining,
-                           gains.high, gains.highest ? gains.highest->id : std::string()});
-    table.rows.push_back(std::move(row));
+    add_row(table, group_place(all, shared),
+            {all.size(), with_status(all, "refused").size(), with_status(all, "diverged").size(),
+             with_status(all, "failed").size(), ratios.count, ratios.low, ratios.high, finest, fine.low, fine.high,
+             ends.count, ends.low, ends.high, contact.low, contact.high, gains.count, gaining, gains.high,
+             gains.highest ? gains.highest->id : std::string()});
   }
   return table;
 }
@@ -255,12 +220,10 @@ Table energy_trends_table(const StudyResults& results) {
       noise = std::max(noise, energy_noise(*record));
     }
     const EnergyTrend trend = energy_trend(steps, ratios, noise, conservative);
-    Row row = group_place(group, shared);
-    row.insert(row.end(),
-               {steps.size(), steps.empty() ? Cell() : Cell(steps.back()), trend.ratio,
-                steps.empty() ? Cell() : Cell(noise), trend.first_change, trend.last_change, trend.smallest_change,
-                trend.largest_change, trend.last_move, trend.order, trend_word(trend.trend)});
-    table.rows.push_back(std::move(row));
+    add_row(table, group_place(group, shared),
+            {steps.size(), steps.empty() ? Cell() : Cell(steps.back()), trend.ratio,
+             steps.empty() ? Cell() : Cell(noise), trend.first_change, trend.last_change, trend.smallest_change,
+             trend.largest_change, trend.last_move, trend.order, trend_word(trend.trend)});
   }
   return table;
 }

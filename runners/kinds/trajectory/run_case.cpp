@@ -9,6 +9,7 @@
 
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -50,9 +51,7 @@ class Sampler {
 void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem) {
   const EnergyTotals& energy = audit.totals(0);
   const ContactTotals& contact = audit.contact(0);
-  const auto put = [&](const char* name, double value) {
-    if (std::isfinite(value)) record.measures.emplace_back(name, value);
-  };
+  const auto put = [&](const char* name, double value) { put_measure(record, name, value); };
   const double start = energy.first.common(), end = energy.last.common();
   const StepPlan& plan = marcher.program().plan;
   const bool balances = audit.balances(), loads = marcher.program().support || marcher.program().load;

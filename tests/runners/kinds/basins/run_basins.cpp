@@ -148,7 +148,7 @@ TEST_CASE("Cells behind a stop are refused one by one") {
   }
 }
 
-TEST_CASE("Threads and interruptions do not change the bits of basins") {
+TEST_CASE("Threads, interruptions and damage to what was stored do not change the bits of basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());
   for (int run = 0; run < 3; ++run) CHECK((bits(opened.run({{}, "key", 2})) == wanted));
@@ -173,8 +173,10 @@ TEST_CASE("Threads and interruptions do not change the bits of basins") {
       break;
     } catch (const Interrupted&) {
     }
+    if (interruptions < 3)
+      for (auto& [key, bytes] : kept) bytes.pop_back();
   }
-  CHECK(interruptions > 0);
+  CHECK(interruptions > 3);
   CHECK(kept.empty());
 }
 

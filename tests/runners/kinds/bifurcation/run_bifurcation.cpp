@@ -18,6 +18,12 @@ std::vector<double> sections(const CaseRecord& record, std::size_t start) {
   return found;
 }
 
+// The bits of what a case found: how many steps it took is not part of them.
+std::string tables_of(CaseRecord record) {
+  record.steps = 0;
+  return bits_of(record);
+}
+
 }  // namespace
 
 TEST_CASE("bifurcation: neither threads nor the number of exponents asked for change an orbit") {
@@ -29,6 +35,37 @@ TEST_CASE("bifurcation: neither threads nor the number of exponents asked for ch
   const CaseRecord measured = run_sweep(text, 2);
   CHECK(column_of(numbers_of(one, "points"), "tip_velocity") ==
         column_of(numbers_of(measured, "points"), "tip_velocity"));
+}
+
+TEST_CASE("bifurcation: what was stored and is damaged is marched again, to the same bits") {
+  Json text = beam_sweep({0.05, 0.08, 0.086}, Json::array({"rest", "up"}));
+  text["exponents"] = 1;
+  const std::string wanted = tables_of(run_sweep(text));
+  const OpenedSweep opened = opened_sweep(text);
+  std::map<std::string, std::string> kept;
+  std::atomic<bool> stop = false;
+  CaseDesk desk;
+  desk.key = "key";
+  desk.shelf.find = [&](const std::string& key) { return kept.contains(key) ? kept.at(key) : std::string(); };
+  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
+    bytes.empty() ? void(kept.erase(key)) : void(kept[key] = bytes);
+    stop = true;
+  };
+  std::size_t damaged = 0;
+  for (int interruptions = 0;; ++interruptions) {
+    REQUIRE(interruptions < 20);
+    stop = false;
+    try {
+      CHECK((tables_of(run_bifurcation(opened.first(), *opened.registry, desk, stop)) == wanted));
+      break;
+    } catch (const Interrupted&) {
+    }
+    if (interruptions % 2 == 1) continue;
+    for (auto& [key, bytes] : kept) bytes.pop_back();
+    damaged += kept.size();
+  }
+  CHECK(damaged > 2);
+  CHECK(kept.empty());
 }
 
 TEST_CASE("bifurcation: rest is rest whatever the scene says, and the scene's own state is another start") {

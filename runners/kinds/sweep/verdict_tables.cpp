@@ -5,7 +5,8 @@
 #include <ricochet/measure/attractors/opinions.hpp>
 #include <set>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::dynamics {
 namespace {
@@ -86,15 +87,6 @@ class Verdicts {
     return out;
   }
 
-  std::string level(std::size_t c, const std::vector<std::size_t>& axes) const {
-    std::string out;
-    for (const std::size_t a : axes) {
-      const std::string& name = study_.axes[a].levels[c];
-      out += (out.empty() ? "" : " with ") + (name.empty() ? "none" : name);
-    }
-    return out;
-  }
-
   /// "; 2 cases are open: 3 undecided, 1 diverged".
   std::string open(const Stretch& stretch) const {
     std::map<std::string, int> causes;
@@ -113,14 +105,14 @@ class Verdicts {
   /// The cases whose numerical viscosity is not small against α, and which choice they share.
   std::string viscosity(const Stretch& stretch) const {
     const ThickCases found = thick_cases(diagram_, stretch, study_.axes, [&](std::size_t c, const DiagramRun& run) {
-      return viscosity_of(study_, c, run);
+      return viscosity_of(*study_.results, study_.record(c), run.parameter);
     });
     if (found.thick.empty()) return "";
     const DecidingChoice& choice = found.choice;
     std::string who = fmt::format("{} of {}", found.thick.size(), count_of(found.told.size(), "case"));
     if (!choice.name.empty() && choice.share > kSpread) {
       std::set<std::string> levels;
-      for (const std::size_t c : found.thick) levels.insert(level(c, choice.axes));
+      for (const std::size_t c : found.thick) levels.insert(level_name(study_.axes, choice.axes, c));
       std::string list;
       for (const std::string& name : levels) list += (list.empty() ? "" : ", ") + name;
       if (levels.size() <= kLevelsNamed) who += fmt::format(", {} {}", choice.name, list);
@@ -156,12 +148,8 @@ class Verdicts {
                         sets(stretch, cases));
     } else {
       std::vector<std::pair<std::string, std::set<std::size_t>>> levels;
-      for (const std::size_t c : cases) {
-        const std::string name = level(c, stretch.front().choice.axes);
-        auto found = std::find_if(levels.begin(), levels.end(), [&](const auto& one) { return one.first == name; });
-        if (found == levels.end()) found = levels.insert(levels.end(), {name, {}});
-        found->second.insert(c);
-      }
+      for (const std::size_t c : cases)
+        in_order_met(levels, level_name(study_.axes, stretch.front().choice.axes, c)).insert(c);
       std::string list;
       for (std::size_t k = 0; k < std::min(levels.size(), kLevelsNamed); ++k)
         list += fmt::format("{}{} gives {}", k ? "; " : "", levels[k].first, sets(stretch, levels[k].second));

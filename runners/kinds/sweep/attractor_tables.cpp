@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
@@ -23,9 +23,7 @@ void add_distances(const StudyDiagram& study, const ValueSections& sections, int
     for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
       const DiagramRun* other = diagram.run(c, value, s);
       if (c == reference || !other) continue;
-      Row row = place_of(*study.results, study.record(c));
-      row.insert(row.end(),
-                 {study.record(reference).id, one->parameter, diagram.starts[static_cast<std::size_t>(s)].name});
+      Row row = {study.record(reference).id, one->parameter, diagram.starts[static_cast<std::size_t>(s)].name};
       const auto of_other = sections.find({c, s});
       const Cell same = one->decided() && other->decided() ? Cell(one->motion == other->motion) : Cell();
       if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
@@ -39,7 +37,7 @@ void add_distances(const StudyDiagram& study, const ValueSections& sections, int
                                noisy ? Cell(distance / null.wasserstein) : Cell(), same,
                                compared_exactly(a, b) ? "exact" : "sliced"});
       }
-      table.rows.push_back(std::move(row));
+      add_row(table, place_of(*study.results, study.record(c)), row);
     }
   }
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <ricochet/measure/attractors/presence.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_diagram.hpp"
+#include "runners/kinds/sweep/study_diagram.hpp"
 
 /// \file
 /// The steps of derive_dynamics(), each on the diagram that the one before it left.
@@ -24,6 +24,8 @@ Table verdicts_table(const StudyDiagram& study);
 Table agreement_table(const StudyDiagram& study);
 Table shifts_table(const StudyDiagram& study);
 
+/// "signorini with 0.5": the levels of a case on the chosen axes.
+std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<std::size_t>& chosen, std::size_t c);
 /// "0.0791792".
 std::string short_number(double value);
 /// "83 %"; "0.4 %".

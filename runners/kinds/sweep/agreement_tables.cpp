@@ -1,6 +1,6 @@
 #include <ricochet/measure/attractors/diagram_changes.hpp>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet::dynamics {
@@ -63,16 +63,12 @@ Table shifts_table(const StudyDiagram& study) {
     const std::vector<int> match = match_changes(expected, here, reach);
     std::vector<char> used(here.size(), 0);
     const auto add = [&](const DiagramChange& change, const DiagramChange* standing, const DiagramChange* found) {
-      Row row = place_of(*study.results, study.record(c));
-      row.insert(row.end(), {standard.id, change.start, change.from, change.to, change.kind});
-      row.push_back(standing ? Cell(standing->value) : Cell());
-      row.push_back(found ? Cell(found->value) : Cell());
-      if (standing && found)
-        row.insert(row.end(),
-                   {found->value - standing->value, found->low - standing->high, found->high - standing->low, true});
-      else
-        row.insert(row.end(), {nullptr, nullptr, nullptr, false});
-      table.rows.push_back(std::move(row));
+      const bool both = standing && found;
+      add_row(
+          table, place_of(*study.results, study.record(c)),
+          {standard.id, change.start, change.from, change.to, change.kind, standing ? Cell(standing->value) : Cell(),
+           found ? Cell(found->value) : Cell(), both ? Cell(found->value - standing->value) : Cell(),
+           both ? Cell(found->low - standing->high) : Cell(), both ? Cell(found->high - standing->low) : Cell(), both});
     };
     for (std::size_t k = 0; k < expected.size(); ++k) {
       if (match[k] >= 0) used[static_cast<std::size_t>(match[k])] = 1;

@@ -1,4 +1,4 @@
-#include "runners/kinds/sweep/derive_dynamics_diagram.hpp"
+#include "runners/kinds/sweep/study_diagram.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,22 +21,6 @@ int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
   if (found != starts.end()) return static_cast<int>(found - starts.begin());
   starts.push_back({name, is_random_start(name)});
   return static_cast<int>(starts.size()) - 1;
-}
-
-std::string spoken(const std::string& pointer) {
-  std::string out = pointer;
-  for (const std::string prefix : {"/scene/", "/methods/"})
-    if (out.starts_with(prefix)) {
-      out = out.substr(prefix.size());
-      break;
-    }
-  std::replace(out.begin(), out.end(), '/', '.');
-  return out;
-}
-
-std::string parameter_pointer(const StudyResults& results) {
-  const auto parameter = results.study.find("parameter");
-  return parameter != results.study.end() && parameter->is_object() ? parameter->value("pointer", "") : "";
 }
 
 void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
@@ -73,20 +57,6 @@ std::optional<double> compliance_of(const CaseRecord& record) {
   return stiffness ? 1 / *stiffness : 0;
 }
 
-CloudPoint scale_of(const StudyDiagram& study) {
-  ScaleOfPoints scale;
-  for (const DiagramSource& source : study.sources) {
-    const auto *x = source.sections.column("tip_displacement"), *v = source.sections.column("tip_velocity");
-    if (!x || !v) continue;
-    for (std::size_t k = 0; k < x->size(); ++k) scale.add({(*x)[k], (*v)[k]});
-    const auto *later_x = source.sections.column("opposite_displacement"),
-               *later_v = source.sections.column("opposite_velocity");
-    if (!later_x || !later_v) continue;
-    for (std::size_t k = 0; k < later_x->size(); ++k) scale.add({-(*later_x)[k], -(*later_v)[k]});
-  }
-  return scale.scale();
-}
-
 }  // namespace
 
 SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key,
@@ -108,6 +78,15 @@ SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, c
       ranges_[{(*keys)[first], name}].emplace_back(first, k);
     }
     first = k;
+  }
+}
+
+void SectionIndex::add_points(ScaleOfPoints& scale) const {
+  for (const std::string name : {"tip", "opposite"}) {
+    const double sign = name == "opposite" ? -1 : 1;
+    const auto *x = column(name + "_displacement"), *v = column(name + "_velocity");
+    if (!x || !v) return;
+    for (std::size_t k = 0; k < x->size(); ++k) scale.add({sign * (*x)[k], sign * (*v)[k]});
   }
 }
 
@@ -133,7 +112,7 @@ StudyDiagram read_diagram(const StudyResults& results) {
   StudyDiagram study;
   study.results = &results;
   study.swept = swept_columns(results);
-  study.parameter = spoken(parameter_pointer(results));
+  study.parameter = swept_name(results);
   const auto section = results.study.find("section");
   study.strobed = section == results.study.end() || !section->is_string() || *section == "strobe";
   std::vector<const CaseRecord*> records;
@@ -150,7 +129,9 @@ StudyDiagram read_diagram(const StudyResults& results) {
     read_runs(study, source, owner);
   }
   study.diagram.number_values();
-  study.scale = scale_of(study);
+  ScaleOfPoints scale;
+  for (const DiagramSource& source : study.sources) source.sections.add_points(scale);
+  study.scale = scale.scale();
   study.axes = axes_of(results, records);
   return study;
 }
@@ -184,13 +165,12 @@ HalvesNull null_of(const StudyDiagram& study, std::size_t case_index, const Diag
   return null_of_halves(readings.points, study.scale, study.strobed ? run.cycle() : 0);
 }
 
-std::optional<double> viscosity_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run) {
+std::optional<double> viscosity_of(const StudyResults& results, const CaseRecord& record, double parameter) {
   const std::string path = "structure.damping.stiffness";
-  if (study.parameter == path) return run.parameter;
-  if (const auto value = axis(study.record(case_index), path).number()) return value;
+  if (swept_name(results) == path) return parameter;
+  if (const auto value = axis(record, path).number()) return value;
   const Json::json_pointer pointer("/scene/structure/damping/stiffness");
-  const Json& text = study.results->study;
-  return text.contains(pointer) ? cell_of(text.at(pointer)).number() : std::nullopt;
+  return results.study.contains(pointer) ? cell_of(results.study.at(pointer)).number() : std::nullopt;
 }
 
 MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status) {

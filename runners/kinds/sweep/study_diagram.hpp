@@ -30,6 +30,8 @@ class SectionIndex {
   /// `word` names the column that holds the second key; "" for none.
   SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key, const std::string& word);
   SectionReadings read(double key, const std::string& word) const;
+  /// Every point of the table, and of the motions half a period later.
+  void add_points(ScaleOfPoints& scale) const;
   const NumberTable* table() const { return table_; }
   /// Column of that name; null where the table has none.
   const std::vector<double>* column(const std::string& name) const { return table_ ? table_->numbers(name) : nullptr; }
@@ -70,8 +72,8 @@ SettledSection settled_section(const StudyDiagram& study, std::size_t case_index
 /// How far a run is from itself.
 HalvesNull null_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run);
 
-/// α of a run (s); nothing where the study has no such number.
-std::optional<double> viscosity_of(const StudyDiagram& study, std::size_t case_index, const DiagramRun& run);
+/// α of an orbit of a case at a value of the parameter (s); nothing where the study has no such number.
+std::optional<double> viscosity_of(const StudyResults& results, const CaseRecord& record, double parameter);
 
 /// The class of a row of a table of the cases: `failed` where its status is not done, undecided where it names none.
 MotionClass motion_of(const std::string& regime, std::optional<double> period, const std::string& status);

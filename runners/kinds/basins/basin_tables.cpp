@@ -1,4 +1,4 @@
-#include "runners/kinds/basins/derive_basins.hpp"
+#include "runners/kinds/basins/basin_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <ricochet/measure/attractors/uncertainty_exponent.hpp>
 #include <set>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -46,7 +46,9 @@ class BasinImages {
  public:
   explicit BasinImages(StudyResults& results) : results_(results), grid_of_(grid_of(results)) {
     read_places();
-    scale_ = scale_of_points();
+    ScaleOfPoints scale;
+    for (const Image& image : images_) image.sections.add_points(scale);
+    scale_ = scale.scale();
     for (const Image& image : images_) {
       BasinGrid& grid = grids_.emplace_back(grid_from(image));
       const SectionOf section = [&](std::size_t place) { return section_at(image, place, grid.cells[place].motion); };
@@ -92,20 +94,6 @@ class BasinImages {
         if (const auto x = rows.number(r, across), y = rows.number(r, along); x && y)
           image.row_of[index(ys_, *y) * xs_.size() + index(xs_, *x)] = r;
     }
-  }
-
-  CloudPoint scale_of_points() const {
-    ScaleOfPoints scale;
-    for (const Image& image : images_)
-      for (const char* name : {"tip", "opposite"}) {
-        const bool mirrored = name[0] == 'o';
-        const auto *d = image.sections.column(std::string(name) + "_displacement"),
-                   *v = image.sections.column(std::string(name) + "_velocity");
-        if (!d || !v) continue;
-        for (std::size_t k = 0; k < d->size(); ++k)
-          scale.add(mirrored ? CloudPoint{-(*d)[k], -(*v)[k]} : CloudPoint{(*d)[k], (*v)[k]});
-      }
-    return scale.scale();
   }
 
   BasinGrid grid_from(const Image& image) const {
@@ -199,9 +187,8 @@ class BasinImages {
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
         const auto [regime, period] = class_cells(attractors_[a]);
-        Row row = place_of(results_, *images_[c].record);
-        row.insert(row.end(), {a + 1, regime, period, count, share.value, share.low, share.high});
-        table.rows.push_back(std::move(row));
+        add_row(table, place_of(results_, *images_[c].record),
+                {a + 1, regime, period, count, share.value, share.low, share.high});
       }
     }
     return table;
@@ -222,16 +209,12 @@ class BasinImages {
     Table table = table_of_cases(results_, basin_uncertainty_head());
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::vector<int> labels = attractors_of(grids_[c]);
-      Row row = place_of(results_, *images_[c].record);
-      row.emplace_back(boundary_share(grids_[c]));
       const auto exponent =
           labels.empty() ? std::nullopt
                          : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
-      if (exponent)
-        row.insert(row.end(), {exponent->value, exponent->low, exponent->high});
-      else
-        row.insert(row.end(), {nullptr, nullptr, nullptr});
-      table.rows.push_back(std::move(row));
+      Row row = {boundary_share(grids_[c]), nullptr, nullptr, nullptr};
+      if (exponent) row = {row.front(), exponent->value, exponent->low, exponent->high};
+      add_row(table, place_of(results_, *images_[c].record), row);
     }
     return table;
   }

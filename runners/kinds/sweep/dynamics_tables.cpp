@@ -1,7 +1,7 @@
-#include "runners/kinds/sweep/derive_dynamics.hpp"
+#include "runners/kinds/sweep/dynamics_tables.hpp"
 
-#include "runners/kinds/basins/derive_basins.hpp"
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/basins/basin_tables.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/store/record_values.hpp"
 

@@ -2,12 +2,28 @@
 
 #include <algorithm>
 
-#include "runners/kinds/sweep/derive_dynamics_parts.hpp"
+#include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::dynamics {
 namespace {
 
 constexpr std::size_t kMostLevels = 8;
+
+/// Levels of the chosen axes in the order met: how many cases, how many of them show it.
+std::vector<std::pair<std::string, std::pair<int, int>>> counts(const Presence& presence,
+                                                                const std::vector<ChoiceAxis>& axes,
+                                                                const std::vector<std::size_t>& chosen) {
+  std::vector<std::pair<std::string, std::pair<int, int>>> out;
+  for (std::size_t k = 0; k < presence.cases.size(); ++k) {
+    auto& [cases, shown] = in_order_met(out, level_name(axes, chosen, presence.cases[k]));
+    ++cases;
+    shown += presence.present[k];
+  }
+  return out;
+}
+
+}  // namespace
 
 std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<std::size_t>& chosen, std::size_t c) {
   std::string out;
@@ -17,23 +33,6 @@ std::string level_name(const std::vector<ChoiceAxis>& axes, const std::vector<st
   }
   return out;
 }
-
-/// Levels of the chosen axes in the order met: how many cases, how many of them show it.
-std::vector<std::pair<std::string, std::pair<int, int>>> counts(const Presence& presence,
-                                                                const std::vector<ChoiceAxis>& axes,
-                                                                const std::vector<std::size_t>& chosen) {
-  std::vector<std::pair<std::string, std::pair<int, int>>> out;
-  for (std::size_t k = 0; k < presence.cases.size(); ++k) {
-    const std::string name = level_name(axes, chosen, presence.cases[k]);
-    auto found = std::find_if(out.begin(), out.end(), [&](const auto& one) { return one.first == name; });
-    if (found == out.end()) found = out.insert(out.end(), {name, {0, 0}});
-    ++found->second.first;
-    found->second.second += presence.present[k];
-  }
-  return out;
-}
-
-}  // namespace
 
 std::string short_number(double value) {
   return fmt::format("{:.6g}", value);
