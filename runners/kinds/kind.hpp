@@ -75,8 +75,8 @@ struct Kind {
   bool measures_stand = false;
   /// A study of one case alone, to be looked at; null where the case cannot be repeated alone. Empty: never.
   std::function<nlohmann::ordered_json(const StudyResults&, const CaseRecord&)> alone;
-  /// What its reports show.
-  report::KindPage page;
+  /// What its reports show; asked for when there is one to write. Empty: what every page has.
+  std::function<report::KindPage()> page;
   /// Marches one point of a stored study again, samples to `out`; returns the exit code. Throws PointRefused. Empty:
   /// such a study has no points.
   std::function<int(const StudyResults&, const PointRequest&, std::ostream& out)> point;
@@ -89,6 +89,6 @@ void add_kind(Kind kind);
 /// The kind of this name; null where there is none.
 const Kind* find_kind(const std::string& name);
 /// What reports of this kind show; nothing of their own where there is none of this name.
-const report::KindPage& page_of(const std::string& kind);
+report::KindPage page_of(const std::string& kind);
 
 }  // namespace ricochet

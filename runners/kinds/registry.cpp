@@ -50,10 +50,9 @@ const Kind* find_kind(const std::string& name) {
   return found == kinds().end() ? nullptr : &*found;
 }
 
-const report::KindPage& page_of(const std::string& kind) {
-  static const report::KindPage none;
+report::KindPage page_of(const std::string& kind) {
   const Kind* known = find_kind(kind);
-  return known ? known->page : none;
+  return known && known->page ? known->page() : report::KindPage();
 }
 
 std::vector<const StudyKind*> study_kinds() {

@@ -115,18 +115,6 @@ std::string CaseView::text(const CaseRecord& record, std::string_view column) {
   return "";
 }
 
-std::optional<double> CaseView::number(const CaseRecord& record, std::string_view column) {
-  for (const auto& [name, value] : record.axes)
-    if (name == column && value.is_number()) return value.get<double>();
-  return std::nullopt;
-}
-
-std::optional<double> CaseView::measure(const CaseRecord& record, std::string_view name) {
-  for (const auto& [key, value] : record.measures)
-    if (key == name) return value;
-  return std::nullopt;
-}
-
 std::string CaseView::label(const CaseRecord& record, const std::vector<std::string>& columns) const {
   std::string out, previous_role;
   for (const std::string& column : columns) {
@@ -176,14 +164,7 @@ std::vector<std::string> CaseView::varying_without(const std::vector<std::string
 
 std::vector<CaseGroup> CaseView::group(const Cases& cases, const std::vector<std::string>& columns) const {
   std::vector<CaseGroup> groups;
-  std::map<std::string, size_t> place;
-  for (const CaseRecord* record : cases) {
-    std::string key;
-    for (const std::string& column : columns) key += text(*record, column) + '\x1f';
-    const auto [at, fresh] = place.emplace(std::move(key), groups.size());
-    if (fresh) groups.push_back({label(*record, columns), {}});
-    groups[at->second].cases.push_back(record);
-  }
+  for (Cases& same : groups_of(cases, columns)) groups.push_back({label(*same.front(), columns), std::move(same)});
   return groups;
 }
 
@@ -191,19 +172,6 @@ const CaseRecord* CaseView::find(std::string_view id) const {
   const auto found = std::find_if(results_.cases.begin(), results_.cases.end(),
                                   [&](const CaseRecord& record) { return record.id == id; });
   return found == results_.cases.end() ? nullptr : &*found;
-}
-
-Cases CaseView::all() const {
-  Cases out;
-  for (const CaseRecord& record : results_.cases) out.push_back(&record);
-  return out;
-}
-
-Cases CaseView::with_status(std::string_view status) const {
-  Cases out;
-  for (const CaseRecord& record : results_.cases)
-    if (record.status == status) out.push_back(&record);
-  return out;
 }
 
 std::string CaseView::describe(const Cases& cases, const Cases& among) const {

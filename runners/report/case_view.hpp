@@ -5,11 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "runners/store/record.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet::report {
-
-using Cases = std::vector<const CaseRecord*>;
 
 /// A name and a unit, for axes, headers and tooltips.
 struct Quantity {
@@ -42,8 +40,9 @@ class CaseView {
 
   /// The value of a column as text, "" where the case has none.
   static std::string text(const CaseRecord& record, std::string_view column);
-  static std::optional<double> number(const CaseRecord& record, std::string_view column);
-  static std::optional<double> measure(const CaseRecord& record, std::string_view name);
+  static std::optional<double> number(const CaseRecord& record, const std::string& column) {
+    return axis(record, column).number();
+  }
 
   /// Short label of a case out of some columns: "singular, velocity P1 · beta 0.25"; only what varies is said.
   std::string label(const CaseRecord& record, const std::vector<std::string>& columns) const;
@@ -68,8 +67,8 @@ class CaseView {
   /// The case of this id, as a table names it; null where there is none.
   const CaseRecord* find(std::string_view id) const;
   /// All cases, and those with a status.
-  Cases all() const;
-  Cases with_status(std::string_view status) const;
+  Cases all() const { return all_cases(results_); }
+  Cases with_status(const std::string& status) const { return ricochet::with_status(all(), status); }
 
   /// What sets `cases` apart from `among`: "all 24 cases", "12 of 24 cases (mass singular)".
   std::string describe(const Cases& cases, const Cases& among) const;

@@ -111,7 +111,7 @@ std::string effects_caveats(const CaseView& view, const MeasureShares& measure) 
   for (const char* status : {"refused", "diverged", "failed", "done"}) {
     size_t count = 0;
     for (const CaseRecord* record : view.with_status(status))
-      count += !CaseView::measure(*record, measure.name).has_value();
+      count += !ricochet::measure(*record, measure.name).has_value();
     without += count;
     if (count) statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count, status);
   }

@@ -21,7 +21,7 @@ std::vector<std::string> measures_present(const CaseView& view) {
   std::vector<std::string> out;
   const auto present = [&](const std::string& name) {
     return std::any_of(view.results().cases.begin(), view.results().cases.end(),
-                       [&](const CaseRecord& r) { return CaseView::measure(r, name).has_value(); });
+                       [&](const CaseRecord& r) { return ricochet::measure(r, name).has_value(); });
   };
   for (const MeasureInfo& info : all_measures())
     if (present(info.name)) out.emplace_back(info.name);
@@ -104,7 +104,7 @@ Fill case_cells(const CaseView& view, const CaseRecord& record, const std::vecto
   for (const std::string& name : measures) {
     const MeasureInfo* info = measure_info(name);
     const std::string extra = info && info->aside ? " extra" : "";
-    const auto value = CaseView::measure(record, name);
+    const auto value = ricochet::measure(record, name);
     if (!value || !std::isfinite(*value)) {
       out << text_fill("–", "number absent" + extra);
       continue;

@@ -16,6 +16,25 @@ using namespace ricochet;
 
 namespace {
 
+report::KindPage half_lives_page() {
+  report::KindPage page;
+  page.scripts = {
+      R"js(ricochet.figure("half-lives", (data) => { window.drawnHalfLives = data.rows("halves"); return []; });)js"};
+  page.tables = {"halves"};
+  page.derived = {[](const report::CaseView& view) {
+    Table out{"halves", "One row per case: when half is reached.", {{"case", "", ""}, {"after", "s", "Time."}}, {}};
+    for (const CaseRecord* record : view.all())
+      if (const Table* own = find_table(record->tables, "half_lives"))
+        out.rows.push_back({record->id, own->rows[0][1]});
+    return out;
+  }};
+  page.answer = [](const report::CaseView& view) {
+    const Table* halves = find_table(view.results().derived, "halves");
+    return "<p>Half is reached in " + std::to_string(halves ? halves->rows.size() : 0) + " cases.</p>\n";
+  };
+  return page;
+}
+
 // How long the free oscillator takes to lose half of its amplitude, for several thresholds: t = ln(1/share)·2m/c.
 Kind half_lives() {
   Kind kind;
@@ -57,20 +76,7 @@ Kind half_lives() {
   kind.outcome = [](const CaseRecord& record) {
     return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
   };
-  kind.page.scripts = {
-      R"js(ricochet.figure("half-lives", (data) => { window.drawnHalfLives = data.rows("halves"); return []; });)js"};
-  kind.page.tables = {"halves"};
-  kind.page.derived = {[](const report::CaseView& view) {
-    Table out{"halves", "One row per case: when half is reached.", {{"case", "", ""}, {"after", "s", "Time."}}, {}};
-    for (const CaseRecord* record : view.all())
-      if (const Table* own = find_table(record->tables, "half_lives"))
-        out.rows.push_back({record->id, own->rows[0][1]});
-    return out;
-  }};
-  kind.page.answer = [](const report::CaseView& view) {
-    const Table* halves = find_table(view.results().derived, "halves");
-    return "<p>Half is reached in " + std::to_string(halves ? halves->rows.size() : 0) + " cases.</p>\n";
-  };
+  kind.page = half_lives_page;
   kind.measures = {{"longest_half_life", "s", "Time after which the smallest share is reached."}};
   return kind;
 }

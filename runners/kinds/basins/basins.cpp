@@ -39,7 +39,7 @@ Kind basins_kind() {
   kind.format.keys = basins_keys();
   kind.plan = plan_basins;
   kind.point = march_cell_again;
-  kind.page = report::basins_page();
+  kind.page = report::basins_page;
   return kind;
 }
 

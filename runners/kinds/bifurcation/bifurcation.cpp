@@ -50,7 +50,7 @@ Kind bifurcation_kind() {
   kind.plan = plan_bifurcation;
   kind.measures = orbit_measures();
   kind.point = march_orbit_again;
-  kind.page = report::bifurcation_page();
+  kind.page = report::bifurcation_page;
   return kind;
 }
 

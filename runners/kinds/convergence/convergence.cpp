@@ -31,7 +31,7 @@ Kind convergence_kind() {
   kind.outcome = errors_text;
   kind.measures = comparison_measures();
   kind.alone = minimal_study;
-  kind.page = report::comparison_page();
+  kind.page = report::comparison_page;
   return kind;
 }
 

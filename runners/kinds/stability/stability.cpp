@@ -113,7 +113,7 @@ Kind stability_kind() {
     return measure(record, "contradictions").value_or(0) > 0 ? "spectrum and march disagree without contact" : "";
   };
   kind.measures = stability_measures();
-  kind.page = report::stability_page();
+  kind.page = report::stability_page;
   return kind;
 }
 

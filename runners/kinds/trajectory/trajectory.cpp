@@ -134,7 +134,7 @@ Kind trajectory_kind() {
   kind.measures = trajectory_measures();
   kind.measures_stand = true;
   kind.alone = minimal_study;
-  kind.page = report::trajectory_page();
+  kind.page = report::trajectory_page;
   return kind;
 }
 

@@ -49,7 +49,7 @@ Kind work_precision_kind() {
       {"timed_high", "s", "The slowest repeat.", Of::computation},
   };
   kind.alone = minimal_study;
-  kind.page = report::work_precision_page();
+  kind.page = report::work_precision_page;
   return kind;
 }
 

@@ -61,8 +61,8 @@ TEST_CASE("the answer's figures are those of the results", "[report]") {
   double low = INFINITY, high = 0;
   for (const CaseRecord& record : results.cases)
     if (record.status == "done" && CaseView::text(record, "mass.velocity") == "P1") {
-      low = std::min(low, *CaseView::measure(record, "energy_ratio"));
-      high = std::max(high, *CaseView::measure(record, "energy_ratio"));
+      low = std::min(low, *ricochet::measure(record, "energy_ratio"));
+      high = std::max(high, *ricochet::measure(record, "energy_ratio"));
     }
   CHECK(low < high);
   CHECK(says("over 6 finished cases the energy ends at 99.60 % to 99.9960 % of its start"));

@@ -40,8 +40,8 @@ TEST_CASE("rows are found by the axes of a case", "[report]") {
   const AxisRows errors(results, "errors", {"error"}), orders(results, "orders", {"refined", "error"});
   for (const CaseRecord& record : results.cases) {
     const auto row = errors.find(record, {"energy"});
-    CHECK(row.has_value() == CaseView::measure(record, "error.energy").has_value());
-    if (row) CHECK(errors.number(*row, "value") == CaseView::measure(record, "error.energy"));
+    CHECK(row.has_value() == ricochet::measure(record, "error.energy").has_value());
+    if (row) CHECK(errors.number(*row, "value") == ricochet::measure(record, "error.energy"));
     CHECK_FALSE(errors.find(record, {"no such"}));
     const auto order = orders.find(record, {"elements", "energy"}, {"elements"});
     if (order) CHECK(orders.text(*order, "elements").empty());

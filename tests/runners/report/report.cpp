@@ -121,6 +121,6 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
 }
 
 TEST_CASE("rendering the same results twice gives the same bytes", "[report]") {
-  const auto& kind = page_of("trajectory");
+  const auto kind = page_of("trajectory");
   CHECK(render_report(synthetic::results(), kind) == render_report(synthetic::results(), kind));
 }

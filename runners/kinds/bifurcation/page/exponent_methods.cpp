@@ -17,7 +17,7 @@ Table exponent_methods(const CaseView& view) {
   size_t all = 0, marginal = 0;
   for (const CaseRecord* record : view.all())
     for (const Orbit& orbit : orbits_of(*record)) {
-      if (orbit.exponents.empty()) continue;
+      if (!orbit.exponent) continue;
       ++counts[orbit.exponent_method];
       ++all;
       marginal += !orbit.marginal.empty();

@@ -23,36 +23,14 @@ std::vector<Orbit> orbits_of(const CaseRecord& record) {
   if (!table) return out;
   const TableReader rows(*table);
   const size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
-               status = rows.column_if_any("status"), reason = rows.column_if_any("reason"),
+               period = rows.column("period"), status = rows.column_if_any("status"),
                method = rows.column_if_any("exponent_method"), marginal = rows.column_if_any("marginal"),
-               period = rows.column("period"), viscosity = rows.column_if_any("alpha_equivalent"),
-               twin = rows.column_if_any("exponent_twin");
-  std::vector<std::array<size_t, 3>> exponents;  // value, low, high
-  for (int k = 1;; ++k) {
-    const std::string name = "exponent_" + std::to_string(k);
-    const size_t value = rows.column_if_any(name);
-    if (value == TableReader::absent) break;
-    exponents.push_back({value, rows.column_if_any(name + "_low"), rows.column_if_any(name + "_high")});
-  }
-  out.reserve(rows.size());
+               exponent = rows.column_if_any("exponent_1");
   for (size_t row = 0; row < rows.size(); ++row) {
-    Orbit orbit;
-    orbit.parameter = rows.number(row, parameter).value_or(0);
-    orbit.start = rows.text(row, start);
-    orbit.regime = rows.text(row, regime);
-    orbit.status = rows.text(row, status);
-    orbit.reason = rows.text(row, reason);
-    orbit.exponent_method = rows.text(row, method);
-    orbit.marginal = rows.text(row, marginal);
-    if (const auto forcing_periods = rows.number(row, period)) orbit.period = static_cast<int>(*forcing_periods);
-    orbit.alpha_equivalent = rows.number(row, viscosity);
-    orbit.twin = rows.number(row, twin);
-    for (const auto& [value, low, high] : exponents) {
-      const auto exponent = rows.number(row, value);
-      if (!exponent) break;
-      orbit.exponents.push_back({*exponent, rows.number(row, low), rows.number(row, high)});
-    }
-    out.push_back(std::move(orbit));
+    const auto periods = rows.number(row, period);
+    out.push_back({rows.number(row, parameter).value_or(0), rows.text(row, start), rows.text(row, regime),
+                   rows.text(row, status), rows.text(row, method), rows.text(row, marginal),
+                   periods ? std::optional(static_cast<int>(*periods)) : std::nullopt, rows.number(row, exponent)});
   }
   return out;
 }

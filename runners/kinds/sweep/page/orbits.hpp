@@ -10,20 +10,12 @@
 
 namespace ricochet::report {
 
-/// An exponent in 1/s with its interval where one was found.
-struct OrbitExponent {
-  double value = 0;
-  std::optional<double> low, high;
-};
-
 /// One row of a case's table `values`: what came of one value of the parameter from one start.
 struct Orbit {
   double parameter = 0;
-  std::string start, regime, status, reason, exponent_method, marginal;
+  std::string start, regime, status, exponent_method, marginal;
   std::optional<int> period;
-  std::optional<double> alpha_equivalent;  ///< s
-  std::vector<OrbitExponent> exponents;
-  std::optional<double> twin;
+  std::optional<double> exponent;  ///< the largest Lyapunov exponent, 1/s
   bool done() const { return status.empty() || status == "done"; }
 };
 

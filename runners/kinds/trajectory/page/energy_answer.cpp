@@ -125,7 +125,7 @@ std::string work_sentence(const CaseView& view) {
   const auto add = [&](const char* what, const char* measure) {
     std::vector<double> works;
     for (const CaseRecord* record : done)
-      if (const auto work = CaseView::measure(*record, measure)) works.push_back(*work);
+      if (const auto work = ricochet::measure(*record, measure)) works.push_back(*work);
     if (works.empty()) return;
     const auto [low, high] = std::minmax_element(works.begin(), works.end());
     if (*low == 0 && *high == 0) return;

@@ -14,7 +14,7 @@ Table energy_changes(const CaseView& view) {
             {}};
   const bool kept = conservative(view);
   for (const CaseRecord* record : view.all())
-    if (const auto ratio = CaseView::measure(*record, "energy_ratio"))
+    if (const auto ratio = ricochet::measure(*record, "energy_ratio"))
       out.rows.push_back({record->id, std::abs(*ratio - 1), *ratio > 1, kept});
   return out;
 }

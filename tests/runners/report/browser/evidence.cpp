@@ -181,7 +181,7 @@ TEST_CASE("figures of evidence draw the derived tables", "[report][browser]") {
     drawn.insert(item.at("value")[1].get<double>());
   for (const CaseRecord& record : coarse.cases)
     if (CaseView::number(record, "step") == 1e-4)
-      if (const auto value = CaseView::measure(record, "error.tip-linf")) expected.insert(*value);
+      if (const auto value = ricochet::measure(record, "error.tip-linf")) expected.insert(*value);
   CHECK(drawn == expected);
 
   // Charts hold at most eight methods.

@@ -69,7 +69,7 @@ void check_trajectory(const Ran& ran, const Json& page) {
   for (const CaseRecord& record : ran.results.cases) {
     if (!record.curve.columns.empty()) samples += record.curve.columns[0].size();
     if (record.status != "done") continue;
-    if (const auto ratio = CaseView::measure(record, "energy_ratio")) {
+    if (const auto ratio = ricochet::measure(record, "energy_ratio")) {
       ratios.insert(*ratio);
       if (*ratio != 1) changes.insert(std::abs(*ratio - 1));
     }
@@ -156,7 +156,7 @@ void check_bifurcation(const Ran& ran, const Json& page) {
       if (source.at("what") == "exponents")
         for (size_t k = 1; k < source.at("values").size(); k += 2) drawn.insert(source.at("values")[k].get<double>());
     for (const auto& orbit : orbits)
-      if (!orbit.exponents.empty()) stored.insert(orbit.exponents[0].value);
+      if (orbit.exponent) stored.insert(*orbit.exponent);
     CHECK(drawn == stored);
   }
   const Table& spreads = stored_table(ran.results, "distance_spreads");
