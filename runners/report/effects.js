@@ -1,45 +1,42 @@
 // Shares of variance per measure: one bar per factor or interaction with its interval.
 {
   const mostBars = 12;
-  const kinds = [["repeats", "#999999"], ["one choice", "#0072B2"], ["interaction of two", "#E69F00"], ["interaction of three", "#009E73"], ["higher interactions", "#CC79A7"]];
-  const order = [1, 2, 3, 4, 0];   // of the kinds in legend and chart
+  const kinds = [["one choice", "#0072B2"], ["interaction of two", "#E69F00"], ["interaction of three", "#009E73"], ["higher interactions", "#CC79A7"], ["repeats", "#999999"]];
 
-  // Index into `kinds`.
-  const kindOf = (factor) => (factor === "higher" ? 4 : factor === "repeats" ? 0 : factor.split(" × ").length);
+  const kindOf = (factor) => kinds[factor === "higher" ? 3 : factor === "repeats" ? 4 : factor.split(" × ").length - 1][0];
 
   function chart(measure, shares) {
-    const { percent, spaced } = ricochet.format, drawn = shares.slice(0, mostBars), name = spaced(measure.measure);
-    const text = (share) => percent(share.share) + " [" + percent(share.low) + ", " + percent(share.high) + "]";
+    const { percent, spaced } = ricochet.format, name = spaced(measure.measure), x = ["share of the variance", "%"];
     const y = {
-      type: "category", data: drawn.map((share) => share.factor), inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
+      type: "category", data: shares.map((row) => row.factor), inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
       axisLabel: { color: ricochet.ink, fontSize: 11, width: 150, overflow: "break", interval: 0 },
     };
-    const x = ["share of the variance", "%"], out = ricochet.view(x, [measure.log ? "log₁₀ " + name : name, "1"], ricochet.valueAxis(x, new ricochet.Interval(0, 100), false), y);
+    const out = ricochet.view(x, [measure.log ? "log₁₀ " + name : name, "1"], ricochet.valueAxis(x, new ricochet.Interval(0, 100), false), y);
     out.option.grid.left = 165;
-    for (const kind of order) {
-      const data = drawn.filter((share) => kindOf(share.factor) === kind).map((share) => ({ value: [100 * share.share, share.factor], text: text(share) })), [title, colour] = kinds[kind];
-      if (data.length) out.option.series.push({ type: "bar", name: title, stack: "share", barWidth: "58%", color: colour, itemStyle: { color: ricochet.lighten(colour, 0.25) }, data });
-    }
-    for (const kind of order) {
-      const ends = drawn.filter((share) => kindOf(share.factor) === kind).flatMap((share) => [share.low, share.high].map((end) => ({ value: [100 * end, share.factor], text: text(share) })).concat([{ value: ["-", share.factor] }]));
-      if (ends.length) out.option.series.push({ type: "line", name: kinds[kind][0], symbol: "rect", symbolSize: [1.4, 9], z: 4, color: "#222222", lineStyle: { color: "#222222", width: 1.4 }, data: ends });
-    }
+    const rows = shares.map((row) => ({
+      factor: row.factor, kind: kindOf(row.factor), share: 100 * row.share, low: 100 * row.low, high: 100 * row.high,
+      text: percent(row.share) + " [" + percent(row.low) + ", " + percent(row.high) + "]",
+    }));
+    for (const [kind, colour] of kinds)
+      ricochet.draw(out, rows, { x: "share", y: "factor" }, { type: "bar", name: kind, stack: "share", barWidth: "58%", color: colour, itemStyle: { color: ricochet.lighten(colour, 0.25) } }, { kind });
+    const ends = ricochet.ends(rows, "low", "high");
+    for (const [kind] of kinds) ricochet.draw(out, ends, { x: "end", y: "factor" }, { ...ricochet.line(kind, "#222222", 1.4), symbol: "rect", symbolSize: [1.4, 9], z: 4 }, { kind });
     return out;
   }
 
   ricochet.figure("effects", (data) => {
-    const charts = [], used = new Set();
+    const charts = [];
     for (const measure of data.rows("effects_said")) {
       const shares = data.rows("effects").filter((row) => row.measure === measure.measure).sort((a, b) => b.share - a.share);
       if (!shares.length || !(shares[0].share > 0)) continue;
-      const view = chart(measure, shares);
+      const view = chart(measure, shares.slice(0, mostBars));
       if (measure.rest > 0) view.notes.push("Not drawn: " + measure.rest + " smaller, together " + ricochet.format.percent(measure.rest_share) + ".");
       charts.push({ title: ricochet.format.spaced(measure.measure), views: [view], notes: [measure.sentence] });
-      shares.slice(0, mostBars).forEach((share) => used.add(kindOf(share.factor)));
     }
     if (!charts.length) return [];
     const caption = "Shares of the variance of a measure over all combinations of the choices: of one choice alone, and of interactions, where what one does depends on the others. " +
-      "Lines: 95 % of the shares when levels are given random weights; wide where a share hangs on which levels the study holds.";
-    return [{ id: "effects", title: "What each choice is worth", caption, views: ["share of the variance"], charts, legend: order.filter((kind) => used.has(kind)).map((kind) => ({ name: kinds[kind][0], colour: kinds[kind][1], dash: "", symbol: "rect" })) }];
+      "Lines: 95 % of the shares when levels are given random weights; wide where a share hangs on which levels the study holds.", used = ricochet.drawnNames(charts);
+    const legend = kinds.filter(([kind]) => used.has(kind)).map(([name, colour]) => ({ name, colour, symbol: "rect" }));
+    return [{ id: "effects", title: "What each choice is worth", caption, views: ["share of the variance"], charts, legend }];
   });
 }

@@ -57,7 +57,7 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",        "data",           "cases",  "options",
+constexpr const char* shared_scripts[] = {"format",        "data",           "cases",  "dataset", "options",
                                           "method_curves", "figure_section", "figure", "picture"};
 constexpr const char* page_scripts[] = {"case_table", "page"};
 

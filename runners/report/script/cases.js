@@ -1,10 +1,9 @@
 // The cases of a study as figures speak of them: which axes vary, short labels, groups, one colour per mass matrix. A *role* is a method's name with
 // its parameters: "mass" stands for the columns mass, mass.velocity, …
 {
-  const roles = ["mass", "contact", "time"];
+  const { distinct } = ricochet, roles = ["mass", "contact", "time"];
   // Okabe and Ito 2008: distinct for colour-blind readers.
   const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444"];
-  const distinct = (list) => Array.from(new Set(list));
 
   // "mass" of "mass.velocity"; the column itself where it belongs to no method.
   const roleOf = (column) => roles.find((role) => column === role || column.startsWith(role + ".")) || column;
@@ -53,13 +52,8 @@
 
     // Groups by the values of columns, in order of appearance, labelled by them.
     group(cases, columns) {
-      const groups = new Map();
-      for (const one of cases) {
-        const key = columns.map((column) => textOf(one, column)).join("\u001f");
-        if (!groups.has(key)) groups.set(key, { label: this.label(one, columns), cases: [] });
-        groups.get(key).cases.push(one);
-      }
-      return Array.from(groups.values());
+      const groups = ricochet.groupBy(cases, (one) => columns.map((column) => textOf(one, column)));
+      return Array.from(groups.values(), (own) => ({ label: this.label(own[0], columns), cases: own }));
     }
     // What sets cases apart from others: "all 24 cases", "12 of 24 cases (mass singular)".
     describe(cases, among) {
@@ -70,13 +64,7 @@
     }
     // "⊘ refused, step 1e-6 s: why", cases with the same reason put together.
     outcomeNotes(cases, columns) {
-      const groups = new Map();
-      for (const one of cases) {
-        if (one.status === "done") continue;
-        const key = one.status + "\u001f" + one.reason;
-        if (!groups.has(key)) groups.set(key, []);
-        groups.get(key).push(one);
-      }
+      const groups = ricochet.groupBy(cases.filter((one) => one.status !== "done"), (one) => [one.status, one.reason]);
       return Array.from(groups.values(), (group) => {
         const who = group.length > 2 ? this.describe(group, cases) : group.map((one) => this.label(one, columns)).join("; ");
         const { status, reason } = group[0];
@@ -85,5 +73,5 @@
     }
   }
 
-  Object.assign(ricochet, { Cases, roleOf, textOf, numberOf, measureOf, distinct });
+  Object.assign(ricochet, { Cases, roleOf, textOf, numberOf, measureOf });
 }

@@ -33,20 +33,17 @@
       if (!this.tables.has(key)) this.tables.set(key, rowsOf(((this.page.own || {})[name] || {})[id]));
       return this.tables.get(key);
     }
+    // Rows of a table by the values that they have in columns: none where no row has them.
+    rowsBy(name, columns) {
+      // Texts and numbers are told alike, whatever digits they are written with.
+      const groups = ricochet.groupBy(this.rows(name), (row) => columns.map((column) => row[column]));
+      return (...values) => groups.get(ricochet.keyOf(values)) || [];
+    }
     // Finds the row of a table with a case's axes and the values of further columns. `but`: axes that are not looked at.
     finder(name, columns, but = []) {
-      const rows = this.rows(name), places = new Map();
-      const axes = this.page.axes.map((axis) => axis.name).filter((axis) => rows.length && axis in rows[0] && !but.includes(axis));
-      // Texts and numbers of a case and of a row are told alike, whatever digits they are written with.
-      const part = (value) => (value === null || value === undefined || value === "" ? "" : String(value));
-      for (const row of rows) {
-        const key = axes.map((axis) => part(row[axis])).concat(columns.map((column) => part(row[column]))).join("\u001f");
-        if (!places.has(key)) places.set(key, row);
-      }
-      return (one, wanted) => {
-        const own = axes.map((axis) => (one.values[axis] ? part(one.values[axis].number === null ? one.values[axis].text : one.values[axis].number) : ""));
-        return places.get(own.concat(wanted.map(part)).join("\u001f"));
-      };
+      const [first = {}] = this.rows(name), axes = this.page.axes.map((axis) => axis.name).filter((axis) => axis in first && !but.includes(axis));
+      const found = this.rowsBy(name, axes.concat(columns)), part = (value) => value && (value.number === null ? value.text : value.number);
+      return (one, wanted) => found(...axes.map((axis) => part(one.values[axis])), ...wanted)[0];
     }
 
     // A block of numbers; null where the page has none of the name.

@@ -1,17 +1,18 @@
 // A figure at work: draws its charts when they come into sight, links their zoom, filters by the legend, and hands a click to what the chart knows of it.
 //
 // A figure is {id, title, caption, views, charts, legend, overTime, linked}: `views` are names, each chart has as many {option, x, y, notes} (or the one
-// that `only` names), `legend` has {name, colour, dash, symbol, heading}. In an option, `data` may be a function: it is asked when the chart is drawn.
+// that `only` names), `legend` has {name, colour, dash, symbol, heading}. In an option, a data set's `source` may be a function: it is asked when the
+// chart is drawn.
 // A view may add `sources` (marks drawn by hand), `pick` (what lies at a place), `open` (shows it) and `hover` (says it).
 {
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
 
-  // The library changes options that it is given.
-  function fresh(value, key) {
-    if (typeof value === "function") return key === "data" ? value() : value;
-    if (Array.isArray(value)) return value.map((one) => fresh(one));
-    if (value && typeof value === "object" && Object.getPrototypeOf(value) === Object.prototype) return Object.fromEntries(Object.entries(value).map(([name, one]) => [name, fresh(one, name)]));
-    return value;
+  // Each chart gets an option of its own, down to the settings of its parts; rows are shared.
+  function fresh(option) {
+    const own = (part) => (Array.isArray(part) ? part.map(own) : part && typeof part === "object" ? { ...part } : part);
+    const out = Object.fromEntries(Object.entries(option).map(([name, part]) => [name, own(part)]));
+    for (const one of out.dataset) if (typeof one.source === "function") one.source = one.source();
+    return out;
   }
 
   class Figure {

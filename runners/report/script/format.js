@@ -1,5 +1,17 @@
 // Numbers and names as all figures write them. A quantity is [name, unit].
 const ricochet = {};
+ricochet.distinct = (list) => Array.from(new Set(list));
+// Lists of what has the same values, in order of appearance: `valuesOf` gives these, and nothing is told apart from "".
+ricochet.groupBy = (list, valuesOf) => {
+  const groups = new Map();
+  for (const one of list) {
+    const key = ricochet.keyOf(valuesOf(one));
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(one);
+  }
+  return groups;
+};
+ricochet.keyOf = (values) => values.map((value) => (value === null || value === undefined ? "" : String(value))).join("\u001f");
 {
   const minus = (text) => text.replace("-", "−");
 

@@ -18,33 +18,36 @@
   }
 
   class MethodCurves {
-    constructor(view, cases, along, apart = [], ignored = []) {
+    // `apart` must not share a chart, `ignored` tells nothing apart; facets are chosen over the cases `among`.
+    constructor(view, cases, along, { apart = [], ignored = [], among = cases, byMass = view.masses.length > 1 } = {}) {
       const { roleOf, numberOf } = ricochet;
-      this.byMass = view.masses.length > 1;
-      const others = view.varying.filter((column) => column !== along && !ignored.includes(column)), facets = facetColumns(view, cases, others, apart);
+      Object.assign(this, { view, byMass });
+      const others = view.varying.filter((column) => column !== along && !ignored.includes(column)), facets = facetColumns(view, among, others, apart);
       const curveColumns = others.filter((column) => !facets.includes(column)), notMass = others.filter((column) => roleOf(column) !== "mass"), names = [];
+      this.facetColumns = facets;
       // Columns whose values tell a case of a facet apart.
       this.said = [along].concat(curveColumns);
+      this.name = (one) => view.label(one, curveColumns) || view.massLabel(one) || "cases";
       this.facets = view.group(cases, facets).map((group) => {
         const styles = view.group(group.cases, notMass);
         const curves = view.group(group.cases, others).map((one) => {
-          const first = one.cases[0], name = view.label(first, curveColumns) || view.massLabel(first) || "cases";
+          const first = one.cases[0], name = this.name(first);
           // Without masses to tell apart, a name has its colour in every chart.
           if (!names.includes(name)) names.push(name);
           const rank = names.indexOf(name);
           return {
-            name, colour: this.byMass ? view.colour(first) : colours[rank % colours.length], style: this.byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
+            name, colour: byMass ? view.colour(first) : colours[rank % colours.length], style: byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
             cases: one.cases.slice().sort((a, b) => (numberOf(a, along) || 0) - (numberOf(b, along) || 0)),
           };
         });
         return { title: group.label || "all cases", cases: group.cases, curves };
       });
     }
+    // A chart per facet, with the views that `draw` makes of it.
+    charts(draw) { return this.facets.map((facet, f) => ({ title: facet.title, views: draw(facet, f), notes: this.view.outcomeNotes(facet.cases, this.said) })); }
     legend() {
-      const out = new Map();
-      for (const facet of this.facets)
-        for (const { name, colour, style } of facet.curves) if (!out.has(name)) out.set(name, { name, colour, dash: ricochet.svgDash(style), symbol: ricochet.symbol(style) });
-      return Array.from(out.values());
+      const entries = this.facets.flatMap((facet) => facet.curves).map(({ name, colour, style, across }) => ({ name, colour, dash: ricochet.svgDash(style), symbol: across ? "" : ricochet.symbol(style) }));
+      return ricochet.firstOfName(entries);
     }
     // What the colours mean, for a caption.
     colours() { return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix)."; }

@@ -39,14 +39,21 @@
     return new Interval(ten(low), ten(high <= low ? low + 1 : high));
   }
   // The intervals of small multiples, made equal so that they compare; one whose largest magnitude is over 4 times the median one keeps its own, so
-  // that it does not flatten the others.
-  function sharedFrames(ranges) {
+  // that it does not flatten the others. On a logarithmic axis none is flattened.
+  function sharedFrames(ranges, logarithmic = false) {
     const magnitude = (range) => Math.max(Math.abs(range.low), Math.abs(range.high));
     const sizes = ranges.filter((range) => !range.empty).map(magnitude).sort((a, b) => a - b);
-    const usual = sizes.length ? sizes[(sizes.length - 1) >> 1] : 0, apart = (range) => !range.empty && magnitude(range) > 4 * usual;
+    const usual = sizes.length ? sizes[(sizes.length - 1) >> 1] : 0, apart = (range) => !logarithmic && !range.empty && magnitude(range) > 4 * usual;
     const shared = new Interval();
     ranges.filter((range) => !apart(range)).forEach((range) => shared.join(range));
     return ranges.map((range) => ({ range: apart(range) ? range : shared, own: apart(range) }));
+  }
+
+  // Edges of cells around values, half-way between them on the scale of their axis; `alone` is half the width of a single one.
+  function cellEdges(values, logarithmic, alone = 0.5) {
+    const at = logarithmic ? values.map(Math.log) : values, n = at.length, half = (k) => (n > 1 ? 0.5 * (at[k + 1] - at[k]) : alone);
+    const out = [at[0] - half(0), ...at.slice(1).map((value, k) => 0.5 * (at[k] + value)), at[n - 1] + half(n - 2)];
+    return logarithmic ? out.map(Math.exp) : out;
   }
 
   function axis(quantity, vertical) {
@@ -68,20 +75,27 @@
     if (Math.log10(decades.high / decades.low) < 6.5) Object.assign(out, { minorTick: { show: true, splitNumber: 9, length: 2 }, minorSplitLine: { show: false } });
     return out;
   }
+  const axisOf = (logarithmic, quantity, range, vertical) => (logarithmic ? logAxis : valueAxis)(quantity, range, vertical);
+  // A vertical axis whose name says where it does not begin at zero.
+  function heightAxis(quantity, range) {
+    const fromZero = range.low <= 0 && range.high >= 0;
+    return valueAxis([ricochet.format.withUnit(quantity) + (fromZero ? "" : ", axis not from 0"), "1"], range, true);
+  }
+  // The ends of an axis are no round numbers: nothing to read there.
+  const withoutEnds = (axis) => { axis.axisLabel.showMinLabel = axis.axisLabel.showMaxLabel = false; };
   // A second vertical axis from 0 to 1 that places marks of cases without a value.
   const gutterAxis = () => ({ type: "value", min: 0, max: 1, show: false });
 
   function tooltip(x, y) {
-    const { escape, shown, unit } = ricochet.format;
+    const { escape, shown, unit } = ricochet.format, { cell } = ricochet;
     const row = (p) => {
-      const name = '<div class="tip-row">' + p.marker + escape(p.seriesName);
-      if (p.data && p.data.text) return name + '</div><div class="tip-text">' + escape(p.data.text) + "</div>";
-      return name + "<b>" + shown(p.value[1], 9) + escape(unit(y)) + "</b></div>";
+      const name = '<div class="tip-row">' + p.marker + escape(p.seriesName), { text } = p.value;
+      return name + (text ? '</div><div class="tip-text">' + escape(text) + "</div>" : "<b>" + shown(cell(p, "y"), 9) + escape(unit(y)) + "</b></div>");
     };
     return (given) => {
-      const list = [].concat(given).filter((p) => Array.isArray(p.value));
+      const list = [].concat(given).filter((p) => cell(p, "x") !== undefined);
       if (!list.length) return "";
-      const head = escape(x[0]) + " = " + shown(list[0].value[0], 7) + escape(unit(x));
+      const head = escape(x[0]) + " = " + shown(cell(list[0], "x"), 7) + escape(unit(x));
       return "<div>" + head + '</div><div class="fine">' + escape(y[0]) + "</div>" + list.map(row).join("");
     };
   }
@@ -100,7 +114,7 @@
           { type: "inside", id: "along-x", xAxisIndex: 0, filterMode: along ? "filter" : "none", zoomOnMouseWheel: "shift", moveOnMouseMove: "shift", moveOnMouseWheel: false },
           { type: "inside", id: "along-y", yAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "alt", moveOnMouseMove: false, moveOnMouseWheel: false },
         ],
-        xAxis, yAxis, series: [],
+        xAxis, yAxis, dataset: [], series: [],
       },
     };
   }
@@ -112,23 +126,30 @@
   }).join("");
 
   // A line with marks on its points.
-  function curve(name, colour, style, data, size = 8, width = 1.6) {
-    return { type: "line", name, symbol: symbols[style % symbols.length], symbolSize: size, color: colour, itemStyle: { color: colour }, lineStyle: { color: colour, width, type: dashes[style % dashes.length] }, data };
+  const curve = ({ name, colour, style }, size = 8, width = 1.6) => ({
+    type: "line", name, symbol: symbols[style % symbols.length], symbolSize: size, color: colour, lineStyle: { width, type: dashes[style % dashes.length] },
+  });
+  // The same with hollow marks where a row says so.
+  function hollowCurve(one, rows, size, width) {
+    const out = curve(one, size, width), full = out.symbol, empty = "empty" + full[0].toUpperCase() + full.slice(1);
+    return rows.some((row) => row.hollow) ? { ...out, symbol: (row) => (row.hollow ? empty : full) } : out;
   }
-  // One text mark per item {value, mark, text}, which the legend filters with the curve `name`.
-  function marks(name, colour, items) {
-    return {
-      type: "scatter", name, symbol: "circle", symbolSize: 15, z: 5, itemStyle: { color: "rgba(255,255,255,0.7)" },
-      label: { show: true, position: "inside", color: colour, fontSize: 14, fontWeight: "bold" }, data: items.map((item) => Object.assign(item, { label: { formatter: item.mark } })),
-    };
-  }
-  const hollow = (colour) => ({ color: "#ffffff", borderColor: colour, borderWidth: 1.6 });
-  // Whether a sweep is drawn on a logarithmic axis: values above zero over a factor of fifty.
-  const logarithmicSweep = (range) => range.low > 0 && range.high >= 50 * range.low;
+  // A line without marks.
+  const line = (name, colour, width, type = "solid") => ({ type: "line", name, symbol: "none", z: 1, color: colour, lineStyle: { width, type } });
+  // Whether numbers above zero over some factor are drawn on a logarithmic axis: nine for the values of a study's axis, fifty for a sweep.
+  const logarithmicAxis = (range) => range.low > 0 && range.high >= 9 * range.low, logarithmicSweep = (range) => range.low > 0 && range.high >= 50 * range.low;
   const slug = (column) => column.replace(/\./g, "-");
 
+  // The names of the series in some charts.
+  const drawnNames = (charts) => new Set(charts.flatMap((chart) => chart.views.flatMap((one) => one.option.series.map((series) => series.name))));
+  // An entry of a legend without a line; entries of which the first of each name stays.
+  const swatch = (name, colour, symbol = "rect", heading) => ({ name, colour, dash: "0 30", symbol, heading });
+  const firstOfName = (entries) => entries.filter((entry, k) => entries.findIndex((other) => other.name === entry.name) === k);
+
   Object.assign(ricochet, {
-    Interval, roundOutwards, wholeDecades, sharedFrames, valueAxis, logAxis, gutterAxis, tooltip, view, lighten, curve, marks, hollow, slug, logarithmicSweep, ink, faint,
+    Interval, roundOutwards, wholeDecades, cellEdges, sharedFrames, valueAxis, logAxis, axisOf, heightAxis, withoutEnds, gutterAxis, view, lighten, curve, hollowCurve, line, slug, logarithmicAxis, logarithmicSweep,
+    drawnNames, swatch, firstOfName, ink, faint,
+    unseenZeros: "Exactly 0, which a logarithmic axis cannot show: ", ownScale: "This chart has its own scale: its values are over 4 times those of most others.",
     dash: (k) => dashes[k % dashes.length],
     svgDash: (k) => { const dash = dashes[k % dashes.length]; return dash === "solid" ? "" : dash.join(" "); },
     symbol: (k) => symbols[k % symbols.length],

@@ -8,6 +8,8 @@
     option.title = { text: chart.title === "all cases" ? title : title + ": " + chart.title, left: 12, top: 8, textStyle: { fontSize: 14, fontWeight: "normal", color: "#222" } };
     Object.assign(option.legend, { show: true, type: "plain", left: 12, top: 32, itemWidth: 34, textStyle: { fontSize: 11 } });
     option.series.forEach((s) => { if (s.showSymbol === false) s.symbol = "none"; });   // the legend shows symbols even where the curve has none
+    // It takes the symbol of the first series of a name, and knows none that hangs on rows.
+    option.series = option.series.flatMap((s) => (typeof s.symbol === "function" ? [{ ...s, symbol: s.symbol({}), datasetIndex: undefined, encode: undefined, data: [] }, s] : [s]));
     let names = Array.from(new Set(option.series.map((s) => s.name))).filter((name) => name !== "stops");
     const tagged = new Set(option.series.concat(view.sources ? view.sources() : []).flatMap((s) => s.tags || []));
     if (tagged.size) {   // one entry per meaning instead of one per series

@@ -1,21 +1,13 @@
 // Images of the basins of attraction, one per case, with the difference to the first case as their second view.
 {
-  const { Interval } = ricochet;
   const outcomes = [["differs", "#C2410C"], ["the same", "#CFE3F2"], ["not decided", "#DADADA"]], absent = 255;
-
-  // Half a cell beyond the outer values.
-  function bounds(values) {
-    const n = values.length;
-    if (n < 2) return new Interval(values[0] - 0.5, values[0] + 0.5);
-    return new Interval(values[0] - 0.5 * (values[1] - values[0]), values[n - 1] + 0.5 * (values[n - 1] - values[n - 2]));
-  }
 
   class Basins {
     constructor(data) {
       Object.assign(this, { data, view: data.view }, data.page.basins);
-      this.across = bounds(this.xs);
-      this.up = bounds(this.ys);
-      this.counts = new Map(data.rows("basin_counts").map((row) => [row.case, row]));
+      [this.across, this.up] = [this.xs, this.ys].map((values) => new ricochet.Interval().include(...ricochet.cellEdges(values)));
+      this.counts = data.rowsBy("basin_counts", ["case"]);
+      this.failures = data.rowsBy("basin_failures", ["case"]);
     }
     name(id) { return this.view.label(this.data.byId.get(id)) || "all cases"; }
     cells(id) { return this.data.block(id + "/cells"); }
@@ -23,23 +15,23 @@
     end(id, { column, row }) { return this.labels[this.cells(id)[row * this.xs.length + column]] || ["not known yet", "#fff"]; }
 
     figure() {
-      const { grids } = this, compares = grids.length > 1, entry = ([name, colour], heading) => ({ name, colour, dash: "0 30", symbol: "rect", heading });
+      const { grids } = this, compares = grids.length > 1, entry = ([name, colour], heading) => ricochet.swatch(name, colour, "rect", heading);
       const caption = this.xs.length + " × " + this.ys.length + " cells: the attractor that each ends in." + (compares ? " Difference: cells that end elsewhere than with " + this.name(grids[0]) + "." : "") +
         " White: not known yet. Click a cell for the command that marches it.";
       const charts = grids.map((id) => ({ title: this.name(id) + (this.data.byId.get(id).partial ? " (partial)" : ""), height: 420, views: [this.image(id)].concat(compares ? [this.difference(id)] : []), notes: this.notes(id) }));
       return { id: "basins", title: "Basins of attraction", caption, views: ["basins"].concat(compares ? ["difference"] : []), charts, linked: true, legend: this.labels.map((label) => entry(label, "Ends in")).concat(compares ? outcomes.map((one) => entry(one, "Difference")) : []) };
     }
     notes(id) {
-      const { count, mark } = ricochet.format, out = [], counts = this.counts.get(id);
+      const { count, mark } = ricochet.format, out = [], [counts] = this.counts(id);
       if (counts && counts.filled > 0) out.push(counts.filled + " of " + counts.cells + " cells take the end of a marched one of their basin: only boundaries were marched cell by cell.");
-      for (const row of this.data.rows("basin_failures").filter((one) => one.case === id)) out.push(mark("failed") + " " + count(row.cells, "cell failed", "cells failed") + (row.reason ? ": " + row.reason : ""));
+      for (const row of this.failures(id)) out.push(mark("failed") + " " + count(row.cells, "cell failed", "cells failed") + (row.reason ? ": " + row.reason : ""));
       return out;
     }
     frame(id, other) {
       const x = ricochet.valueAxis(this.x, this.across, false), y = ricochet.valueAxis(this.y, this.up, true);
       for (const axis of [x, y]) {
         axis.splitLine = { show: false };
-        axis.axisLabel.showMinLabel = axis.axisLabel.showMaxLabel = false;   // half a cell beyond the outer values: no numbers to read
+        ricochet.withoutEnds(axis);
       }
       const out = ricochet.view(this.x, this.y, x, y);
       out.option.tooltip.formatter = this.tooltip(out, id, other);
@@ -76,7 +68,7 @@
       return out;
     }
     difference(id) {
-      const first = this.grids[0], out = this.frame(id, first), own = this.cells(id), other = this.cells(first), counts = this.counts.get(id);
+      const first = this.grids[0], out = this.frame(id, first), own = this.cells(id), other = this.cells(first), [counts] = this.counts(id);
       const decided = (cell) => cell !== absent && this.labels[cell][2], outcome = (i) => (!decided(own[i]) || !decided(other[i]) ? 2 : own[i] === other[i] ? 1 : 0);
       outcomes.forEach((one, k) => { if ([counts.differ, counts.same, counts.undecided][k] > 0) out.option.series.push(this.series(one, (i) => outcome(i) === k)); });
       const share = counts.share === null ? "" : " (" + ricochet.format.share(counts.share) + ")";

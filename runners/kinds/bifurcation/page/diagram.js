@@ -18,7 +18,7 @@
       this.twins = all.some((one) => one.columns.exponent_twin);
       this.mostExponents = 0;
       while (all.some((one) => one.columns["exponent_" + (this.mostExponents + 1)])) ++this.mostExponents;
-      this.frameExponents(this.cases.flatMap((one) => Array.from(orbits.column(one.id, undefined, undefined, "exponent_1").values).filter((_, i) => i % 2 === 1)));
+      this.frameExponents(this.cases.flatMap((one) => orbits.chosen(one.id).map((o) => orbits.number(one.id, "exponent_1", o)).filter((value) => value !== null)));
     }
     // Orbits that contract almost at once have exponents far below all others, which must not flatten these.
     frameExponents(values) {
@@ -87,17 +87,13 @@
     }
     // "⊘ refused (3 orbits), between 0.11 and 0.12: the support passes the stop".
     outcomes(one, panel) {
-      const { orbits } = this, { text, count, mark } = ricochet.format, who = panel.cases.length > 1 ? this.methodName(one) + ": " : "", found = new Map();
-      for (const o of orbits.chosen(one.id, undefined, panel.kind).filter((k) => this.unfinished(one.id, k))) {
-        const status = orbits.cell(one.id, "status", o), reason = orbits.cell(one.id, "reason", o) || "", key = status + "\u001f" + reason;
-        if (!found.has(key)) found.set(key, { status, reason, orbits: 0, range: new Interval() });
-        ++found.get(key).orbits;
-        found.get(key).range.include(orbits.of(one.id).columns.parameter[o]);
-      }
+      const { orbits } = this, { text, count, mark } = ricochet.format, who = panel.cases.length > 1 ? this.methodName(one) + ": " : "";
+      const unfinished = orbits.chosen(one.id, undefined, panel.kind).filter((o) => this.unfinished(one.id, o)), cell = (name, o) => orbits.cell(one.id, name, o);
       const out = one.partial ? [who + "partial: this case is still being worked on; what it has so far is drawn."] : [];
-      for (const { status, reason, orbits: n, range } of found.values()) {
+      for (const found of ricochet.groupBy(unfinished, (o) => [cell("status", o), cell("reason", o)]).values()) {
+        const status = cell("status", found[0]), reason = cell("reason", found[0]), range = new Interval().include(...found.map((o) => cell("parameter", o)));
         const at = range.low === range.high ? "at " + text(range.low, 7) : "between " + text(range.low, 7) + " and " + text(range.high, 7);
-        out.push(mark(status) + " " + who + status + " (" + count(n, "orbit", "orbits") + "), " + at + (reason ? ": " + reason : ""));
+        out.push(mark(status) + " " + who + status + " (" + count(found.length, "orbit", "orbits") + "), " + at + (reason ? ": " + reason : ""));
       }
       return out;
     }
@@ -111,19 +107,16 @@
       const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 12)), 6) : -1;
       const verdict = this.verdicts.length ? place(12, 6) : -1;
       for (let g = 0; g < grid.length; ++g) x.push(this.xAxis(g, g + 1 === grid.length));
-      const series = diagramPanels.edgeMarks(this, panel), sources = [() => diagramPanels.points(this, panel)], bands = [];
+      const out = ricochet.view(orbits.parameter, tip, x, y), sources = [() => diagramPanels.points(this, panel)];
+      out.option.grid = grid;
+      diagramPanels.edgeMarks(this, out, panel);
       if (growth >= 0) {
-        const axis = y.push(Object.assign(ricochet.valueAxis(["exponent", "1/s"], this.exponents, true), { gridIndex: growth, splitNumber: 3 })) - 1;
-        series.push(diagramPanels.zeroLine(growth, axis, x[0]));
+        const axis = y.push({ ...ricochet.valueAxis(["exponent", "1/s"], this.exponents, true), gridIndex: growth, splitNumber: 3 }) - 1;
+        diagramPanels.zeroLine(this, out, growth, axis);
         sources.push(() => diagramPanels.exponents(this, panel, growth, axis));
       }
-      if (band >= 0) {
-        const axis = y.push(bandAxis(band, lanes.map((lane) => lane.name), panel.cases.length === 1 && lanes.length <= 6)) - 1;
-        bands.push(...diagramPanels.regimes(this, lanes, band, axis));
-      }
-      if (verdict >= 0) bands.push(...diagramPanels.verdictBand(this, verdict, y.push(bandAxis(verdict, ["verdict"], true)) - 1));
-      const out = ricochet.view(orbits.parameter, tip, x, y);
-      Object.assign(out.option, { grid, series: series.concat(bands) });
+      if (band >= 0) diagramPanels.regimes(this, out, lanes, band, y.push(bandAxis(band, lanes.map((lane) => lane.name), panel.cases.length === 1 && lanes.length <= 6)) - 1);
+      if (verdict >= 0) diagramPanels.verdictBand(this, out, verdict, y.push(bandAxis(verdict, ["verdict"], true)) - 1);
       out.option.dataZoom[0].xAxisIndex = grid.map((_, g) => g);
       out.option.tooltip.formatter = this.tooltip(out);
       let made = null;
@@ -140,11 +133,11 @@
         const slack = range.low === 0 ? 1 : 0.01 * Math.abs(range.low);
         range = new Interval(range.low - slack, range.high + slack);
       }
-      const logarithmic = ricochet.logarithmicSweep(this.parameters), out = logarithmic ? ricochet.logAxis(this.orbits.parameter, range, false) : ricochet.valueAxis(this.orbits.parameter, range, false);
+      const logarithmic = ricochet.logarithmicSweep(this.parameters), out = ricochet.axisOf(logarithmic, this.orbits.parameter, range, false);
       if (!logarithmic) {
         const slack = 0.012 * (range.high - range.low);
         Object.assign(out, { min: range.low - slack, max: range.high + slack });
-        out.axisLabel.showMinLabel = out.axisLabel.showMaxLabel = false;   // the ends are no round numbers
+        ricochet.withoutEnds(out);
       }
       out.gridIndex = grid;
       if (!last) {
@@ -156,11 +149,12 @@
     tooltip(view) {
       const { escape, shown, unit } = ricochet.format;
       return (given) => {
-        const p = [].concat(given)[0];
-        if (!p || p.value === undefined || p.value === null) return "";
-        if (p.data && p.data.text) return "<div>" + escape(view.x[0]) + " = " + shown(p.value[0], 8) + '</div><div class="tip-row">' + escape(p.seriesName) + '</div><div class="tip-text">' + escape(p.data.text) + "</div>";
-        if (p.data && p.data.id !== undefined) return this.orbits.words(p.data.id, p.data.orbit, tip);
-        return "<div>" + escape(view.x[0]) + " = " + shown(p.value[0], 9) + escape(unit(view.x)) + '</div><div class="tip-row">' + escape(p.seriesName) + "<b>" + shown(p.value[1], 8) + "</b></div>";
+        const [p] = [].concat(given), { id, orbit, text } = (p && p.value) || {}, x = p && ricochet.cell(p, "x");
+        if (x === undefined) return "";
+        if (id !== undefined && !text) return this.orbits.words(id, orbit, tip);
+        const row = '</div><div class="tip-row">' + escape(p.seriesName);
+        if (text) return "<div>" + escape(view.x[0]) + " = " + shown(x, 8) + row + '</div><div class="tip-text">' + escape(text) + "</div>";
+        return "<div>" + escape(view.x[0]) + " = " + shown(x, 9) + escape(unit(view.x)) + row + "<b>" + shown(ricochet.cell(p, "y"), 8) + "</b></div>";
       };
     }
     // The orbit of the mark or of the cell of the band of regimes at a place of the chart.
@@ -169,22 +163,22 @@
       if (grid < 0) return null;
       const found = ricochet.handDrawn.nearest(chart, option, view.sources(), hidden, grid, at, pointsOnly ? 7 : 14);
       if (found) return { id: found.source.id, orbit: found.source.orbits[found.index], value: found.source.what === "points" ? found.value : undefined };
-      for (const series of pointsOnly ? [] : option.series) {
-        if (series.xAxisIndex !== grid || series.type !== "custom" || series.silent || (series.tags || []).some((tag) => hidden.has(tag))) continue;
-        const place = chart.convertFromPixel({ xAxisIndex: grid, yAxisIndex: series.yAxisIndex }, at);
-        const cell = series.data.find((item) => item.id !== undefined && item.value[0] <= place[0] && place[0] <= item.value[1] && item.value[2] === Math.round(place[1]));
-        if (cell) return { id: cell.id, orbit: cell.orbit };
-      }
+      // Cells of all regimes are the rows of one table.
+      const band = option.series.find((series) => !pointsOnly && series.type === "custom" && series.xAxisIndex === grid && !series.silent);
+      if (!band) return null;
+      const rows = option.dataset[option.dataset[band.datasetIndex].fromDatasetIndex].source, place = chart.convertFromPixel({ xAxisIndex: grid, yAxisIndex: band.yAxisIndex }, at);
+      const cell = rows.find((row) => row.from <= place[0] && place[0] <= row.to && row.row === Math.round(place[1]));
+      if (cell && cell.orbit !== undefined && !hidden.has(this.orbits.groups[cell.group][0])) return { id: cell.id, orbit: cell.orbit };
       return null;
     }
 
     legend(charts) {
       const { groups, kinds } = this.orbits, used = new Set(charts.flatMap((chart) => chart.views[0].option.series.flatMap((series) => series.tags || [])));
-      const out = this.groups.map((group) => ({ name: groups[group][0], colour: groups[group][1], dash: "0 30", symbol: "rect", heading: "Regime" }));
-      if (this.kinds.length > 1) out.push(...this.kinds.map((kind) => ({ name: kinds[kind][0], colour: "#555555", dash: "0 30", symbol: kinds[kind][1], heading: "Start" })));
-      if (this.cases.length > 1) out.push(...this.cases.map((one) => ({ name: this.methodName(one), colour: this.colourOf(one), dash: "0 30", symbol: "roundRect", heading: "Method (overlaid)" })));
-      for (const [word, colour] of diagramPanels.verdicts) if (used.has(word)) out.push({ name: word, colour, dash: "0 30", symbol: "rect", heading: "Verdict" });
-      const mark = (name, colour, symbol) => out.push({ name, colour, dash: "0 30", symbol, heading: "Marks" });
+      const { swatch } = ricochet, mark = (name, colour, symbol) => out.push(swatch(name, colour, symbol, "Marks"));
+      const out = this.groups.map((group) => swatch(...groups[group], "rect", "Regime"));
+      if (this.kinds.length > 1) out.push(...this.kinds.map((kind) => swatch(kinds[kind][0], "#555555", kinds[kind][1], "Start")));
+      if (this.cases.length > 1) out.push(...this.cases.map((one) => swatch(this.methodName(one), this.colourOf(one), "roundRect", "Method (overlaid)")));
+      for (const [word, colour] of diagramPanels.verdicts) if (used.has(word)) out.push(swatch(word, colour, "rect", "Verdict"));
       if (used.has("located change")) mark("located change", diagramPanels.dark, "triangle-down");
       if (this.exponents && this.mostExponents > 1) mark("further exponents", ricochet.faint, "circle");
       if (this.exponents && this.twins) mark("twin check", diagramPanels.dark, "cross");

@@ -14,13 +14,13 @@
   class Distances {
     constructor(data) {
       const spreads = data.rows("distance_spreads");
-      Object.assign(this, { data, view: data.view, spreads, medians: data.rows("distance_medians") });
+      Object.assign(this, { data, view: data.view, spreads, spreadOf: data.rowsBy("distance_spreads", ["case", "kind"]), medians: data.rows("distance_medians") });
       this.reference = spreads.length ? spreads[0].reference_case : "";
       const known = new Set(spreads.map((row) => row.case));
       this.cases = data.view.all.filter((one) => known.has(one.id) && one.id !== this.reference);
       this.parameters = new Interval().include(...this.medians.map((row) => row.parameter));
     }
-    spread(id, kind) { return this.spreads.find((row) => row.case === id && row.kind === kind.key && row.count > 0); }
+    spread(id, kind) { return this.spreadOf(id, kind.key).find((row) => row.count > 0); }
     // Of all distances of a kind, and of its null level.
     range(kind) {
       const out = new Interval();
@@ -32,7 +32,7 @@
     figure(id, title, caption, curves, more = "") {
       const reference = this.data.byId.get(this.reference), name = reference ? this.view.label(reference) || "the one method" : this.reference;
       const basis = " Reference: " + name + ". Distances of sections in (displacement, velocity), each divided by its spread over the study. Band: up to the null level, what two halves of one run differ by.";
-      return { id, title, caption: caption + basis + more, views: kinds.map((kind) => kind.name), charts: [], legend: curves.legend().concat([{ name: nullName, colour: nullColour, dash: "0 30", symbol: "rect" }]) };
+      return { id, title, caption: caption + basis + more, views: kinds.map((kind) => kind.name), charts: [], legend: curves.legend().concat([ricochet.swatch(nullName, nullColour)]) };
     }
 
     // The median by case against a numeric axis.
@@ -43,33 +43,22 @@
       return out;
     }
     againstView(column, values, facet, kind) {
-      const { text, count } = ricochet.format, x = [column, this.view.unit(column)], heights = new Interval(), series = [], none = this.spread("", kind);
-      let zeros = 0, shown = 0;
-      for (const curve of facet.curves) {
-        const items = [], bars = [];
-        for (const one of curve.cases) {
-          const spread = this.spread(one.id, kind), at = numberOf(one, column) || 0;
-          if (!spread) continue;
-          ++shown;
-          if (!(spread.median > 0)) { ++zeros; items.push({ value: [at, "-"] }); continue; }
-          const low = spread.low > 0 ? spread.low : spread.median;
-          heights.include(spread.median, low);
-          if (spread.high > 0) heights.include(spread.high);
-          const said = "median " + text(spread.median) + " over " + count(spread.count, "value", "values") + "; 10 % to 90 %: " + text(spread.low) + " to " + text(spread.high) + "; " + spread.zeros + " are exactly zero";
-          items.push({ value: [at, spread.median], text: said });
-          bars.push([at, low], [at, spread.high], [at, "-"]);
-        }
-        series.push(Object.assign(ricochet.curve(curve.name, curve.colour, curve.style, items, 7), { z: 3 }));
-        series.push({ type: "line", name: curve.name, symbol: "none", silent: true, z: 2, color: curve.colour, lineStyle: { color: ricochet.lighten(curve.colour, 0.4), width: 1.2 }, data: bars });
-      }
+      const { text } = ricochet.format, x = [column, this.view.unit(column)], none = this.spread("", kind);
+      const curves = facet.curves.map((curve) => ({ curve, rows: curve.cases.map((one) => ({ at: numberOf(one, column) || 0, ...this.spread(one.id, kind) })).filter((row) => row.count > 0) }));
+      const all = curves.flatMap(({ rows }) => rows), drawn = all.filter((row) => row.median > 0), low = (row) => (row.low > 0 ? row.low : row.median);
+      const heights = new Interval().include(...drawn.flatMap((row) => [row.median, low(row)].concat(row.high > 0 ? [row.high] : [])));
       if (none && none.high > 0) heights.include(none.high);
       if (none && none.median > 0) heights.include(0.5 * none.median);
       if (heights.empty) heights.include(0.1, 1);
-      const logarithmic = values.low > 0 && values.high >= 9 * values.low, xAxis = logarithmic ? ricochet.logAxis(x, values, false) : ricochet.valueAxis(x, padded(values), false);
+      const logarithmic = ricochet.logarithmicAxis(values), xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? values : padded(values), false);
       const out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights, true));
-      if (none && none.high > 0) out.option.series.push(band(xAxis, ricochet.wholeDecades(heights).low, none.high));
-      out.option.series.push(...series);
-      if (zeros) out.notes.push("In " + zeros + " of " + shown + " cases the median distance is exactly zero, below this axis.");
+      if (none && none.high > 0) band(out, xAxis, ricochet.wholeDecades(heights).low, none.high);
+      for (const { curve, rows } of curves) {
+        const points = rows.map((row) => ({ at: row.at, median: row.median > 0 ? row.median : null, text: spreadText(row) })), spreads = rows.filter((row) => row.median > 0).map((row) => ({ ...row, low: low(row) }));
+        ricochet.draw(out, points, { x: "at", y: "median" }, { ...ricochet.curve(curve, 7), z: 3 });
+        ricochet.draw(out, ricochet.ends(spreads, "low", "high"), { x: "at", y: "end" }, { ...ricochet.line(curve.name, ricochet.lighten(curve.colour, 0.4), 1.2), silent: true, z: 2 });
+      }
+      if (drawn.length < all.length) out.notes.push("In " + (all.length - drawn.length) + " of " + all.length + " cases the median distance is exactly zero, below this axis.");
       if (none) out.notes.push("Null level: median " + text(none.median) + ", 10 % to 90 %: " + text(none.low) + " to " + text(none.high) + ".");
       return out;
     }
@@ -78,39 +67,38 @@
     along() {
       const curves = new ricochet.MethodCurves(this.view, this.cases, "");
       const out = this.figure("distance", "Distance to the reference along the parameter", "Median over the starts at each value of the parameter.", curves);
-      out.linked = true;
       out.charts = curves.facets.map((facet) => ({ title: facet.title, notes: [], height: 300, views: kinds.map((kind) => this.alongView(facet, kind)) }));
-      return out;
+      return { ...out, linked: true };
     }
     alongView(facet, kind) {
       const x = this.data.page.orbits ? this.data.page.orbits.parameter : ["parameter", ""], heights = this.range(kind);
       if (heights.empty) heights.include(0.1, 1);
       // What is nearer than a millionth of the farthest is round-off of one and the same orbit.
       heights.low = Math.max(heights.low, 1e-6 * heights.high);
-      const floor = ricochet.wholeDecades(heights).low, raised = (row) => [row.parameter, Math.max(row.median, floor)];
-      const logarithmic = ricochet.logarithmicSweep(this.parameters), xAxis = logarithmic ? ricochet.logAxis(x, this.parameters, false) : ricochet.valueAxis(x, padded(this.parameters), false);
-      const out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights, true)), rows = this.medians.filter((row) => row.kind === kind.key && row.median !== null);
+      const floor = ricochet.wholeDecades(heights).low, logarithmic = ricochet.logarithmicSweep(this.parameters);
+      const xAxis = ricochet.axisOf(logarithmic, x, logarithmic ? this.parameters : padded(this.parameters), false), out = ricochet.view(x, quantity(kind), xAxis, ricochet.logAxis(quantity(kind), heights, true));
+      const medians = this.medians.filter((row) => row.kind === kind.key && row.median !== null).map((row) => ({ ...row, drawn: Math.max(row.median, floor) })), encode = { x: "parameter", y: "drawn" };
       let below = 0;
       for (const curve of facet.curves) {
-        const own = rows.filter((row) => curve.cases.some((one) => one.id === row.case));
+        const own = medians.filter((row) => curve.cases.some((one) => one.id === row.case));
         below += own.filter((row) => row.median < floor).length;
-        const line = Object.assign(ricochet.curve(curve.name, curve.colour, curve.style, own.map(raised), 4, 1.1), { z: 3 });
-        delete line.lineStyle.type;
-        out.option.series.push(line);
+        ricochet.draw(out, own, encode, { ...ricochet.curve(curve, 4), lineStyle: { width: 1.1 }, z: 3 });
       }
-      const level = rows.filter((row) => row.case === "").map(raised);
-      if (level.length)
-        out.option.series.push({ type: "line", name: nullName, symbol: "none", silent: true, z: 1, color: nullColour, lineStyle: { width: 0 }, areaStyle: { color: nullColour, opacity: 0.75, origin: "start" }, data: level });
+      const level = { ...ricochet.line(nullName, nullColour, 0), silent: true, areaStyle: { color: nullColour, opacity: 0.75, origin: "start" } };
+      ricochet.draw(out, medians, encode, level, { case: "" });
       if (below) out.notes.push(ricochet.format.count(below, "distance lies", "distances lie") + " below the frame and " + (below === 1 ? "is" : "are") + " drawn on its lower edge.");
       return out;
     }
   }
 
-  function band(x, low, high) {
-    return {
-      type: "line", name: nullName, symbol: "none", silent: true, color: nullColour, z: 1, data: [[x.min, high]],
-      markArea: { silent: true, itemStyle: { color: nullColour, opacity: 0.75 }, data: [[{ coord: [x.min, low] }, { coord: [x.max, high] }]] },
-    };
+  function spreadText(row) {
+    const { text, count } = ricochet.format;
+    return "median " + text(row.median) + " over " + count(row.count, "value", "values") + "; 10 % to 90 %: " + text(row.low) + " to " + text(row.high) + "; " + row.zeros + " are exactly zero";
+  }
+  // The null level across a chart.
+  function band(out, x, low, high) {
+    const markArea = { silent: true, itemStyle: { color: nullColour, opacity: 0.75 }, data: [[{ coord: [x.min, low] }, { coord: [x.max, high] }]] };
+    ricochet.draw(out, [{ at: x.min, high }], { x: "at", y: "high" }, { ...ricochet.line(nullName, nullColour, 2), silent: true, markArea });
   }
 
   ricochet.figure("distance", (data) => {

@@ -1,5 +1,5 @@
 // Marks drawn pixel by pixel, all of a grid in one picture: the chart library is told of none of them, as hundreds of thousands of its own are slow.
-// A source is {grid, axis, tags, z, colour, glyph, values} with pairs (x, y) in `values`, or {…, ends} with triples (x, low, high) as whiskers.
+// A source is {grid, axis, tags, z, colour, glyph, values, orbits} with pairs (x, y) in `values`, or triples (x, low, high) where the glyph is a whisker.
 {
   // Shape and size in CSS pixels. Starts are told apart by their marks while these are few; clouds are dots.
   const cloudGlyph = (shape, count) => (count > 2500 ? { shape: "dot", size: count > 40000 ? 1.5 : 2 } : { shape, size: count < 400 ? 6 : 5 });
@@ -55,14 +55,14 @@
     across(x) { return this.left + (this.bend(x) - this.low) * this.perX; }
     up(y) { return this.zero + y * this.perY; }
     draw(source) {
-      if (source.ends) this.whiskers(source);
+      if (source.glyph.shape === "whisker") this.whiskers(source);
       else if (source.glyph.shape === "dot") this.dots(source);
       else this.stamps(source);
     }
-    whiskers({ ends, colour }) {
+    whiskers({ values, colour }) {
       const ink = word(rgb(colour));
-      for (let i = 0; i < ends.length; i += 3) {
-        const u = Math.floor(this.across(ends[i])), from = Math.max(0, Math.floor(this.up(ends[i + 2]))), to = Math.min(this.tall - 1, Math.floor(this.up(ends[i + 1])));
+      for (let i = 0; i < values.length; i += 3) {
+        const u = Math.floor(this.across(values[i])), from = Math.max(0, Math.floor(this.up(values[i + 2]))), to = Math.min(this.tall - 1, Math.floor(this.up(values[i + 1])));
         if (u < 0 || u >= this.wide) continue;
         for (let v = from; v <= to; ++v) this.words[v * this.wide + u] = ink;
       }
@@ -116,7 +116,7 @@
       let best = null, nearest = reach;
       const axis = option.xAxis[grid], bend = axis.type === "log" ? Math.log : (v) => v, back = axis.type === "log" ? Math.exp : (v) => v;
       for (const source of sources) {
-        if (!source.orbits || !source.orbits.length || source.grid !== grid || !visible(source, hidden)) continue;
+        if (source.glyph.shape === "whisker" || source.grid !== grid || !visible(source, hidden)) continue;
         // Both scales are straight in what they show: two points give them.
         const left = chart.convertToPixel({ xAxisIndex: source.grid }, axis.min), right = chart.convertToPixel({ xAxisIndex: source.grid }, axis.max);
         const zero = chart.convertToPixel({ yAxisIndex: source.axis }, 0), unit = chart.convertToPixel({ yAxisIndex: source.axis }, 1) - zero;

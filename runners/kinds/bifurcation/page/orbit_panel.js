@@ -15,11 +15,10 @@
     }
     return out;
   }
-  // Rows of an orbit in a table of numbers.
-  function slice(orbits, id, table, columns, o) {
-    const orbit = orbits.block(id, table + "/orbit"), blocks = columns.map((name) => orbits.block(id, table + "/" + name)), out = [];
-    for (let i = 0; orbit && i < orbit.length; ++i) if (orbit[i] === o) out.push(blocks.map((block) => block[i]));
-    return out;
+  // Columns of a table of numbers in the rows of an orbit.
+  function columnsOf(orbits, id, table, names, o) {
+    const orbit = Array.from(orbits.block(id, table + "/orbit") || []), rows = orbit.map((_, i) => i).filter((i) => orbit[i] === o);
+    return Object.fromEntries(names.map((name) => { const block = orbits.block(id, table + "/" + name); return [name, rows.map((i) => block[i])]; }));
   }
   // The orbit of the same start at the next value of the parameter; undefined at the end.
   function neighbour(orbits, id, o, step) {
@@ -38,12 +37,13 @@
     sidePanel.open({ id, orbit: o }, "The chosen orbit", colour, orbits.parameter[0] + " = " + one.columns.parameter[o] + unit(orbits.parameter), keys);
     const label = orbits.label(id), partial = orbits.data.byId.get(id).partial ? " · partial: this case is still being worked on" : "";
     sidePanel.say((label ? label + " · " : "") + "start " + orbits.cell(id, "start", o) + " · " + orbits.regime(id, o) + partial);
-    const motion = slice(orbits, id, "portrait", ["u", "v", "t"], o), section = slice(orbits, id, "points", ["u", "v"], o);
-    const line = (data) => ({ type: "line", symbol: "none", color: colour, lineStyle: { color: colour, width: 1.3 }, data }), dots = { type: "scatter", symbolSize: 5, z: 3, color: "#111", itemStyle: { color: "#111" }, data: section };
-    if (motion.length || section.length) sidePanel.plot("tip displacement (m)", "tip velocity (m/s)", (motion.length ? [line(motion.map((r) => [r[0], r[1]]))] : []).concat(section.length ? [dots] : []), "portrait");
-    if (motion.length) sidePanel.plot("time from the strobe (s)", "tip displacement (m)", [line(motion.map((r) => [r[2], r[0]]))], "in-time");
-    else sidePanel.say((section.length ? "Dots: the section. " : "") + "No portrait is stored for this value and start; the command below marches it again.");
-    if (motion.length && section.length) sidePanel.say("Dots: the section.");
+    const motion = columnsOf(orbits, id, "portrait", ["u", "v", "t"], o), section = columnsOf(orbits, id, "points", ["u", "v"], o), moves = motion.u.length > 0, dotted = section.u.length > 0;
+    const line = (x, y) => ({ source: motion, encode: { x, y }, type: "line", symbol: "none", color: colour, lineStyle: { width: 1.3 } });
+    const dots = { source: section, encode: { x: "u", y: "v" }, type: "scatter", symbolSize: 5, z: 3, color: "#111" };
+    if (moves || dotted) sidePanel.plot("tip displacement (m)", "tip velocity (m/s)", [...(moves ? [line("u", "v")] : []), ...(dotted ? [dots] : [])], "portrait");
+    if (moves) sidePanel.plot("time from the strobe (s)", "tip displacement (m)", [line("t", "u")], "in-time");
+    else sidePanel.say((dotted ? "Dots: the section. " : "") + "No portrait is stored for this value and start; the command below marches it again.");
+    if (moves && dotted) sidePanel.say("Dots: the section.");
     sidePanel.list(facts(orbits, id, o));
     sidePanel.say("The same point again:");
     sidePanel.command(sidePanel.commandOf(orbits.data.study.name, id) + " --parameter " + one.columns.parameter[o] + " --start " + sidePanel.quoted(String(orbits.cell(id, "start", o))));

@@ -32,29 +32,19 @@
     }
     // Section points of a case's orbits as pairs (parameter, displacement), with the orbit of each.
     points(id, group, kind) {
-      const one = this.of(id), wanted = new Uint8Array(one.group.length), { parameter } = one.columns;
-      this.chosen(id, group, kind).forEach((o) => { wanted[o] = 1; });
-      const orbit = this.block(id, "points/orbit") || [], u = this.block(id, "points/u");
-      let n = 0;
-      for (let i = 0; i < orbit.length; ++i) n += wanted[orbit[i]];
-      const values = new Float64Array(2 * n), orbits = new Uint32Array(n);
-      for (let i = 0, k = 0; i < orbit.length; ++i) {
-        if (!wanted[orbit[i]]) continue;
-        values[2 * k] = parameter[orbit[i]];
-        values[2 * k + 1] = u[i];
-        orbits[k++] = orbit[i];
+      const { parameter } = this.of(id).columns, wanted = new Set(this.chosen(id, group, kind)), orbit = this.block(id, "points/orbit") || [], u = this.block(id, "points/u");
+      const values = [], orbits = [];
+      for (let i = 0; i < orbit.length; ++i) {
+        if (!wanted.has(orbit[i])) continue;
+        values.push(parameter[orbit[i]], u[i]);
+        orbits.push(orbit[i]);
       }
       return { values, orbits };
     }
-    // A column of `values` as the same pairs.
-    column(id, group, kind, name) {
-      const orbits = this.chosen(id, group, kind).filter((o) => this.number(id, name, o) !== null);
-      return { values: Float64Array.from(orbits.flatMap((o) => [this.of(id).columns.parameter[o], this.cell(id, name, o)])), orbits };
-    }
-    // Intervals of a column as triples (parameter, low, high).
-    intervals(id, group, kind, name) {
-      const orbits = this.chosen(id, group, kind).filter((o) => this.number(id, name + "_low", o) !== null && this.number(id, name + "_high", o) !== null);
-      return { ends: Float64Array.from(orbits.flatMap((o) => [this.of(id).columns.parameter[o], this.cell(id, name + "_low", o), this.cell(id, name + "_high", o)])) };
+    // Columns of `values` for the orbits that have them all, as pairs or triples (parameter, …).
+    columns(id, group, kind, names) {
+      const orbits = this.chosen(id, group, kind).filter((o) => names.every((name) => this.number(id, name, o) !== null));
+      return { values: orbits.flatMap((o) => [this.cell(id, "parameter", o), ...names.map((name) => this.cell(id, name, o))]), orbits };
     }
 
     regime(id, o) {

@@ -3,24 +3,15 @@
 {
   const { Interval, numberOf } = ricochet;
   const unstable = "#D55E00", colours = { "predicted stable": "#D6E6F4", "predicted marginal": "#F6EBB0", "predicted unstable": unstable, "not predicted": "#E3E3E3" };
-  const dark = "#222222", predictedColour = "#0072B2", mostNotes = 6;
+  const dark = "#222222", mostNotes = 6;
 
-  // Bands of neighbouring values meet half-way.
-  function shareAxis(bands, logarithmic) {
-    const to = logarithmic ? Math.log : (v) => v, from = logarithmic ? Math.exp : (v) => v, n = bands.length, at = (k) => to(bands[k].value);
-    bands.forEach((band, i) => {
-      const below = i > 0 ? at(i - 1) : 2 * at(i) - at(Math.min(i + 1, n - 1)), above = i + 1 < n ? at(i + 1) : 2 * at(i) - at(i > 0 ? i - 1 : 0);
-      band.low = from(0.5 * (below + at(i)));
-      band.high = from(0.5 * (at(i) + above));
-    });
-  }
-  // Edges of the steps of a band, half-way on the logarithmic scale.
-  function edges(cells) {
-    const n = cells.length, ratio = n > 1 ? Math.sqrt(cells[1].step / cells[0].step) : 1.5, out = [cells[0].step / ratio];
-    for (let i = 0; i + 1 < n; ++i) out.push(Math.sqrt(cells[i].step * cells[i + 1].step));
-    out.push(n > 1 ? cells[n - 1].step * Math.sqrt(cells[n - 1].step / cells[n - 2].step) : cells[0].step * ratio);
-    return out;
-  }
+  // Boundaries: name, column of `stability_limits`, colour, width, dash. What was observed: name, symbol, size, colour; cells that were not marched still
+  // tell what is predicted when pointed at.
+  const boundaries = [["predicted", "expected", "#0072B2", 4, 0], ["observed", "observed", dark, 1.8, 1]];
+  const observations = [["observed stable", "circle", 4, "#5a5a5a"], ["observed unstable", "diamond", 8, dark], ["prediction", "circle", 8, "rgba(0,0,0,0)"]];
+  const seen = (cell) => (cell.behaviour ? (cell.unstable ? "observed unstable" : "observed stable") : "prediction");
+
+  const stepEdges = (cells) => ricochet.cellEdges(cells.map((cell) => cell.step), true, Math.log(1.5));
   // Darker the faster it grows: 1e-6 per step pale, tenfold per step full.
   const shade = (cell) => (cell.prediction === "predicted unstable" ? ricochet.lighten(unstable, 0.75 - 0.6 * Math.min(Math.max((Math.log10(cell.worst - 1) + 6) / 7, 0), 1)) : colours[cell.prediction]);
   function cellText(cell) {
@@ -40,26 +31,26 @@
       shown = ricochet.wholeDecades(range);
       axis.interval = Math.ceil(Math.log10(shown.high / shown.low) / 6);
     } else {
-      axis.axisLabel.showMinLabel = axis.axisLabel.showMaxLabel = false;   // half a cell beyond the outer values: no numbers to read
+      ricochet.withoutEnds(axis);
     }
     return Object.assign(axis, { min: shown.low, max: shown.high });
   }
 
   class StabilityMap {
     constructor(data, stability, column) {
-      Object.assign(this, { data, view: data.view, stability, column });
-      const values = new Interval().include(...data.view.all.map((one) => numberOf(one, column)).filter((value) => value !== null));
-      this.logarithmic = values.low > 0 && values.high >= 9 * values.low;
+      Object.assign(this, { view: data.view, stability, column });
+      this.logarithmic = ricochet.logarithmicAxis(new Interval().include(...data.view.all.map((one) => numberOf(one, column)).filter((value) => value !== null)));
     }
     figure() {
       const { column } = this, charts = [];
       // The law plays no part while nothing touches.
       for (const contact of ["open", "closed"]) if (contact === "closed" || ricochet.roleOf(column) !== "contact") charts.push(...this.charts(contact));
       if (!charts.length) return null;
-      const used = new Set(charts.flatMap((chart) => chart.views[0].option.series.map((series) => series.name))), legend = [];
-      for (const name of Object.keys(colours)) legend.push({ name, colour: name === "predicted unstable" ? ricochet.lighten(unstable, 0.4) : colours[name], dash: "", symbol: "rect" });
-      legend.push({ name: "observed stable", colour: "#5a5a5a", dash: "0 30", symbol: "circle" }, { name: "observed unstable", colour: dark, dash: "0 30", symbol: "diamond" });
-      legend.push({ name: "predicted limit", colour: predictedColour, dash: "", symbol: "" }, { name: "observed limit", colour: dark, dash: ricochet.svgDash(1), symbol: "" });
+      const used = ricochet.drawnNames(charts), { swatch, lighten } = ricochet;
+      const legend = Object.entries(colours).map(([name, colour]) => ({ name, colour: name === "predicted unstable" ? lighten(unstable, 0.4) : colour, symbol: "rect" })).concat([
+        ...observations.slice(0, 2).map(([name, symbol, , colour]) => swatch(name, colour, symbol)),
+        ...boundaries.map(([name, , colour, , dash]) => ({ name: name + " limit", colour, dash: ricochet.svgDash(dash) })),
+      ]);
       return {
         id: "stability-map-" + ricochet.slug(column), title: "Stability over step and " + column, views: ["map"], charts, legend: legend.filter((entry) => used.has(entry.name)),
         caption: "Background: what one step's spectrum predicts, darker the faster it grows. Marks: what marching showed. Closed contact is predicted with points held on both sides and observed in the scene itself, which is open as well: its background is the worse of both.",
@@ -72,20 +63,31 @@
         const byValue = new Map();
         for (const one of facet.cases) if (!byValue.has(numberOf(one, column))) byValue.set(numberOf(one, column), one);
         if (byValue.size < 2) return null;
-        const bands = Array.from(byValue).sort((a, b) => a[0] - b[0]).map(([value, one]) => ({ value, one, cells: stability.cells(one, contact), limits: stability.limits(one, contact) }));
-        shareAxis(bands, this.logarithmic);
+        const values = Array.from(byValue.keys()).sort((a, b) => a - b), at = ricochet.cellEdges(values, this.logarithmic);
+        const bands = values.map((value, k) => {
+          const one = byValue.get(value);
+          return { value, low: at[k], high: at[k + 1], one, cells: stability.cells(one, contact), limits: stability.limits(one, contact) };
+        });
         return { title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
       }).filter(Boolean);
     }
     draw(bands) {
-      const x = ["step h", "s"], y = [this.column, this.view.unit(this.column) || "1"], xs = new Interval(), ys = new Interval();
-      for (const band of bands) {
-        xs.include(...edges(band.cells));
-        ys.include(band.low, band.high);
+      const x = ["step h", "s"], y = [this.column, this.view.unit(this.column) || "1"];
+      const xs = new Interval().include(...bands.flatMap((band) => stepEdges(band.cells))), ys = new Interval().include(...bands.flatMap((band) => [band.low, band.high]));
+      const along = frame(ricochet.logAxis(x, xs, false), xs), up = frame(ricochet.axisOf(this.logarithmic, y, ys, true), ys), out = ricochet.view(x, y, along, up);
+      out.option.series.push(...background(bands, along, up));
+      // A boundary is a line across the band of its value, and there is none where the band has no limit.
+      for (const [name, column, colour, width, dash] of boundaries) {
+        if (bands.every((band) => band.limits[column] === null)) continue;
+        const rows = bands.flatMap((band) => {
+          const limit = band.limits[column], text = name + " limit h = " + ricochet.format.text(limit, 5) + " s";
+          return [band.low, band.value, band.high].map((at) => ({ limit, at, text }));
+        });
+        ricochet.draw(out, rows, { x: "limit", y: "at" }, { ...ricochet.line(name + " limit", colour, width, ricochet.dash(dash)), z: 4 });
       }
-      const along = frame(ricochet.logAxis(x, xs, false), xs), up = frame(this.logarithmic ? ricochet.logAxis(y, ys, true) : ricochet.valueAxis(y, ys, true), ys);
-      const out = ricochet.view(x, y, along, up);
-      out.option.series.push(...background(bands, along, up), ...limits(bands), ...marks(bands));
+      const cells = bands.flatMap((band) => band.cells.map((cell) => ({ step: cell.step, value: band.value, seen: seen(cell), text: cellText(cell) })));
+      for (const [name, symbol, size, colour] of observations)
+        ricochet.draw(out, cells, { x: "step", y: "value" }, { type: "scatter", name, symbol, symbolSize: size, z: 5, color: colour }, { seen: name });
       return out;
     }
     notes(bands, contact) {
@@ -97,43 +99,18 @@
     }
   }
 
+  // Areas that belong to no series of points: the library takes them from no data set.
   function background(bands, x, y) {
-    const areas = new Map();
-    for (const band of bands) {
-      const at = edges(band.cells), low = band === bands[0] ? y.min : band.low, high = band === bands[bands.length - 1] ? y.max : band.high;
+    const areas = bands.flatMap((band) => {
+      const at = stepEdges(band.cells), low = band === bands[0] ? y.min : band.low, high = band === bands[bands.length - 1] ? y.max : band.high;
       at[0] = Math.min(at[0], x.min);
       at[at.length - 1] = Math.max(at[at.length - 1], x.max);
-      band.cells.forEach((cell, i) => {
-        if (!areas.has(cell.prediction)) areas.set(cell.prediction, []);
-        areas.get(cell.prediction).push([{ coord: [at[i], low], itemStyle: { color: shade(cell) } }, { coord: [at[i + 1], high] }]);
-      });
-    }
-    return Array.from(areas).map(([name, data]) => ({
+      return band.cells.map((cell, i) => ({ name: cell.prediction, area: [{ coord: [at[i], low], itemStyle: { color: shade(cell) } }, { coord: [at[i + 1], high] }] }));
+    });
+    return Array.from(ricochet.groupBy(areas, (one) => [one.name]), ([name, own]) => ({
       type: "line", name, symbol: "none", color: colours[name], data: [],
-      markArea: { silent: true, z: 0, label: { show: false }, animation: false, itemStyle: { opacity: 1, borderWidth: 0 }, data },
+      markArea: { silent: true, z: 0, label: { show: false }, animation: false, itemStyle: { opacity: 1, borderWidth: 0 }, data: own.map(({ area }) => area) },
     }));
-  }
-  function limits(bands) {
-    return [["predicted", "expected", predictedColour, 4, 0], ["observed", "observed", dark, 1.8, 1]].map(([name, column, colour, width, dash]) => {
-      if (bands.every((band) => band.limits[column] === null)) return null;
-      // A boundary is a line across the band of its value.
-      const data = bands.flatMap((band) => {
-        const limit = band.limits[column];
-        if (limit === null) return [{ value: ["-", "-"] }];
-        const text = name + " limit h = " + ricochet.format.text(limit, 5) + " s";
-        return [band.low, band.value, band.high].map((at) => ({ value: [limit, at], text }));
-      });
-      return { type: "line", name: name + " limit", symbol: "none", z: 4, color: colour, lineStyle: { color: colour, width, type: ricochet.dash(dash) }, data };
-    }).filter(Boolean);
-  }
-  function marks(bands) {
-    const of = (accept) => bands.flatMap((band) => band.cells.filter(accept).map((cell) => ({ value: [cell.step, band.value], text: cellText(cell) })));
-    // Cells that were not marched still tell what is predicted when pointed at.
-    return [["observed stable", "circle", 4, "#5a5a5a", (cell) => cell.behaviour && !cell.unstable], ["observed unstable", "diamond", 8, dark, (cell) => cell.behaviour && cell.unstable],
-      ["prediction", "circle", 8, "rgba(0,0,0,0)", (cell) => !cell.behaviour]].map(([name, symbol, size, colour, accept]) => {
-      const data = of(accept);
-      return data.length ? { type: "scatter", name, symbol, symbolSize: size, z: 5, color: colour, itemStyle: { color: colour }, data } : null;
-    }).filter(Boolean);
   }
 
   ricochet.figure("stability-map", (data) => {

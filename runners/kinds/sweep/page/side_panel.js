@@ -40,6 +40,7 @@
     for (const [name, value] of facts) out.append(element("dt", "", name), element("dd", "", value));
     panel.appendChild(out);
   }
+  // Series that give the columns they draw as `source`.
   function plot(x, y, series, classes) {
     const { shown: number, escape } = ricochet.format, box = element("div", classes);
     const axis = (name, vertical) => ({
@@ -50,8 +51,9 @@
     const chart = echarts.init(box, null, { renderer: "canvas" });
     chart.setOption({
       animation: false, backgroundColor: "#fff", grid: { left: 62, right: 14, top: 10, bottom: 38 },
-      tooltip: { trigger: "item", confine: true, formatter: (p) => escape(x) + " = " + number(p.value[0], 7) + "<br>" + escape(y) + " = " + number(p.value[1], 7) },
-      dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true), series,
+      tooltip: { trigger: "item", confine: true, formatter: (p) => escape(x) + " = " + number(ricochet.cell(p, "x"), 7) + "<br>" + escape(y) + " = " + number(ricochet.cell(p, "y"), 7) },
+      dataZoom: [{ type: "inside", xAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "shift" }], xAxis: axis(x, false), yAxis: axis(y, true),
+      dataset: series.map(({ source }) => ({ source })), series: series.map(({ source, ...one }, datasetIndex) => ({ ...one, datasetIndex })),
     });
     charts.push(chart);
   }
@@ -74,5 +76,5 @@
     return "ricochet point " + quoted(folder) + " " + quoted(id);
   }
 
-  ricochet.sidePanel = { open, close, say, command, list, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown };
+  ricochet.sidePanel = { open, close, say, command, list, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown, charts: () => charts };
 }

@@ -9,73 +9,54 @@
   // `work`: id, title, caption, quantity, column of `work_points` on the vertical axis, spread (whether to draw the repeats), front (a column, or none).
   class WorkFigure {
     constructor(data, work) {
-      const view = data.view, rows = data.rows("work_points");
-      Object.assign(this, { data, view, work, rows });
+      const { view } = data;
+      Object.assign(this, { view, work, table: data.rows("work_points") });
       // What makes another scene of it: neither methods, nor mesh, nor step.
       this.scene = view.varyingWithout(["mass", "contact", "time", "elements", "step"]);
-      this.curves = new ricochet.MethodCurves(view, view.all, "step", this.scene);
-      this.points = new Map(rows.map((row) => [row.case + "\u001f" + row.error, row]));
+      this.curves = new ricochet.MethodCurves(view, view.all, "step", { apart: this.scene });
       this.scenes = view.group(view.all, this.scene);
+      this.found = data.rowsBy("work_points", ["case", "error"]);
     }
-    row(one, error) { return this.points.get(one.id + "\u001f" + error); }
-    // null where the case has no such error, or no such work.
-    point(one, error) {
-      const row = this.row(one, error);
-      return row && row.none === "" && row[this.work.column] > 0 ? row : null;
-    }
+    row(one, error) { return this.found(one.id, error)[0]; }
+    // Why a case has no such error, "" where it has.
+    none(one, error) { const row = this.row(one, error); return row ? row.none : "no such error"; }
+    // Rows of the table for cases that have such an error, and such work.
+    rows(cases, error) { return cases.map((one) => this.row(one, error)).filter((row) => row && row.none === "" && row[this.work.column] > 0); }
 
     figure() {
-      const { work, view, curves } = this, charts = curves.facets.map((facet) => ({ title: facet.title, views: [], notes: view.outcomeNotes(facet.cases, curves.said) })), views = [];
-      for (const error of errors.kinds(this.rows)) {
-        const x = new Interval(), y = new Interval();
-        for (const one of view.all) {
-          const p = this.point(one, error);
-          if (!p) continue;
-          x.include(p.value);
-          y.include(p[work.column]);
-          if (work.spread) y.include(p.low, p.high);
-        }
-        if (x.empty) continue;
-        const gutter = view.all.some((one) => !(this.row(one, error) && this.row(one, error).none === ""));
-        views.push(error);
-        curves.facets.forEach((facet, f) => charts[f].views.push(this.chart(error, facet, ricochet.wholeDecades(x), y, gutter)));
+      const { work, view, curves } = this, kinds = [];
+      for (const error of errors.kinds(this.table)) {
+        const rows = this.rows(view.all, error), columns = work.spread ? [work.column, "low", "high"] : [work.column];
+        const x = new Interval().include(...rows.map((row) => row.value)), y = new Interval().include(...rows.flatMap((row) => columns.map((column) => row[column])));
+        if (!x.empty) kinds.push({ error, x: ricochet.wholeDecades(x), y, gutter: view.all.some((one) => this.none(one, error) !== "") });
       }
-      if (!views.length) return null;
-      const floors = charts.some((chart) => chart.views.some((one) => one.option.series.some((series) => series.name === errors.floorName)));
-      const legend = curves.legend();
-      if (work.front) legend.push({ name: frontName, colour: frontColour, dash: "", symbol: "" });
-      if (floors) legend.push({ name: errors.floorName, colour: errors.floorColour, dash: ricochet.svgDash(2), symbol: "" });
-      return { id: work.id, title: work.title, caption: curves.colours() + work.caption, views, charts, legend };
+      if (!kinds.length) return null;
+      const charts = curves.charts((facet) => kinds.map((kind) => this.chart(kind, facet))), legend = curves.legend();
+      if (work.front) legend.push({ name: frontName, colour: frontColour });
+      if (ricochet.drawnNames(charts).has(errors.floorName)) legend.push(errors.floorEntry);
+      return { id: work.id, title: work.title, caption: curves.colours() + work.caption, views: kinds.map(({ error }) => error), charts, legend };
     }
 
-    chart(error, facet, xRange, yRange, gutter) {
+    chart({ error, x: xRange, y: yRange, gutter }, facet) {
       const { work } = this, quantity = errors.quantity(error), edge = xRange.high, far = gutter ? edge * Math.pow(edge / xRange.low, gutterShare) : edge;
       const x = Object.assign(ricochet.logAxis(quantity, xRange, false), { max: far }), y = ricochet.logAxis(work.quantity, yRange, true);
       // Marks of cases without an error have no place along x: a hidden axis of slots puts them into the gutter.
       const names = Array.from({ length: slots }, (_, k) => "slot " + k);
       const out = ricochet.view(quantity, work.quantity, [x, { type: "category", data: names, show: false }], [y, ricochet.gutterAxis()]), { series } = out.option;
       if (work.front) this.drawFront(error, facet, out);
-      let drawn = 0, floor = 0;
-      const lines = [];
+      let drawn = 0, area = gutter ? gutterArea(edge, far) : undefined;
       for (const curve of facet.curves) {
-        const items = [], bars = [], marks = [];
-        for (const one of curve.cases) {
-          const p = this.point(one, error);
-          if (!p) { if (gutter) marks.push(this.gutterMark(one, error, drawn++)); continue; }
-          floor = Math.max(floor, p.floor);
-          const front = Boolean(work.front && p[work.front]), item = { value: [p.value, p[work.column]], text: this.pointText(one, p, front) };
-          if (p.value <= p.floor) item.itemStyle = { color: errors.grey };
-          if (front) item.symbolSize = 12;
-          items.push(item);
-          if (work.spread && p.high > p.low) bars.push({ value: [p.value, p.low], text: item.text }, { value: [p.value, p.high], text: item.text }, { value: ["-", "-"] });
-        }
-        if (bars.length) series.push({ type: "line", name: curve.name, symbol: "rect", symbolSize: [9, 1.2], color: curve.colour, lineStyle: { color: curve.colour, width: 1, type: "solid" }, data: bars });
-        lines.push(ricochet.curve(curve.name, curve.colour, curve.style, items));
-        series.push(lines[lines.length - 1]);
-        if (marks.length) series.push(Object.assign(ricochet.marks(curve.name, curve.colour, marks), { xAxisIndex: 1, yAxisIndex: 1 }));
+        const rows = this.rows(curve.cases, error).map((row) => ({ ...row, text: this.pointText(row) }));
+        const bars = work.spread ? ricochet.ends(rows.filter((row) => row.high > row.low), "low", "high") : [];
+        if (bars.length) ricochet.draw(out, bars, { x: "value", y: "end" }, { ...ricochet.line(curve.name, curve.colour, 1), symbol: "rect", symbolSize: [9, 1.2], z: 3 });
+        const size = (row) => (work.front && row[work.front] ? 12 : 8);
+        ricochet.draw(out, rows, { x: "value", y: work.column }, { ...errors.curve(curve), symbolSize: size, markArea: area });
+        area = undefined;
+        const without = gutter ? curve.cases.filter((one) => !this.rows([one], error).length) : [];
+        ricochet.drawMarks(out, curve, without.map((one) => this.gutterMark(one, error, drawn++)), { xAxisIndex: 1 });
       }
-      if (floor >= xRange.low) series.push(floorLine(floor, y));
-      if (gutter && lines.length) lines[0].markArea = gutterArea(edge, far);
+      const all = this.rows(facet.cases, error), floor = Math.max(0, ...all.map((row) => row.floor)), text = "errors below " + ricochet.format.text(floor, 3) + " are not told apart";
+      if (floor >= xRange.low) ricochet.draw(out, [y.min, y.max].map((end) => ({ floor, end, text })), { x: "floor", y: "end" }, errors.floorLine);
       this.sayWithout(facet, error, out);
       return out;
     }
@@ -83,46 +64,37 @@
     // Low left corner of what was reached: its line, and the methods on it, said once below the first chart of their scene.
     drawFront(error, facet, out) {
       const { view, work } = this, scene = this.scenes.find((group) => group.cases.includes(facet.cases[0])).cases;
-      const first = this.curves.facets.find((other) => scene.includes(other.cases[0])) === facet;
-      const columns = view.varyingWithout(["step"]).filter((column) => !this.scene.includes(column)), names = (cases) => ricochet.distinct(cases.map((one) => view.label(one, columns))).filter(Boolean);
-      const known = (p) => Math.max(p.value, p.floor), front = scene.filter((one) => { const p = this.point(one, error); return p && p[work.front]; });
-      front.sort((a, b) => known(this.point(a, error)) - known(this.point(b, error)) || this.point(a, error)[work.column] - this.point(b, error)[work.column]);
-      const on = names(front), near = work.spread ? names(scene.filter((one) => { const p = this.point(one, error); return p && p.near_front; })).filter((name) => !on.includes(name)) : [];
+      const first = this.curves.facets.find((other) => scene.includes(other.cases[0])) === facet, columns = view.varyingWithout(["step"]).filter((column) => !this.scene.includes(column));
+      const rows = this.rows(scene, error).map((row) => ({ ...row, known: Math.max(row.value, row.floor), text: "no case is both faster and more precise" }));
+      const front = rows.filter((row) => row[work.front]).sort((a, b) => a.known - b.known || a[work.column] - b[work.column]);
+      const names = (some) => ricochet.distinct(some.map((row) => view.label(view.data.byId.get(row.case), columns))).filter(Boolean);
+      const on = names(front), near = work.spread ? names(rows.filter((row) => row.near_front)).filter((name) => !on.includes(name)) : [];
       if (first && on.length) out.notes.push("On the front: " + on.join("; ") + ".");
       if (first && near.length) out.notes.push("Not told from the front, since the spreads of their times overlap it: " + near.join("; ") + ".");
-      const data = front.map((one) => this.point(one, error)).map((p) => ({ value: [known(p), p[work.column]], text: "no case is both faster and more precise" }));
-      out.option.series.push({ type: "line", name: frontName, symbol: data.length === 1 ? "circle" : "none", symbolSize: 18, z: 1, color: frontColour, lineStyle: { color: frontColour, width: 9, cap: "round" }, data });
+      const look = { type: "line", name: frontName, symbol: front.length === 1 ? "circle" : "none", symbolSize: 18, z: 1, color: frontColour, lineStyle: { width: 9, cap: "round" } };
+      ricochet.draw(out, front, { x: "known", y: work.column }, look);
     }
     gutterMark(one, error, count) {
-      const row = this.row(one, error), done = one.status === "done", column = slots - 1 - Math.floor(count / gutterRows) % gutterColumns;
-      const who = this.view.label(one, this.curves.said), why = done ? (row ? row.none : "no such error") : one.status + ": " + one.reason;
-      return { value: ["slot " + column, 0.95 - 0.085 * (count % gutterRows)], mark: done ? "–" : ricochet.format.mark(one.status), text: who ? who + ": " + why : why };
+      const done = one.status === "done", who = this.view.label(one, this.curves.said), why = done ? this.none(one, error) : one.status + ": " + one.reason;
+      return {
+        at: "slot " + (slots - 1 - Math.floor(count / gutterRows) % gutterColumns), height: ricochet.markAt(count % gutterRows),
+        mark: done ? "–" : ricochet.format.mark(one.status), text: who ? who + ": " + why : why,
+      };
     }
     sayWithout(facet, error, out) {
-      const counts = new Map();
-      for (const one of facet.cases) {
-        const row = this.row(one, error), why = row ? row.none : "no such error";
-        if (one.status === "done" && why) counts.set(why, (counts.get(why) || 0) + 1);
-      }
-      for (const [why, count] of counts) out.notes.push("– " + ricochet.format.count(count, "finished case", "finished cases") + ": " + why);
+      const reasons = facet.cases.filter((one) => one.status === "done").map((one) => this.none(one, error)).filter(Boolean);
+      for (const [why, { length }] of ricochet.groupBy(reasons, (why) => [why])) out.notes.push("– " + ricochet.format.count(length, "finished case", "finished cases") + ": " + why);
     }
-    pointText(one, p, front) {
+    pointText(row) {
       const { text, exact } = ricochet.format;
-      let out = "step " + exact(ricochet.numberOf(one, "step") || 0) + " s: " + text(p.seconds, 3) + " s";
-      if (p.high > p.low) out += " [" + text(p.low, 3) + ", " + text(p.high, 3) + "]";
-      if (p.steps > 0) out += ", " + exact(p.steps) + " steps, " + text(p.microseconds, 3) + " µs each";
-      if (p.value <= p.floor) out += "; at or below the error floor of " + text(p.floor, 3);
-      return out + (front ? "; on the front" : "");
+      let out = "step " + exact(ricochet.numberOf(this.view.data.byId.get(row.case), "step") || 0) + " s: " + text(row.seconds, 3) + " s";
+      if (row.high > row.low) out += " [" + text(row.low, 3) + ", " + text(row.high, 3) + "]";
+      if (row.steps > 0) out += ", " + exact(row.steps) + " steps, " + text(row.microseconds, 3) + " µs each";
+      if (row.value <= row.floor) out += "; at or below the error floor of " + text(row.floor, 3);
+      return out + (this.work.front && row[this.work.front] ? "; on the front" : "");
     }
   }
 
-  function floorLine(floor, y) {
-    const text = "errors below " + ricochet.format.text(floor, 3) + " are not told apart";
-    return {
-      type: "line", name: errors.floorName, symbol: "none", z: 1, color: errors.floorColour, lineStyle: { color: errors.floorColour, width: 1.2, type: ricochet.dash(2) },
-      data: [y.min, y.max].map((end) => ({ value: [floor, end], text })),
-    };
-  }
   const gutterArea = (from, to) => ({
     silent: true, itemStyle: { color: "#000000", opacity: 0.05 }, label: { show: true, position: "insideBottom", color: "#7a7a7a", fontSize: 10 },
     data: [[{ name: "no error", xAxis: from }, { xAxis: to }]],

@@ -29,6 +29,28 @@ size_t count_of(const std::vector<Json>& list) {
   return out;
 }
 
+/// Located changes stand at their values of the parameter.
+void check_changes(const Table& table, const Json& series) {
+  const auto value = find_column(table.columns, "value").value();
+  std::multiset<double> drawn, stored;
+  for (const Json& item : series.at("data")) drawn.insert(item.at("value")[0].get<double>());
+  for (const auto& row : table.rows) stored.insert(row[value].number().value());
+  CHECK(drawn == stored);
+}
+
+/// The portrait of the chosen orbit, its motion in time, and the section point that was clicked.
+void check_orbit(const Json& panel) {
+  REQUIRE(panel.at("charts").size() == 2);
+  const Json &portrait = panel["charts"][0], &in_time = panel["charts"][1];
+  REQUIRE(portrait.size() == 2);
+  CHECK(portrait[0].at("type") == "line");
+  CHECK(std::any_of(portrait[1].at("data").begin(), portrait[1].at("data").end(),
+                    [&](const Json& dot) { return dot.at("value")[0] == panel.at("point")[1]; }));
+  REQUIRE(in_time[0].at("count") == portrait[0].at("count"));
+  for (size_t i = 0; i < portrait[0].at("data").size(); ++i)
+    CHECK(in_time[0]["data"][i]["value"][1] == portrait[0]["data"][i]["value"][0]);
+}
+
 /// One horizontal axis for the diagram, its exponents, regimes and verdicts.
 void check_diagram(const StudyResults& results, const Json& page) {
   const Json& diagram = figure(page, "diagram");
@@ -72,6 +94,7 @@ void check_diagram(const StudyResults& results, const Json& page) {
       if (name.rfind("regime ", 0) == 0) cells += series.at("count").get<size_t>();
       if (name == "not finished") failed += series.at("count").get<size_t>();
       if (name == "located change") changes += series.at("count").get<size_t>();
+      if (name == "located change") check_changes(results.cases[c].tables[1], series);
     }
     CHECK(cells == orbits.size());
     CHECK(failed ==
@@ -96,6 +119,7 @@ void check_diagram(const StudyResults& results, const Json& page) {
   for (const char* what : {"opened", "orbit", "closed"}) CHECK(panel.at(what) == true);
   CHECK(panel.at("facts") > 8);
   CHECK(panel.at("canvases") > 0);
+  check_orbit(panel);
   CHECK_THAT(panel.at("command").get<std::string>(), Catch::Matchers::StartsWith("ricochet point ") &&
                                                          Contains(" thr50 --parameter 0.0") && Contains(" --start "));
 }

@@ -141,6 +141,7 @@ void check_effects(const StudyResults& results, const Json& page) {
       if (series.at("type") == "bar")
         for (const Json& item : series.at("data")) {
           sum += item.at("value")[0].get<double>();
+          CHECK(says(chart.at("views")[0].at("yAxis")[0].at("data"), item.at("value")[1]));
           ++bars;
         }
     CHECK(sum == Approx(100));

@@ -23,20 +23,37 @@
 
   // ---- what the library holds ---------------------------------------------------------------------------------------
   const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
-  const itemOf = (item) => (Array.isArray(item) ? { value: item } : pick(item, ["value", "text", "itemStyle", "symbolSize", "mark"]));
+  // A point as the library has it: where it lies, the words of its row, and where it looks unlike a row with nothing to tell.
+  function itemOf(data, i, plain) {
+    const along = (dimension) => {
+      const { ordinalMeta } = data.getDimensionInfo(dimension), value = data.get(dimension, i);
+      return ordinalMeta ? ordinalMeta.categories[value] : Number.isNaN(value) ? "-" : value;
+    };
+    // Sums of stacked bars are the library's own.
+    const dimensions = ["x", "y"].flatMap((axis) => data.mapDimensionsAll(axis)).filter((dimension) => !data.getDimensionInfo(dimension).isCalculationCoord);
+    const out = { value: dimensions.map(along), ...pick(data.getRawDataItem(i), ["text", "mark"]) };
+    const { fill } = data.getItemVisual(i, "style") || {}, size = data.getItemVisual(i, "symbolSize");
+    if (/^empty/.test(data.getItemVisual(i, "symbol"))) out.itemStyle = { color: "#ffffff" };
+    else if (fill !== (data.getVisual("style") || {}).fill) out.itemStyle = { color: fill };
+    if (String(size) !== String(plain)) out.symbolSize = size;
+    return out;
+  }
+  const ofPlainRow = (setting) => (typeof setting === "function" ? setting({}) : setting);
   function seriesOf(series, model) {
-    const out = pick(series, ["type", "name", "tags", "symbol", "symbolSize", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]);
-    out.count = model.getData().count();   // after the library's own thinning
-    out.given = series.data.length;
-    out.data = series.data.length <= mostItems ? series.data.map(itemOf) : [];
+    const out = pick(series, ["type", "name", "tags", "color", "itemStyle", "lineStyle", "xAxisIndex", "yAxisIndex", "z", "sampling"]), data = model.getData();
+    Object.assign(out, { symbol: ofPlainRow(series.symbol), symbolSize: ofPlainRow(series.symbolSize) });
+    out.count = data.count();   // after the library's own thinning
+    out.given = model.getRawData().count();
+    out.data = out.given <= mostItems ? Array.from({ length: out.count }, (_, i) => itemOf(data, i, out.symbolSize)) : [];
     if (series.endLabel && series.endLabel.show) out.endLabel = series.endLabel.formatter;
     if (series.markLine) out.markLine = series.markLine.data;
     if (series.markArea) out.markArea = series.markArea.data;
     return out;
   }
+  const seriesIn = (chart) => chart.getOption().series.map((series, k) => seriesOf(series, chart.getModel().getSeriesByIndex(k)));
   function sourceOf(source) {
-    const out = Object.assign(pick(source, ["what", "id", "group", "tags", "colour", "grid"]), { count: source.values ? source.values.length / 2 : source.ends.length / 3 });
-    return Object.assign(out, source.what === "points" ? {} : { values: Array.from(source.values || source.ends) });
+    const out = Object.assign(pick(source, ["what", "id", "group", "tags", "colour", "grid"]), { count: source.orbits.length });
+    return Object.assign(out, source.what === "points" ? {} : { values: source.values });
   }
   function readBack(figure, slot) {
     const view = figure.viewOf(slot), out = { coloured: 0, notes: [], series: [], sources: view.sources ? view.sources().map(sourceOf) : [] };
@@ -49,7 +66,7 @@
     out.yAxis = option.yAxis.map(axis);
     out.grid = option.grid.map((grid) => pick(grid, ["left", "right", "top", "height"]));
     out.dataZoom = option.dataZoom.map((zoom) => pick(zoom, ["id", "xAxisIndex", "filterMode"]));
-    option.series.forEach((series, k) => out.series.push(seriesOf(series, slot.chart.getModel().getSeriesByIndex(k))));
+    out.series = seriesIn(slot.chart);
     return out;
   }
   const notesIn = (figure, index, view) => all("figure", figure.section)[index] ? all(":scope > ul.notes li, :scope > div[data-notes]:not([hidden]) li", all("figure", figure.section)[index]).map((li) => li.textContent) : [];
@@ -85,8 +102,8 @@
   function checkPanel(figure, slot, view) {
     const source = view.sources().find((one) => one.what === "points" && one.values.length), middle = source.orbits.length >> 1, parameter = source.values[2 * middle];
     figure.pick(slot, slot.chart.convertToPixel({ xAxisIndex: 0, yAxisIndex: 0 }, [parameter, source.values[2 * middle + 1]]));
-    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown();
-    const out = { opened: Boolean(panel), orbit: Boolean(shown) && shown.id === source.id && ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
+    const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown(), charts = panel ? ricochet.sidePanel.charts() : [];
+    const out = { opened: Boolean(panel), point: [parameter, source.values[2 * middle + 1]], charts: charts.map(seriesIn), orbit: Boolean(shown) && shown.id === source.id && ricochet.data.page.orbits.cases[shown.id].columns.parameter[shown.orbit] === parameter,
       canvases: panel ? all("canvas", panel).length : 0, command: panel ? panel.querySelector("pre").textContent : "", facts: panel ? all("dt", panel).length : 0 };
     ricochet.sidePanel.close();
     return Object.assign(out, { closed: !ricochet.sidePanel.panel() });
@@ -123,9 +140,8 @@
     if (!first) return out;
     out.svg = ricochet.picture(figure, first, "svg").size;
     out.png = ricochet.picture(figure, first, "png").size;
-    const option = figure.option(first), sample = option.series.find((s) => s.data.length);
-    const item = sample && sample.data[0], value = item && (Array.isArray(item) ? item : item.value);
-    out.tooltip = sample ? option.tooltip.formatter([{ value, seriesName: sample.name, marker: "", data: {} }]) : "";
+    const sample = first.chart.getModel().getSeries().find((series) => series.getData().count());
+    out.tooltip = sample ? figure.option(first).tooltip.formatter([{ ...sample.getDataParams(0), marker: "" }]) : "";
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "basins") out.cell = checkCell(figure, first);
     return out;

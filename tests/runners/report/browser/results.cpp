@@ -108,13 +108,20 @@ void check_work(const Ran& ran, const Json& page) {
     marks += items_of(times, v, is_mark).size();
     for (const Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
   }
+  // Each figure has its own column of the table on the vertical axis.
+  const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
+  for (const auto& [id, column] :
+       {std::pair("work-precision", "seconds"), {"steps-precision", "steps"}, {"step-cost", "microseconds"}})
+    for (size_t v = 0; v < figure(page, id).at("views").size(); ++v)
+      CHECK(heights(items_of(figure(page, id), v, is_curve)) == numbers_in(points, column, [&](const auto& row) {
+              return row[at("error")].text() == figure(page, id).at("views")[v] && row[at("none")].text().empty();
+            }));
   // A kind of error that no case has is no view.
   const std::size_t kind = find_column(work.columns, "error").value();
   CHECK(drawn + marks == static_cast<size_t>(std::count_if(work.rows.begin(), work.rows.end(), [&](const auto& row) {
           const Json views = times.at("views");
           return std::find(views.begin(), views.end(), row[kind].text()) != views.end();
         })));
-  const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
   CHECK(on_front == static_cast<size_t>(std::count_if(points.rows.begin(), points.rows.end(),
                                                       [&](const auto& row) { return row[at("on_front")] == true; })));
   CHECK(on_front > 0);
@@ -177,6 +184,11 @@ void check_basins(const Ran& ran, const Json& page) {
     std::set<int> labels(grids.grids[c].cells.begin(), grids.grids[c].cells.end());
     labels.erase(report::BasinGrid::absent);
     CHECK(basins.at("charts")[c].at("views")[0].at("series").size() == labels.size());
+    // Each image spans the frame.
+    const Json& view = basins.at("charts")[c].at("views")[0];
+    const Json &x = view.at("xAxis")[0], &y = view.at("yAxis")[0];
+    for (const Json& series : view.at("series"))
+      CHECK(series.at("data")[0].at("value") == Json({x.at("min"), x.at("max"), y.at("min"), y.at("max")}));
   }
   for (const auto& row : stored_table(ran.results, "basin_differences").rows)
     CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),

@@ -1,6 +1,7 @@
 // Figures of kind `stability`, read back from the browser: what is drawn is what the cases' tables hold.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "runners/run/derive.hpp"
@@ -82,13 +83,39 @@ void check_map(const Json& page) {
              Contains("contact.stiffness 100") && Contains("predicted unstable, observed stable"));
 }
 
+/// Closed contact lets longer steps pass than the open structure: a scene that is both has the smaller limit.
+StudyResults open_first() {
+  StudyResults out = synthetic::stability();
+  out.cases.clear();
+  for (const double stiffness : {1.0, 4.0, 1e4})
+    out.cases.push_back(
+        synthetic::stability_case("full", stiffness, 2e-3, 1e-2 / std::sqrt(stiffness), 1e-2 / std::sqrt(stiffness)));
+  out.expected_cases = 3;
+  return out;
+}
+void check_open_first(const Json& page) {
+  const Json& chart = figure(page, "stability-map-contact-stiffness").at("charts").at(0);
+  const Json& limits = series_in(chart, "predicted limit").at("data");
+  REQUIRE(limits.size() == 9);
+  for (size_t i = 0; i < 9; ++i) CHECK(limits[i]["value"][0].get<double>() == Approx(i < 6 ? 2e-3 : 1e-4));
+  CHECK(limits[4]["value"][1] == 4.0);
+  // Cells between the two limits are predicted unstable by the open structure, and marked where they lie.
+  CHECK(series_in(chart, "observed unstable").at("count") > 0);
+  for (const Json& item : series_in(chart, "observed stable").at("data")) {
+    const double step = item["value"][0], stiffness = item["value"][1];
+    CHECK(step <= 1e-2 / std::sqrt(stiffness));
+    CHECK_THAT(item.at("text").get<std::string>(), StartsWith(step > 2e-3 ? "predicted unstable" : "predicted "));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("figures of stability draw cells and limits", "[report][browser]") {
   if (left_out()) return;
   const StudyResults results = with_tables(synthetic::stability());
-  const Json pages = read_back("stability", {page_of("stability", results)});
+  const Json pages = read_back("stability", {page_of("stability", results), page_of("open_first", with_tables(open_first()))});
   require_works(pages.at("stability"), results.cases.size());
   check_radii(pages.at("stability"));
   check_map(pages.at("stability"));
+  check_open_first(pages.at("open_first"));
 }

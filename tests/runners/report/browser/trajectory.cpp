@@ -1,4 +1,5 @@
 // Figures of trajectories, read back from the browser.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -105,6 +106,26 @@ void check_axes(const Json& page) {
   }
 }
 
+/// A curve ends where its case's samples end.
+void check_samples(const StudyResults& results, const Json& page) {
+  for (const auto& [id, column] :
+       {std::pair("energy", "energy"), {"tip", "tip_displacement"}, {"force", "contact_force"}}) {
+    INFO(id);
+    size_t ends = 0;
+    for (const Json& series :
+         series_of(figure(page, id), 0, [](const Json& s) { return s.at("type") == "line" && s.at("count") > 0; })) {
+      const Json& last = series.at("data").back().at("value");
+      ends += std::any_of(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
+        const Curve& curve = record.curve;
+        const auto at = std::find(curve.names.begin(), curve.names.end(), column) - curve.names.begin();
+        return !curve.columns.empty() && last[0].get<double>() == Approx(curve.columns[0].back()) &&
+               last[1].get<double>() == Approx(curve.columns[at].back());
+      });
+    }
+    CHECK(ends == 30);  // 12 charts of 3 steps, but 6 cases were refused
+  }
+}
+
 void check_zeros(const Json& page) {
   const Json& chart = figure(page, "penetration-step").at("charts")[0];
   REQUIRE(chart.at("views").size() == 1);
@@ -116,6 +137,12 @@ void check_zeros(const Json& page) {
   };
   CHECK(count("consistent · beta 0.25") == 3);
   CHECK(count("singular, velocity P1 · beta 0.25") == 0);
+  const auto deepest = items_of(figure(page, "penetration-step"), 0, [](const Json& series) {
+    return is_curve(series) && series.at("name") == "consistent · beta 0.25";
+  });
+  REQUIRE(!deepest.empty());
+  for (const Json& item : deepest)
+    CHECK(item.at("value")[1].get<double>() == Approx(0.03 * item.at("value")[0].get<double>()));
   CHECK(says(chart.at("views")[0].at("notes"), "Exactly 0"));
 }
 
@@ -157,6 +184,7 @@ TEST_CASE("figures of trajectories draw what the cases hold", "[report][browser]
   require_works(page, results.cases.size());
   check_facets(results, page);
   check_axes(page);
+  check_samples(results, page);
   check_zeros(page);
   check_unfinished(results, page);
 
