@@ -73,5 +73,5 @@
     }
   }
 
-  Object.assign(ricochet, { Cases, roleOf, textOf, numberOf, measureOf });
+  Object.assign(ricochet, { Cases, roles, roleOf, textOf, numberOf, measureOf });
 }

@@ -1,4 +1,5 @@
-// Tables as charts draw them: rows are objects with a table's columns, and a series names the columns that it draws.
+// Tables as charts draw them: rows are objects with a table's columns, and a series names the columns that it draws. Outside of this stay what is drawn
+// by hand, pixel by pixel (the points of a diagram, the images of basins), and lines and areas that mark a chart, which the library takes no rows for.
 {
   // Draws rows: `encode` names the columns along x and y, `series` is how it looks, and a row's `text`, where it has one, is what hovering says of it.
   // `only` {column: value} picks some of the rows, and draws nothing where there are none. Long columns come as a function that returns them by name: it

@@ -2,12 +2,13 @@
 // other than the mass matrix. Colour is the mass matrix; where a study has one mass only, it is the curve.
 {
   const mostCurves = 8;
-  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31"];
+  // The first eight are those of curves; a diagram may overlay more methods.
+  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31", "#44AA99", "#882255", "#333333", "#999933"];
 
   // Of the columns, those that become facets so that no chart has more curves than a reader can tell apart.
   function facetColumns(view, cases, columns, apart) {
     const { roleOf } = ricochet, facets = columns.filter((column) => apart.includes(column));
-    const isMethod = (column) => ["mass", "contact", "time"].includes(roleOf(column));
+    const isMethod = (column) => ricochet.roles.includes(roleOf(column));
     const candidates = columns.filter((column) => !apart.includes(column) && roleOf(column) !== "mass");
     for (const column of candidates.filter((one) => !isMethod(one)).concat(candidates.filter(isMethod))) {
       const most = Math.max(0, ...view.group(cases, facets).map((facet) => view.group(facet.cases, columns).length));
@@ -36,7 +37,7 @@
           if (!names.includes(name)) names.push(name);
           const rank = names.indexOf(name);
           return {
-            name, colour: byMass ? view.colour(first) : colours[rank % colours.length], style: byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
+            name, colour: byMass ? view.colour(first) : colours[rank % mostCurves], style: byMass ? styles.findIndex((style) => style.cases.includes(first)) : rank,
             cases: one.cases.slice().sort((a, b) => (numberOf(a, along) || 0) - (numberOf(b, along) || 0)),
           };
         });
@@ -53,5 +54,5 @@
     colours() { return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix)."; }
   }
 
-  Object.assign(ricochet, { MethodCurves, facetColumns, mostCurves });
+  Object.assign(ricochet, { MethodCurves, mostCurves, methodColours: colours });
 }

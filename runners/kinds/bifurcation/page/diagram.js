@@ -1,8 +1,7 @@
 // The bifurcation diagram: tip displacement on the section against the parameter, coloured by the regime of the orbit, with exponents, regimes and
 // verdicts in panels under it that share its horizontal axis. Views: a chart per case, all cases in one chart, a chart per case and kind of start.
 {
-  const { Interval, diagramPanels } = ricochet;
-  const methodColours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7B4FA0", "#8C6D31", "#44AA99", "#882255", "#333333", "#999933"];
+  const { Interval, diagramPanels, methodColours } = ricochet;
   const mostLanes = 24, mostStartCharts = 48;   // rows of a band of regimes; charts of the view by start
   const tip = ["tip displacement", "m"];
 
@@ -10,9 +9,8 @@
     constructor(data) {
       const orbits = new ricochet.Orbits(data);
       Object.assign(this, { data, view: data.view, orbits, cases: orbits.cases, verdicts: data.rows("verdicts").filter((row) => row.from !== null && row.to !== null) });
-      const all = this.cases.map((one) => orbits.of(one.id)), present = (list) => Array.from(new Set(list)).sort((a, b) => a - b);
-      this.parameters = new Interval();
-      all.forEach((one) => this.parameters.include(...one.columns.parameter));
+      const all = this.cases.map((one) => orbits.of(one.id)), present = (list) => ricochet.distinct(list).sort((a, b) => a - b);
+      this.parameters = all.reduce((sum, one) => sum.include(...one.columns.parameter), new Interval());
       this.kinds = present(all.flatMap((one) => one.kind));
       this.groups = present(all.flatMap((one) => one.group));
       this.twins = all.some((one) => one.columns.exponent_twin);

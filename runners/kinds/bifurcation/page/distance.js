@@ -23,9 +23,7 @@
     spread(id, kind) { return this.spreadOf(id, kind.key).find((row) => row.count > 0); }
     // Of all distances of a kind, and of its null level.
     range(kind) {
-      const out = new Interval();
-      for (const row of this.spreads) if (row.kind === kind.key) out.include(...[row.smallest, row.largest].filter((value) => value !== null));
-      return out;
+      return new Interval().include(...this.spreads.filter((row) => row.kind === kind.key).flatMap((row) => [row.smallest, row.largest]));
     }
     get empty() { return !this.cases.length || kinds.every((kind) => this.range(kind).empty); }
 

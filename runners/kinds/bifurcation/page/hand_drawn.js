@@ -34,23 +34,15 @@
 
   // A picture of one grid: pixels, and where values lie in them.
   class Picture {
-    constructor(frame, ratio, xAxis, first, last) {
-      this.wide = Math.round(frame.width * ratio);
-      this.tall = Math.round(frame.height * ratio);
-      this.ratio = ratio;
+    constructor({ wide, tall }, frame, ratio, xAxis, first, last) {
+      const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: tall }), context = canvas.getContext("2d"), image = context.createImageData(wide, tall);
+      Object.assign(this, { wide, tall, ratio, canvas, context, image, bytes: image.data, words: new Uint32Array(image.data.buffer) });
       this.bend = xAxis.type === "log" ? Math.log : (v) => v;
       this.low = this.bend(xAxis.min);
       this.left = (first[0] - frame.x) * ratio;
       this.perX = (last[0] - first[0]) * ratio / (this.bend(xAxis.max) - this.low);
       this.zero = (first[1] - frame.y) * ratio;
       this.perY = (last[1] - first[1]) * ratio;
-    }
-    begin() {
-      this.canvas = Object.assign(document.createElement("canvas"), { width: this.wide, height: this.tall });
-      this.context = this.canvas.getContext("2d");
-      this.image = this.context.createImageData(this.wide, this.tall);
-      this.bytes = this.image.data;
-      this.words = new Uint32Array(this.bytes.buffer);
     }
     across(x) { return this.left + (this.bend(x) - this.low) * this.perX; }
     up(y) { return this.zero + y * this.perY; }
@@ -93,9 +85,9 @@
   }
 
   const painter = (sources, option, hidden, grid) => (params, api) => {
-    const frame = params.coordSys, x = option.xAxis[grid], picture = new Picture(frame, api.getDevicePixelRatio(), x, api.coord([x.min, 0]), api.coord([x.max, 1]));
-    if (picture.wide < 1 || picture.tall < 1) return null;
-    picture.begin();
+    const frame = params.coordSys, ratio = api.getDevicePixelRatio(), size = { wide: Math.round(frame.width * ratio), tall: Math.round(frame.height * ratio) }, x = option.xAxis[grid];
+    if (size.wide < 1 || size.tall < 1) return null;
+    const picture = new Picture(size, frame, ratio, x, api.coord([x.min, 0]), api.coord([x.max, 1]));
     for (const source of sources.filter((one) => one.grid === grid && visible(one, hidden)).sort((a, b) => a.z - b.z)) picture.draw(source);
     picture.context.putImageData(picture.image, 0, 0);
     return { type: "image", silent: true, style: { image: picture.canvas, x: frame.x, y: frame.y, width: frame.width, height: frame.height } };

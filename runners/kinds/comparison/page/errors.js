@@ -22,7 +22,7 @@
       this.order = data.finder("orders", ["refined", "error"], [refined]);
       this.line = data.finder("order_lines", ["refined", "error"], [refined]);
       this.curves = new ricochet.MethodCurves(view, cases, refined, { ignored: byStep ? [] : ["step"] });
-      this.xRange = new Interval().include(...cases.map((one) => numberOf(one, refined)).filter((value) => value !== null));
+      this.xRange = new Interval().include(...cases.map((one) => numberOf(one, refined)));
       const most = Math.max(0, ...this.curves.facets.map((facet) => {
         const stacks = ricochet.groupBy(facet.cases.filter((one) => one.status !== "done"), (one) => [this.place(one)]);
         return Math.max(0, ...Array.from(stacks.values(), (stack) => stack.length));

@@ -15,8 +15,8 @@
   // Darker the faster it grows: 1e-6 per step pale, tenfold per step full.
   const shade = (cell) => (cell.prediction === "predicted unstable" ? ricochet.lighten(unstable, 0.75 - 0.6 * Math.min(Math.max((Math.log10(cell.worst - 1) + 6) / 7, 0), 1)) : colours[cell.prediction]);
   function cellText(cell) {
-    const radius = cell.worst === null ? "" : ", radius " + ricochet.format.text(cell.worst, 6), seen = cell.behaviour ? ", observed " + cell.behaviour : "";
-    return [cell.prediction + radius + seen, cell.marginal, cell.reason].filter(Boolean).join("; ");
+    const radius = cell.worst === null ? "" : ", radius " + ricochet.format.text(cell.worst, 6), behaviour = cell.behaviour ? ", observed " + cell.behaviour : "";
+    return [cell.prediction + radius + behaviour, cell.marginal, cell.reason].filter(Boolean).join("; ");
   }
   function disagreementText(row) {
     const { text } = ricochet.format, more = row.steps > 1 ? " to " + text(row.to, 3) + " s (" + row.steps + " steps)" : "";
@@ -39,7 +39,7 @@
   class StabilityMap {
     constructor(data, stability, column) {
       Object.assign(this, { view: data.view, stability, column });
-      this.logarithmic = ricochet.logarithmicAxis(new Interval().include(...data.view.all.map((one) => numberOf(one, column)).filter((value) => value !== null)));
+      this.logarithmic = ricochet.logarithmicAxis(new Interval().include(...data.view.all.map((one) => numberOf(one, column))));
     }
     figure() {
       const { column } = this, charts = [];
@@ -60,12 +60,10 @@
       const { view, column, stability } = this, cases = stability.cases(contact).filter((one) => numberOf(one, column) !== null);
       const others = (contact === "closed" ? view.varying : view.varyingWithout(["contact"])).filter((name) => name !== column);
       return view.group(cases, others).map((facet) => {
-        const byValue = new Map();
-        for (const one of facet.cases) if (!byValue.has(numberOf(one, column))) byValue.set(numberOf(one, column), one);
-        if (byValue.size < 2) return null;
-        const values = Array.from(byValue.keys()).sort((a, b) => a - b), at = ricochet.cellEdges(values, this.logarithmic);
+        const values = ricochet.distinct(facet.cases.map((one) => numberOf(one, column))).sort((a, b) => a - b), at = ricochet.cellEdges(values, this.logarithmic);
+        if (values.length < 2) return null;
         const bands = values.map((value, k) => {
-          const one = byValue.get(value);
+          const one = facet.cases.find((other) => numberOf(other, column) === value);
           return { value, low: at[k], high: at[k + 1], one, cells: stability.cells(one, contact), limits: stability.limits(one, contact) };
         });
         return { title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
