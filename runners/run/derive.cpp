@@ -3,6 +3,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/run/effects_table.hpp"
+#include "runners/run/reasons_table.hpp"
 
 namespace ricochet {
 
@@ -13,7 +14,8 @@ void derive_tables(StudyResults& results) {
     kind->tables(results);
   else
     collect_tables(results);
-  if (Table effects = effects_table(results); !effects.rows.empty()) results.derived.push_back(std::move(effects));
+  for (Table table : {effects_table(results), reasons_table(results)})
+    if (!table.rows.empty()) results.derived.push_back(std::move(table));
   for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
 }
 
