@@ -84,6 +84,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   put("kernel_energy", problem.kernel_energy);
   put("deepest_penetration", contact.deepest_penetration);
   put("impacts", static_cast<double>(contact.impacts));
+  put("contact_instants", static_cast<double>(contact.contact_steps));
   put("active_set_changes", static_cast<double>(contact.active_set_changes));
   put("impulse", contact.impulse);
   put("complementarity_residual", contact.residual);

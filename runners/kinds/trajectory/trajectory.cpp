@@ -56,6 +56,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        Of::motion, true},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
       {"impacts", "1", "Number of times that contact began: no active point in one sub-step, some in the next."},
+      {"contact_instants", "1", "Number of instants of contact (sub-steps) at which some point was closed.", Of::motion,
+       true},
       {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed.", Of::motion,
        true},
       {"impulse", "N s",
