@@ -4,7 +4,8 @@ namespace ricochet::report {
 
 KindPage trajectory_page() {
   KindPage page;
-  page.scripts = scripts({"along_axis", "over_time", "final_energy", "energy", "tip", "force", "penetration"});
+  page.scripts =
+      scripts({"along_axis", "over_time", "final_energy", "energy", "tip", "force", "penetration", "impacts"});
   page.tables = {"energy_changes"};
   page.curves = {"energy", "tip_displacement", "contact_force"};
   page.derived = {energy_changes};
