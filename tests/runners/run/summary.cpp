@@ -59,6 +59,7 @@ TEST_CASE("summary: a study without axes names its case") {
 
 TEST_CASE("summary: a stability case whose march contradicts its spectrum is said, counted and no success") {
   StudyResults results;
+  results.kind = "stability";
   CaseRecord record = ended("done", "");
   record.measures = {{"largest_radius", 1.0}};
   record.tables = {
