@@ -29,7 +29,7 @@ std::string to_bytes(const T& value, const std::string& mark) {
 /// whole, before anything in them is believed: a length that is wrong asks for no memory.
 template <class T>
 T from_bytes(const std::string& bytes, const std::string& mark) {
-  if (!bytes.starts_with(mark)) throw std::runtime_error("what was stored is not, or not in this version, " + mark);
+  if (!bytes.starts_with(mark)) throw std::runtime_error("what was stored is of another version than " + mark);
   constexpr std::size_t hash_length = 32;
   const std::size_t begin = std::min(bytes.size(), mark.size() + hash_length);
   const std::string content = bytes.substr(begin);

@@ -103,7 +103,7 @@ TEST_CASE("bytes: a length that promises more than there is asks for no memory")
 
 TEST_CASE("bytes: another version is named, whatever follows it") {
   for (const std::string other : {"", "things", "things 8", "thongs 7"})
-    CHECK_THROWS_WITH(read_stored(ricochet::to_bytes(full(), other)), Contains("not in this version, things 7"));
+    CHECK_THROWS_WITH(read_stored(ricochet::to_bytes(full(), other)), Contains("of another version than things 7"));
 }
 
 TEST_CASE("bytes: what a shelf does not keep whole is computed again") {
