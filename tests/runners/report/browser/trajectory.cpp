@@ -49,7 +49,7 @@ std::vector<std::pair<double, double>> some_numbers() {
 
 void check_facets(const StudyResults& results, const Json& page) {
   const CaseView view(results);
-  for (const char* id : {"final-energy-step", "energy", "tip", "force", "penetration-step"})
+  for (const char* id : {"final-energy-step", "energy", "tip", "force", "penetration-step", "impacts-step"})
     CHECK(has_figure(page, id));
   const Json& energy = figure(page, "energy");
   CHECK(energy.at("charts").size() == 12);  // 4 masses × 3 time methods
@@ -144,6 +144,10 @@ void check_zeros(const Json& page) {
   for (const Json& item : deepest)
     CHECK(item.at("value")[1].get<double>() == Approx(0.03 * item.at("value")[0].get<double>()));
   CHECK(says(chart.at("views")[0].at("notes"), "Exactly 0"));
+  // Every synthetic case that marched has eight impacts.
+  const auto impacts = items_of(figure(page, "impacts-step"), 0, is_curve);
+  CHECK(impacts.size() > 20);
+  for (const Json& item : impacts) CHECK(item.at("value")[1] == 8);
 }
 
 void check_unfinished(const StudyResults& results, const Json& page) {
