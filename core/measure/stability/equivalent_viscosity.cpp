@@ -132,7 +132,7 @@ std::optional<double> decay(const StepPlan& plan, double square, double h) {
   if (!A) return std::nullopt;
   const MatrixXd like_units = in_metres(amplification(plan, 1, 0, square), plan, h, 1);
   if (!like_units.allFinite()) return std::nullopt;
-  const Eigen::VectorXcd roots = like_units.eigenvalues();
+  const Eigen::VectorXcd roots = general_modes(like_units, EigenVectors::none).values;
   const std::complex<double> exact = std::polar(1.0, std::sqrt(square) * h);
   const auto* nearest = std::min_element(roots.data(), roots.data() + roots.size(), [&](const auto& a, const auto& b) {
     return std::abs(a - exact) < std::abs(b - exact);

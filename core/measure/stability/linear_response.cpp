@@ -1,7 +1,7 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
@@ -56,9 +56,9 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
       A = next;
       b = added;
     }
-    const Eigen::FullPivLU<Eigen::MatrixXcd> solve(turn * Eigen::MatrixXcd::Identity(slots, slots) - A);
-    if (!solve.isInvertible()) return std::nullopt;
-    position[mode] = solve.solve(b)[0];
+    const auto answer = regular_solve(turn * Eigen::MatrixXcd::Identity(slots, slots) - A, b);
+    if (!answer) return std::nullopt;
+    position[mode] = (*answer)[0];
   }
   LinearResponse response;
   const auto read = [&](const RowMatrix& rows, int row) {

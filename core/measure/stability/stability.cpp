@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/root_collector.hpp>
 #include <ricochet/measure/stability/stability.hpp>
@@ -167,8 +166,7 @@ SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, cons
   const Index kernel = n - modes.regular;
   Index felt = n;
   if (kernel > 0) {
-    const Eigen::HouseholderQR<MatrixXd> qr(rows.rightCols(kernel).transpose());
-    const MatrixXd turn = qr.householderQ();
+    const MatrixXd turn = householder_basis(rows.rightCols(kernel).transpose());
     rows.rightCols(kernel) = (rows.rightCols(kernel) * turn).eval();
     felt = modes.regular + std::min(points, kernel);
   }

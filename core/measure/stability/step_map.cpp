@@ -1,6 +1,6 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
@@ -52,7 +52,7 @@ class StageRows {
     lu_.compute(weighted(problem_, stage_.matrix));
     for (std::size_t j = 0; j < stage_.history.size(); ++j)
       unknown_.middleCols(static_cast<Index>(j) * n_, n_) = weighted(problem_, stage_.history[j]);
-    unknown_ = lu_.solve(unknown_).eval();
+    unknown_ = lu_.solve(unknown_);
     if (!unknown_.allFinite()) return Refusal{"the matrix of the step is singular"};
     return std::nullopt;
   }
@@ -71,11 +71,11 @@ class StageRows {
       const double stiffness = measure.before ? 0.5 * law.stiffness : law.stiffness;
       if (measure.before) free += H * combine(*measure.before);
       const MatrixXd A = MatrixXd::Identity(points, points) + stiffness * z * weight * delassus;
-      effort_ = -stiffness * A.partialPivLu().solve(free);
+      effort_ = -stiffness * DenseLu(A).solve(free);
     } else {
       if (z == 0) return Refusal{"the scheme's impact measure does not see the effort of its own step"};
       // Points that depend on others share the effort among them: the least one that does it.
-      effort_ = -(z * weight * delassus).completeOrthogonalDecomposition().solve(free);
+      effort_ = -least_norm_solve(z * weight * delassus, free);
     }
     unknown_ += weight * response * effort_;
     if (!unknown_.allFinite()) return Refusal{"the closed contact has no finite step"};
@@ -110,7 +110,7 @@ class StageRows {
   const StepPlan& plan_;
   const Stage& stage_;
   Index n_, total_;
-  Eigen::PartialPivLU<MatrixXd> lu_;
+  DenseLu lu_;
   MatrixXd unknown_, effort_;
 };
 

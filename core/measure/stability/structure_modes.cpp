@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/structure_modes.hpp>
@@ -21,8 +21,7 @@ std::string StructureModes::name(int i) const {
 
 StructureModes::StructureModes(const MatrixXd& M, const MatrixXd& K, int kernel, bool free) {
   const Index n = M.rows();
-  const Eigen::LLT<MatrixXd> regular_mass(M);
-  if (kernel == 0 && regular_mass.info() == Eigen::Success) {
+  if (kernel == 0 && is_definite(M)) {
     // The fast modes, which limit steps, are the accurate ones here.
     const SymmetricModes eigen = symmetric_modes(K, M);
     shapes = eigen.vectors;
@@ -57,12 +56,12 @@ StructureModes held_modes(const SemiDiscrete& problem, const std::vector<int>& p
   MatrixXd rows(static_cast<Index>(points.size()), n);
   for (Index i = 0; i < rows.rows(); ++i)
     rows.row(i) = Eigen::RowVectorXd(problem.contact.row(points[static_cast<std::size_t>(i)]));
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
-  const MatrixXd basis = MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
+  const PivotedBasis pivoted = pivoted_basis(rows.transpose());
+  const MatrixXd basis = pivoted.basis.rightCols(n - pivoted.rank);
   int kernel = 0;
   if (problem.inertia.kernel_dimension > 0) {
     const MatrixXd kernel_rows = rows * mass_kernel(problem.inertia);
-    kernel = static_cast<int>(kernel_rows.cols() - kernel_rows.colPivHouseholderQr().rank());
+    kernel = static_cast<int>(kernel_rows.cols() - pivoted_basis(kernel_rows).rank);
   }
   const MatrixXd M = basis.transpose() * dense_mass(problem.inertia) * basis;
   const MatrixXd K = basis.transpose() * MatrixXd(problem.stiffness) * basis;

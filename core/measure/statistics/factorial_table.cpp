@@ -1,7 +1,7 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/measure/statistics/factorial_table.hpp>
 
 namespace ricochet {
@@ -126,9 +126,9 @@ bool FactorialTable::fit_additive(const std::vector<double>& values, const std::
     }
   }
   // Whole numbers: a singular matrix is so to round-off, a regular one far from it.
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
-  if (lu.rank() < unknowns) return false;
-  const Eigen::VectorXd solution = lu.solve(right);
+  const auto solved = regular_solve(normal, right);
+  if (!solved) return false;
+  const Eigen::VectorXd& solution = *solved;
   fitted.assign(size_, mean);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     row_of(cell);

@@ -1,9 +1,8 @@
 #include "contact_modes.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 
 #include "pencil.hpp"
@@ -106,7 +105,7 @@ class Builder {
 
     const GeneralModes eigen = general_modes(B);
     const Eigen::MatrixXcd& vectors = eigen.vectors;
-    const Eigen::MatrixXcd back = Eigen::PartialPivLU<Eigen::MatrixXcd>(vectors).inverse();
+    const Eigen::MatrixXcd back = inverse(vectors);
     const Eigen::MatrixXcd displacement = shapes * vectors.topRows(r + k);
     const Eigen::MatrixXd placed =
         (Eigen::MatrixXd(r + k, at_.dofs()) << unit.asDiagonal() * (modes.shapes.transpose() * at_.mass),
@@ -156,8 +155,9 @@ class Builder {
     const auto S = at_.scale.asDiagonal();
     if (rows_.rows() == 0) return Eigen::MatrixXd(at_.dofs(), 0);
     const Eigen::MatrixXd K = S * (at_.stiffness + at_.shift * at_.mass) * S, across = (rows_ * S).transpose();
-    const Eigen::MatrixXd bent = K.llt().solve(across);
-    return S * (bent * (across.transpose() * bent).llt().solve(Eigen::MatrixXd::Identity(rows_.rows(), rows_.rows())));
+    const Eigen::MatrixXd bent = definite_solve(K, across);
+    return S *
+           (bent * definite_solve(across.transpose() * bent, Eigen::MatrixXd::Identity(rows_.rows(), rows_.rows())));
   }
 
   /// M D'' + C D' + K D

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 
 #include "pencil.hpp"
@@ -23,7 +23,7 @@ ContactPoints::ContactPoints(const LinearStructure& structure, const ContactMode
   const auto S = structure.scale.asDiagonal();
   const Eigen::MatrixXd K = S * (structure.stiffness + structure.shift * structure.mass) * S,
                         across = (structure.contact * S).transpose();
-  const Eigen::MatrixXd soft = across.transpose() * K.llt().solve(across);
+  const Eigen::MatrixXd soft = across.transpose() * definite_solve(K, across);
   const Eigen::VectorXd unit = soft.diagonal().cwiseSqrt().cwiseInverse();
   const auto smallest = [&](const Eigen::MatrixXd& W) {
     return symmetric_modes(unit.asDiagonal() * W * unit.asDiagonal(), EigenVectors::none).values[0];

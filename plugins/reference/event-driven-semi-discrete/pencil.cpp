@@ -1,7 +1,6 @@
 #include "pencil.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 
 namespace ricochet::reference {
@@ -16,7 +15,7 @@ Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness
   Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(n, n);
   if (a > 0) {
     const Eigen::MatrixXd across = (closed * S).transpose();
-    kept = Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(across).householderQ()).rightCols(n - a);
+    kept = householder_basis(across).rightCols(n - a);
   }
   Pencil result;
   result.shapes.resize(n, 0);
@@ -24,19 +23,17 @@ Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness
   if (kept.cols() == 0) return result;
   // The kernel is judged where springs have no part in it.
   const Eigen::VectorXd ratio = scale.cwiseQuotient(structure.scale);
-  const Eigen::MatrixXd plain = Eigen::HouseholderQR<Eigen::MatrixXd>(ratio.asDiagonal() * kept).householderQ() *
-                                Eigen::MatrixXd::Identity(n, kept.cols());
+  const Eigen::MatrixXd plain = householder_columns(ratio.asDiagonal() * kept);
   const auto P = structure.scale.asDiagonal();
   const Eigen::MatrixXd light = P * structure.mass * P;
   const SymmetricModes inertia = symmetric_modes(plain.transpose() * light * plain);
   const Eigen::Index k = (inertia.values.array() <= 1e-11 * light.diagonal().maxCoeff()).count();
   if (k > 0) {
     const Eigen::MatrixXd Z = ratio.cwiseInverse().asDiagonal() * (plain * inertia.vectors.leftCols(k));
-    const Eigen::LLT<Eigen::MatrixXd> normal(Z.transpose() * K * Z);
-    const Eigen::MatrixXd massless = normal.matrixL().solve(Z.transpose()).transpose();
+    const Eigen::MatrixXd massless = cholesky_forward(Z.transpose() * K * Z, Z.transpose()).transpose();
     result.massless = S * massless;
     const Eigen::MatrixXd pulled = kept.transpose() * (K * massless);
-    const Eigen::MatrixXd turned = Eigen::HouseholderQR<Eigen::MatrixXd>(pulled).householderQ();
+    const Eigen::MatrixXd turned = householder_basis(pulled);
     kept = (kept * turned.rightCols(kept.cols() - k)).eval();
   }
   if (kept.cols() == 0) return result;
