@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <memory>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/scene/semi_discrete.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <ricochet/engine/marcher.hpp>
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
 #include <ricochet/contract/contact_law.hpp>
 #include <vector>

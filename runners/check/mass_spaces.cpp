@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <ricochet/contract/plugin_call.hpp>
 #include <ricochet/scene/assembly.hpp>
 

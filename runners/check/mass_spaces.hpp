@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <ricochet/contract/mass_strategy.hpp>
 
 #include "runners/check/parameter_values.hpp"

@@ -1,5 +1,6 @@
 // What every plugin must satisfy, ours and those of RICOCHET_PLUGIN_PATH: it is enough to be registered. Each plugin
 // runs with its defaults, and with the value of this table where a parameter has none.
+#include <Eigen/Eigenvalues>
 #include <ricochet/scene/assembly.hpp>
 
 #include "tests/amplification_roots.hpp"

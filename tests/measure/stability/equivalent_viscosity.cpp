@@ -1,4 +1,5 @@
 // What schemes dissipate by themselves, against their closed forms and against marching.
+#include <Eigen/Eigenvalues>
 #include <numbers>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 

@@ -1,4 +1,5 @@
 // What marching shows, against what the plan predicts, and against what theory says of energy at impacts.
+#include <Eigen/Cholesky>
 #include <numbers>
 #include <ricochet/measure/stability/observed_stability.hpp>
 

@@ -1,6 +1,7 @@
 // What the plan says of its step before anything runs, against closed forms, against marching, and against itself.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/structure_modes.hpp>

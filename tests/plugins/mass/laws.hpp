@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "tests/scene/working_set.hpp"
 

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include "tests/plugins/mass/laws.hpp"

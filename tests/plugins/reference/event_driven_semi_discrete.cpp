@@ -1,4 +1,5 @@
 // The semi-discrete motion, exact in time: against closed forms, conservation laws and the schemes that march it.
+#include <Eigen/Cholesky>
 #include <numeric>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>

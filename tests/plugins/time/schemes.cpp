@@ -1,4 +1,6 @@
 // What theory says of the schemes, each a law.
+#include <Eigen/Eigenvalues>
+
 #include "tests/marching.hpp"
 
 using namespace ricochet;
