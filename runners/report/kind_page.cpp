@@ -4,6 +4,7 @@
 
 #include "runners/report/assets.hpp"
 #include "runners/report/effects.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 

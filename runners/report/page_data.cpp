@@ -6,6 +6,7 @@
 #include "runners/report/curve_data.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {
