@@ -59,12 +59,6 @@ std::string source_of_spread(const MeasureShare& share, const std::string& first
   return out;
 }
 
-/// A name of a column as words.
-std::string in_words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 /// A share in per cent: two digits where it is small, no decimals where it is not.
 std::string effects_percent(double share) {
   return share < 0.095 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);

@@ -128,12 +128,21 @@ std::string share_text(double share) {
   return number_text(100 * share, 3) + " %";
 }
 
+std::string share_text(double share, std::optional<double> low, std::optional<double> high) {
+  return share_text(share) + (low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : "");
+}
+
 std::string status_mark(const std::string& status) {
   if (status == "done") return "✓";
   if (status == "refused") return "⊘";
   if (status == "diverged") return "✕";
   if (status == "failed") return "!";
   return "?";
+}
+
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::string count_text(size_t count, std::string_view singular, std::string_view plural) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,9 +28,14 @@ std::string percent_text(double ratio);
 
 /// A share in per cent to three significant digits, however small: 0.05 → "5 %", 2.4e-9 → "2.4e-7 %".
 std::string share_text(double share);
+/// The same with its interval, where there is one: "65 % (60 % to 71 %)".
+std::string share_text(double share, std::optional<double> low, std::optional<double> high);
 
 /// Legend symbol of a status: ✓ done, ⊘ refused, ✕ diverged, ! failed; a question mark for an unknown one.
 std::string status_mark(const std::string& status);
+
+/// The name of a column as words: "energy_end" → "energy end".
+std::string in_words(std::string name);
 
 /// "1 case", "3 cases".
 std::string count_text(size_t count, std::string_view singular, std::string_view plural);

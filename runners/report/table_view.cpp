@@ -11,17 +11,12 @@ namespace {
 
 constexpr size_t most_view_rows = 60;  // a page of a thousand cases must stay one that can be sent
 
-std::string underscores_out(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 Fill view_column(const Table& table, size_t place) {
   const Column& column = table.columns[place];
   const bool numbers = std::any_of(table.rows.begin(), table.rows.end(),
                                    [&](const Row& row) { return place < row.size() && row[place].number(); });
   Fill out;
-  out.set("header", with_unit({underscores_out(column.name), column.unit}));
+  out.set("header", with_unit({in_words(column.name), column.unit}));
   out.set("tooltip", column.text);
   out.set("classes", numbers ? "number" : "text");
   return out;
@@ -60,7 +55,7 @@ std::string derived_tables_html(const StudyResults& results) {
       rows << row;
     }
     one.set("name", table.name);
-    one.set("title", underscores_out(table.name));
+    one.set("title", in_words(table.name));
     one.set("size", count_text(table.rows.size(), "row", "rows"));
     one.set("columns", columns);
     one.set("rows", rows);

@@ -7,14 +7,10 @@
 
 #include "runners/report/html.hpp"
 #include "runners/report/template.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
 namespace {
-
-std::string words_of(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 /// Measures that at least one case has, in the declared order, others after them.
 std::vector<std::string> measures_present(const CaseView& view) {
@@ -68,7 +64,7 @@ Fill case_columns(const CaseView& view, const std::vector<std::string>& measures
   out << header_fill("run (s)", "Time of marching", "number");
   for (const std::string& name : measures) {
     const MeasureInfo* info = measure_info(name);
-    out << header_fill(with_unit({words_of(name), info ? info->unit : ""}), info ? info->text : "",
+    out << header_fill(with_unit({in_words(name), info ? info->unit : ""}), info ? info->text : "",
                        info && info->aside ? "number extra" : "number");
   }
   return out;
@@ -122,11 +118,7 @@ template <class Entry, class List>
 std::vector<std::pair<Entry, Cases>> grouped(const CaseView& view, List list) {
   std::vector<std::pair<Entry, Cases>> out;
   for (const CaseRecord* record : view.all())
-    for (const Entry& entry : list(*record)) {
-      auto found = std::find_if(out.begin(), out.end(), [&](const auto& g) { return g.first == entry; });
-      if (found == out.end()) found = out.insert(out.end(), {entry, {}});
-      found->second.push_back(record);
-    }
+    for (const Entry& entry : list(*record)) in_order_met(out, entry).push_back(record);
   return out;
 }
 
@@ -160,7 +152,7 @@ std::string case_table_html(const CaseView& view) {
   for (const std::string& name : measures)
     if (const MeasureInfo* info = measure_info(name)) {
       Fill entry;
-      entry.set("name", with_unit({words_of(name), info->unit}));
+      entry.set("name", with_unit({in_words(name), info->unit}));
       entry.set("text", info->text);
       entries << entry;
       any = true;

@@ -1,8 +1,7 @@
 #include "runners/run/reasons_table.hpp"
 
-#include <algorithm>
-
 #include "runners/store/record_values.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
 
@@ -17,9 +16,7 @@ Table reasons_table(const StudyResults& results) {
   std::vector<std::pair<Row, Cases>> groups;
   for (const CaseRecord& record : results.cases) {
     if (record.partial || record.status == "done") continue;
-    const Row said = {record.status, record.reason};
-    const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& one) { return one.first == said; });
-    (known == groups.end() ? groups.emplace_back(said, Cases()) : *known).second.push_back(&record);
+    in_order_met(groups, Row{record.status, record.reason}).push_back(&record);
   }
   for (const auto& [said, cases] : groups) out.rows.push_back({said[0], said[1], cases.size(), cases.front()->id});
   return out;

@@ -55,9 +55,12 @@ std::optional<StepRange> step_range(const CaseRecord& record, bool closed) {
   const std::optional<StepRange> open = out && closed ? own_range(record, false) : std::nullopt;
   if (!open) return out;
   if (open->predicted) out->expected = std::min(*open->predicted, out->predicted.value_or(*open->predicted));
-  for (StepCell& one : out->cells)
-    for (const StepCell& apart : open->cells)
-      if (apart.step == one.step && apart.radius && one.radius) one.worst = std::max(*one.radius, *apart.radius);
+  for (StepCell& one : out->cells) {
+    const auto apart = std::lower_bound(open->cells.begin(), open->cells.end(), one.step,
+                                        [](const StepCell& cell, double step) { return cell.step < step; });
+    if (apart != open->cells.end() && apart->step == one.step && apart->radius && one.radius)
+      one.worst = std::max(*one.radius, *apart->radius);
+  }
   return out;
 }
 

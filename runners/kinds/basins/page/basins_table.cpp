@@ -37,10 +37,9 @@ std::string fractions_html(const CaseView& view) {
         table.absent();
         continue;
       }
-      const auto low = rows.number(found->second, "low"), high = rows.number(found->second, "high");
-      table.number(
-          share_text(*share) + (low && high ? fmt::format(" ({} to {})", share_text(*low), share_text(*high)) : ""),
-          number_text(rows.number(found->second, "cells").value_or(0)) + " cells");
+      const size_t row = found->second;
+      table.number(share_text(*share, rows.number(row, "low"), rows.number(row, "high")),
+                   number_text(rows.number(row, "cells").value_or(0)) + " cells");
     }
   }
   return table.html();

@@ -18,15 +18,6 @@ std::string interval_text(const AxisRows& rows, size_t row, const char* low, con
   return a && b ? number_text(*a, digits) + " to " + number_text(*b, digits) : "";
 }
 
-std::string percent_range(const AxisRows& rows, size_t row) {
-  const auto value = rows.number(row, "fraction");
-  if (!value) return "";
-  std::string out = share_text(*value);
-  const auto low = rows.number(row, "fraction_low"), high = rows.number(row, "fraction_high");
-  if (low && high) out += fmt::format(" ({} to {})", share_text(*low), share_text(*high));
-  return out;
-}
-
 /// The table under its title; "" without rows.
 std::string titled(const char* title, const HtmlTable& table) {
   return table.size() == 0 ? "" : fmt::format("<h3>{}</h3>\n", title) + table.html();
@@ -39,14 +30,15 @@ std::string attractors_html(const StudyResults& results) {
       "with its 95 % interval. Orbits that are each other's image under x → −x, t → t + T/2 count as one.",
       {{"attractor"}, {"class"}, {"symmetric"}, {"label"}, {"cases"}, {"from, to"}, {"fraction of starts"}, {"where"}});
   for (size_t row = 0; row < rows.size(); ++row) {
-    const auto period = rows.number(row, "period");
+    const auto period = rows.number(row, "period"), share = rows.number(row, "fraction");
     const std::string regime = rows.text(row, "class"), sentence = rows.text(row, "sentence");
     const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
     const std::string symmetric = rows.text(row, "symmetric").empty() ? "" : rows.flag(row, "symmetric") ? "yes" : "no";
     table.row(rows.text(row, "attractor"));
     table.cell(swatch(regime_groups[group].colour) + escape(regime_text(regime, period)));
     table.text(symmetric).text(rows.text(row, "label")).number(rows.number(row, "cases"));
-    table.text(interval_text(rows, row, "from", "to", 6)).text(percent_range(rows, row));
+    table.text(interval_text(rows, row, "from", "to", 6))
+        .text(share ? share_text(*share, rows.number(row, "fraction_low"), rows.number(row, "fraction_high")) : "");
     table.text(sentence.empty() ? rows.text(row, "presence") : sentence, "reason");
   }
   return titled("Attractors", table);

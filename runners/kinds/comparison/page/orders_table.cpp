@@ -77,8 +77,8 @@ std::string matrix(const AxisRows& rows, const std::vector<Method>& all) {
   const std::vector<std::string> errors = rows.values("error");
   HtmlTable table(
       "Order p of e ≈ C r<sup>p</sup>, r the step or the length of an element, fitted over the range that behaves so. "
-      "✓ "
-      "confirms the declared order, ✕ refutes it, ? does not decide; the tooltip has the 95 % interval and the reason.",
+      "✓ confirms the declared order, ✕ refutes it, ? does not decide; the tooltip has the 95 % interval and the "
+      "reason.",
       {{"method"}, {"refined"}, {"declared", true}});
   for (const std::string& error : errors) table.add({error, true});
   for (const Method& method : all) {

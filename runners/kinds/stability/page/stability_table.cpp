@@ -53,8 +53,7 @@ std::string stability_html(const CaseView& view) {
   const TableReader rows(*limits);
   HtmlTable table(
       "Step limits in seconds. Open: the structure alone. Closed: predicted with points held on both sides, the worst "
-      "of "
-      "several sets; observed in the scene itself, which is open as well: the ratio is to the smaller of both "
+      "of several sets; observed in the scene itself, which is open as well: the ratio is to the smaller of both "
       "predictions.",
       {{"method"},
        {"contact"},

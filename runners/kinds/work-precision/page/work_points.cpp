@@ -45,7 +45,7 @@ Table work_points(const CaseView& view) {
   const WorkPrecision work(view);
   if (work.empty()) return out;
   for (const std::string& error : work.errors())
-    for (const CaseGroup& scene : view.group(view.all(), work.scene_columns())) {
+    for (const CaseGroup& scene : view.group(view.all(), scene_columns(view))) {
       SceneFronts fronts;
       fronts.points = work.points(scene.cases, error);
       fronts.of_time = pareto_front(fronts.points, seconds_at);

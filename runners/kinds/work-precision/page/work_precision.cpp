@@ -6,9 +6,10 @@
 namespace ricochet::report {
 
 WorkPrecision::WorkPrecision(const CaseView& view)
-    : rows_(view.results(), "work_precision", {"error"}), errors_(view.results(), "errors", {"error"}) {
-  for (const std::string& column : view.varying_without({"mass", "contact", "time", "elements", "step"}))
-    scene_.push_back(column);
+    : rows_(view.results(), "work_precision", {"error"}), errors_(view.results(), "errors", {"error"}) {}
+
+std::vector<std::string> scene_columns(const CaseView& view) {
+  return view.varying_without({"mass", "contact", "time", "elements", "step"});
 }
 
 std::optional<WorkPoint> WorkPrecision::point(const CaseRecord& record, const std::string& error) const {

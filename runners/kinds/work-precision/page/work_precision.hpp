@@ -26,8 +26,6 @@ class WorkPrecision {
 
   bool empty() const { return rows_.empty(); }
   std::vector<std::string> errors() const { return rows_.values("error"); }
-  /// Columns that make another scene of it: neither methods, nor mesh, nor step.
-  const std::vector<std::string>& scene_columns() const { return scene_; }
 
   /// The point of a case; nothing where it has no such error, an error of exactly 0, or no time.
   std::optional<WorkPoint> point(const CaseRecord& record, const std::string& error) const;
@@ -37,8 +35,10 @@ class WorkPrecision {
 
  private:
   AxisRows rows_, errors_;
-  std::vector<std::string> scene_;
 };
+
+/// Columns that make another scene of it: neither methods, nor mesh, nor step.
+std::vector<std::string> scene_columns(const CaseView& view);
 
 /// Indices of the points that no other beats in both known error and `work`, by increasing error; equal ones all count.
 std::vector<size_t> pareto_front(const std::vector<WorkPoint>& points, double (*work)(const WorkPoint&));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "runners/kinds/work-precision/page/page.hpp"
+#include "runners/kinds/work-precision/page/work_precision.hpp"
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/html_table.hpp"
@@ -36,24 +37,16 @@ std::string work_precision_html(const CaseView& view) {
   const Table* found = find_table(view.results().derived, "precision_targets");
   if (!found) return "";
   const TableReader targets(*found);
-  const std::vector<std::string> scene = view.varying_without({"mass", "contact", "time", "elements", "step"});
+  const std::vector<std::string> scene = scene_columns(view);
+  std::vector<HtmlTable::Head> heads = {
+      {"error"},     {"at most", true}, {"cheapest"},           {"with step"},      {"run time (s)", true},
+      {"runner-up"}, {"with step"},     {"run time (s)", true}, {"speed-up", true}, {"spreads"}};
+  if (!scene.empty()) heads.insert(heads.begin() + 1, {"scene"});
   HtmlTable table(
       "The cheapest method for an error of at most 10<sup>−k</sup>: of the steps that were run, the one that takes the "
       "least time. Spread: fastest to slowest repeat (in the time's tooltip); where the spreads overlap, the two are "
-      "not "
-      "told apart.",
-      {{"error"}});
-  if (!scene.empty()) table.add({"scene"});
-  for (const HtmlTable::Head& head : std::initializer_list<HtmlTable::Head>{{"at most", true},
-                                                                            {"cheapest"},
-                                                                            {"with step"},
-                                                                            {"run time (s)", true},
-                                                                            {"runner-up"},
-                                                                            {"with step"},
-                                                                            {"run time (s)", true},
-                                                                            {"speed-up", true},
-                                                                            {"spreads"}})
-    table.add(head);
+      "not told apart.",
+      std::move(heads));
   for (size_t row = 0; row < targets.size(); ++row) {
     Quantity quantity = error_quantity(targets.text(row, "error"));
     quantity.name = targets.text(row, "error");
