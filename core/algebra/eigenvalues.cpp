@@ -45,7 +45,11 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& A) {
 }
 
 Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A) {
-  return A.jacobiSvd().singularValues();
+  // The real matrix of the same map has each of them twice.
+  Eigen::MatrixXd map(2 * A.rows(), 2 * A.cols());
+  map << A.real(), -A.imag(), A.imag(), A.real();
+  const Eigen::VectorXd twice = singular_values(map);
+  return twice(Eigen::seqN(0, twice.size() / 2, 2));
 }
 
 }  // namespace ricochet

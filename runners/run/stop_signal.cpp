@@ -13,7 +13,7 @@ constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGXFSZ};
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 std::atomic<int> signals_seen{0};
-std::array<struct sigaction, kSignals.size()> former;
+std::array<struct sigaction, kSignals.size()> handlers_before;
 
 extern "C" void on_stop(int) {
   stop_requested = true;
@@ -29,12 +29,12 @@ StopSignal::StopSignal() {
     struct sigaction action {};
     action.sa_handler = kSignals[i] == SIGXFSZ ? SIG_IGN : on_stop;
     action.sa_flags = SA_RESTART;  // a write to the store goes on
-    ::sigaction(kSignals[i], &action, &former[i]);
+    ::sigaction(kSignals[i], &action, &handlers_before[i]);
   }
 }
 
 StopSignal::~StopSignal() {
-  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &former[i], nullptr);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &handlers_before[i], nullptr);
 }
 
 std::atomic<bool>& StopSignal::requested() const {

@@ -9,13 +9,13 @@
 namespace ricochet {
 namespace {
 
-using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using StrainRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-Rows strain_rows(const FiniteElementSpace& space, const std::vector<double>& places) {
+StrainRows strain_rows(const FiniteElementSpace& space, const std::vector<double>& places) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < places.size(); ++i)
     for (const auto& [dof, value] : strain_row(space, places[i])) entries.emplace_back(static_cast<int>(i), dof, value);
-  Rows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
+  StrainRows rows(static_cast<Eigen::Index>(places.size()), space.dofs);
   rows.setFromTriplets(entries.begin(), entries.end());
   return rows;
 }

@@ -14,9 +14,9 @@ std::string role_of(const std::string& column, const std::vector<std::string>& c
   return std::find(columns.begin(), columns.end(), prefix) == columns.end() ? column : prefix;
 }
 
-using Rows = std::vector<std::vector<std::string>>;
+using CellRows = std::vector<std::vector<std::string>>;
 
-std::size_t distinct(const Rows& cells, const std::vector<std::size_t>& columns) {
+std::size_t distinct(const CellRows& cells, const std::vector<std::size_t>& columns) {
   std::set<std::vector<std::string>> seen;
   for (const auto& cell : cells) {
     std::vector<std::string> key;
@@ -27,14 +27,14 @@ std::size_t distinct(const Rows& cells, const std::vector<std::size_t>& columns)
 }
 
 /// Whether the parameter does not exist, or does not take all its values, for every method.
-bool nested(const Rows& cells, std::size_t method, std::size_t parameter) {
+bool nested(const CellRows& cells, std::size_t method, std::size_t parameter) {
   for (const auto& cell : cells)
     if (cell[parameter].empty()) return true;
   return distinct(cells, {method, parameter}) < distinct(cells, {method}) * distinct(cells, {parameter});
 }
 
 Factor factor_of(const std::string& name, const std::vector<std::size_t>& group,
-                 const std::vector<std::string>& columns, const Rows& cells) {
+                 const std::vector<std::string>& columns, const CellRows& cells) {
   Factor out{name, {}, {}};
   std::map<std::string, std::size_t> place;
   for (const auto& cell : cells) {
@@ -51,7 +51,7 @@ Factor factor_of(const std::string& name, const std::vector<std::size_t>& group,
 
 }  // namespace
 
-FactorSet factors_of(const std::vector<std::string>& columns, const Rows& cells) {
+FactorSet factors_of(const std::vector<std::string>& columns, const CellRows& cells) {
   std::vector<std::vector<std::size_t>> groups(columns.size());
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (role_of(columns[k], columns) == columns[k]) groups[k].push_back(k);
