@@ -17,14 +17,14 @@ using namespace lane_bodies;
 #define RICOCHET_KERNEL_SET(NAME, TARGET)                                                                              \
   template <int T>                                                                                                     \
   struct NAME {                                                                                                        \
-    TARGET [[gnu::noinline]] static void combine_many(long n, int c, const double* const* x, const double* w, double* o) {\
+    [[gnu::noinline]] TARGET static void combine_many(long n, int c, const double* const* x, const double* w, double* o) {\
       combine_general(n, c, x, w, o);                                                                                  \
     }                                                                                                                  \
     TARGET static void combine(long n, int c, const double* const* x, const double* w, double* o) {                    \
       if (!written(c, written_slots)) return combine_many(n, c, x, w, o);                                              \
       combine_any(n, c, x, w, o);                                                                                      \
     }                                                                                                                  \
-    TARGET [[gnu::noinline]] static void update_many(long n, int c, double* const* x, const double* z, const double* w,\
+    [[gnu::noinline]] TARGET static void update_many(long n, int c, double* const* x, const double* z, const double* w,\
                                                      const double* next, double* o) {                                  \
       if (next) update_general<true>(n, c, x, z, w, next, o);                                                          \
       else update_general<false>(n, c, x, z, w, next, o);                                                              \
@@ -36,7 +36,7 @@ using namespace lane_bodies;
       else update_any<false>(n, c, x, z, w, next, o);                                                                  \
     }                                                                                                                  \
     TARGET static void band_step(const BandStep& step) { band_step_body<T>(step); }                                    \
-    TARGET [[gnu::noinline]] static void diagonal_many(int n, int c, const double* f, const double* const* x,          \
+    [[gnu::noinline]] TARGET static void diagonal_many(int n, int c, const double* f, const double* const* x,          \
                                                        const double* a, double* z) {                                   \
       diagonal_general<T>(n, c, f, x, a, z);                                                                           \
     }                                                                                                                  \
@@ -44,7 +44,7 @@ using namespace lane_bodies;
       if (!written(c, written_slots)) return diagonal_many(n, c, f, x, a, z);                                          \
       diagonal_any<T>(n, c, f, x, a, z);                                                                               \
     }                                                                                                                  \
-    TARGET [[gnu::noinline]] static void measure_many(const LaneRows& h, int c, const double* const* x, const double* w,\
+    [[gnu::noinline]] TARGET static void measure_many(const LaneRows& h, int c, const double* const* x, const double* w,\
                                                       const double* o, double* y) {                                    \
       measure_general<T>(h, c, x, w, o, y);                                                                            \
     }                                                                                                                  \

@@ -22,9 +22,11 @@ std::optional<std::string> layout_mismatch(const Layout& plugin) {
     return fmt::format("layout: {}: expected {} bytes, found {}", text.starts_with(own) ? std::string_view(name) : text,
                        size, found == plugin.end() ? "nothing" : fmt::format("{}", found->second));
   }
-  for (const auto& [name, size] : plugin)
-    if (std::none_of(std::begin(expected), std::end(expected), [&](const Expected& one) { return one.name == name; }))
-      return fmt::format("layout: {}: a type that this program does not know", name);
+  for (const auto& type : plugin) {
+    const auto is_it = [&](const Expected& one) { return one.name == type.first; };
+    if (std::none_of(std::begin(expected), std::end(expected), is_it))
+      return fmt::format("layout: {}: a type that this program does not know", type.first);
+  }
   return std::nullopt;
 }
 

@@ -19,20 +19,8 @@
 #include <suitesparse/cholmod.h>
 #endif
 
+#include "runners/run/build_facts.hpp"
 #include "runners/store/fingerprint.hpp"
-
-#ifndef RICOCHET_VERSION
-#define RICOCHET_VERSION "unknown"
-#endif
-#ifndef RICOCHET_COMMIT
-#define RICOCHET_COMMIT "unknown"
-#endif
-#ifndef RICOCHET_BUILD_TYPE
-#define RICOCHET_BUILD_TYPE "unknown"
-#endif
-#ifndef RICOCHET_FLAGS
-#define RICOCHET_FLAGS "unknown"
-#endif
 
 namespace ricochet {
 namespace {
@@ -97,13 +85,14 @@ std::string libraries() {
 }  // namespace
 
 Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries) {
+  const BuildFacts build = build_facts();
   Environment environment;
   environment.entries = {
-      {"program", "ricochet " RICOCHET_VERSION},
-      {"commit", RICOCHET_COMMIT},
+      {"program", "ricochet " + build.version},
+      {"commit", build.commit},
       {"compiler", compiler()},
-      {"build type", RICOCHET_BUILD_TYPE},
-      {"flags", RICOCHET_FLAGS},
+      {"build type", build.type},
+      {"flags", build.flags},
       {"processor", processor()},
       {"cores", std::to_string(std::thread::hardware_concurrency())},
       {"instruction sets", instruction_sets()},

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <ricochet/contract/plugin.hpp>
 
 #include "beam_run.hpp"

@@ -15,6 +15,7 @@
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/study/field.hpp"
 
 namespace ricochet {
 namespace {
