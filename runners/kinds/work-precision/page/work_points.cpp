@@ -44,8 +44,9 @@ Table work_points(const CaseView& view) {
       {}};
   const WorkPrecision work(view);
   if (work.empty()) return out;
+  const auto scenes = view.group(view.all(), scene_columns(view));
   for (const std::string& error : work.errors())
-    for (const CaseGroup& scene : view.group(view.all(), scene_columns(view))) {
+    for (const CaseGroup& scene : scenes) {
       SceneFronts fronts;
       fronts.points = work.points(scene.cases, error);
       fronts.of_time = pareto_front(fronts.points, seconds_at);
