@@ -1,37 +1,15 @@
-#include <ricochet/contract/plugin.hpp>
+#include "lumped_diagonal.hpp"
 
 namespace {
 
 using namespace ricochet;
 
-/// Diagonal mass. Hermite, Hinton–Rock–Zienkiewicz: the consistent diagonal ρSℓ(156, 4ℓ², 156, 4ℓ²)/420 scaled so that
-/// the two translations sum to ρSℓ: ρSℓ/2 and ρSℓ³/78. Linear: row sums, ρSℓ/2.
 class Lumped : public MassStrategy {
  public:
   explicit Lumped(bool rotations) : rotations_(rotations) {}
 
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
-    const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(space.dofs);
-    for (const auto& element : space.elements) {
-      const double mass = element.line_density * element.length;
-      for (int a = 0; a < space.functions(); ++a) {
-        if (element.dof[a] < 0) continue;
-        const bool rotation = hermite && a % 2 == 1;
-        if (!rotation) diagonal[element.dof[a]] += mass / 2;
-        if (rotation && rotations_) diagonal[element.dof[a]] += mass * element.length * element.length / 78;
-      }
-    }
-    for (const auto& point : space.point_masses) diagonal[point.dof] += point.mass;
-
-    Inertia inertia;
-    inertia.mass.resize(space.dofs, space.dofs);
-    for (int i = 0; i < space.dofs; ++i) {
-      if (diagonal[i] == 0) ++inertia.kernel_dimension;
-      if (diagonal[i] != 0) inertia.mass.insert(i, i) = diagonal[i];
-    }
-    inertia.mass.makeCompressed();
-    return inertia;
+    return diagonal_inertia(lumped_diagonal(space, rotations_));
   }
 
  private:

@@ -1,103 +1,8 @@
-#include <fmt/format.h>
-
-#include <cmath>
-#include <ricochet/contract/plugin.hpp>
+#include "three_level.hpp"
 
 namespace {
 
 using namespace ricochet;
-
-/// Dumont and Paoli's three-level scheme in increment form. With d_n = q_n − q_{n−1} and z = q_{n+1} − 2q_n + q_{n−1}:
-///
-///     (M/h² + C/(2h) + βK) z = F^β − C d_n/h − K q_n + Hᵀp,   F^β = βF(t+h) + (1−2β)F(t) + βF(t−h)
-///     y = H(q_{n+1} + e q_{n−1})/(1+e)
-///
-/// Invariant (undamped, free): E = ½|d/h|²_M + ½|q̄|²_K + ½(β−¼)|d|²_K, q̄ = q_n + d_{n+1}/2; the test displacement
-/// (q_{n+1} − q_{n−1})/2 = d_n + z/2 gives its exact balance.
-class NewmarkDumontPaoli final : public TimeScheme {
- public:
-  NewmarkDumontPaoli(double beta, double restitution, bool second_order)
-      : beta_(beta), e_(restitution), second_order_(second_order) {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.mass_kernel_dimension > 0 && beta_ == 0 && !facts.damped)
-      return Refusal{"beta = 0 leaves S singular on the kernel of a singular mass: use beta ≥ 0.25"};
-    if (facts.mass_kernel_dimension > 0 && beta_ < 0.25)
-      return Refusal{
-          fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step "
-                      "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25",
-                      beta_)};
-    StepPlan plan;
-    plan.slots = {"q", "d"};
-    plan.initial = {{1, 0}, {0, h}};
-    plan.velocity = {.slots = {0, 1 / h}};
-    plan.stages = {step(h)};
-    plan.start = {second_order_ ? symmetric_start(h) : taylor_start()};
-    plan.start_advances = true;
-    plan.energy = {{QuadraticTerm::Matrix::M, 0.5 / (h * h), {0, 1}},
-                   {QuadraticTerm::Matrix::K, 0.5, {1, -0.5}},
-                   {QuadraticTerm::Matrix::K, 0.5 * (beta_ - 0.25), {0, 1}}};
-    plan.facts.order = second_order_ ? 2 : 1;
-    plan.facts.contact_order = 1;
-    plan.facts.restitution = Restitution::asymptotic;
-    plan.facts.needs_regular_mass = beta_ < 0.25;
-    if (beta_ < 0.25) plan.facts.stability_limit = 2 / std::sqrt(1 - 4 * beta_);
-    plan.facts.contact_never_gains = e_ == 0;
-    return plan;
-  }
-
- private:
-  Levels averaged_levels() const { return {{1, beta_}, {0, 1 - 2 * beta_}, {-1, beta_}}; }
-  Levels constrained_levels() const { return {{1, 1 / (1 + e_)}, {-1, e_ / (1 + e_)}}; }
-
-  Stage step(double h) const {
-    Stage stage;
-    stage.matrix = {1 / (h * h), 0.5 / h, beta_};
-    stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
-    stage.load = averaged_levels();
-    stage.impact = {{.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}, constrained_levels(), std::nullopt};
-    const Combination end{.slots = {1, 1}, .z = 1};
-    const Combination central_rate{.slots = {0, 1 / h}, .z = 0.5 / h};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, central_rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {end, {{1, 1}}, central_rate, {{0, 1}}, {beta_, 1 - 2 * beta_, beta_}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
-    // Mid-step displacements: their difference is the test displacement, and E + U(g) is kept.
-    stage.at(Evaluation::conserving) = {
-        {.slots = {1, 0.5}, .z = 0.5},   {{0, 0.5}, {1, 0.5}}, central_rate, {{0, 1}}, {1},
-        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
-    stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-    stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}, {{1, 0.5}, {-1, -0.5}}};
-    return stage;
-  }
-
-  // q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, z = 2(q₁ − q₀ − h v₀); d holds h v₀. C then acts on v₀ alone.
-  Stage symmetric_start(double h) const {
-    Stage stage;
-    stage.matrix = {1 / (h * h), 0, beta_};
-    stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
-    stage.load = averaged_levels();
-    stage.impact = {{.slots = {1, (1 - e_) / (1 + e_)}, .z = 0.5}, constrained_levels(), std::nullopt};
-    const Combination end{.slots = {1, 1}, .z = 0.5};
-    const Combination rate{.slots = {0, 1 / h}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};
-    // q₋₁ is taken as q₀ − h v₀: the difference is the first order's, and a start beyond a stop has no past anyway.
-    stage.at(Evaluation::conserving) = {{.slots = {1, 0.5}, .z = 0.25},  {{0, 0.5}, {1, 0.5}}, rate, {{0, 1}}, {1},
-                                        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
-    stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
-    return stage;
-  }
-
-  static Stage taylor_start() {
-    Stage stage;
-    stage.update = {{.slots = {1, 1}}, {.slots = {0, 1}}};
-    return stage;
-  }
-
-  double beta_, e_;
-  bool second_order_;
-};
 
 void register_all(Registry& registry) {
   registry.add_time(
@@ -120,8 +25,7 @@ void register_all(Registry& registry) {
                           "start", {"first-order", "second-order"}, "second-order",
                           "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation")}},
       [](const Parameters& p) {
-        return std::make_unique<NewmarkDumontPaoli>(p.real("beta"), p.real("restitution"),
-                                                    p.word("start") == "second-order");
+        return std::make_unique<ThreeLevel>(p.real("beta"), p.real("restitution"), p.word("start") == "second-order");
       });
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+#include <ricochet/contract/plugin.hpp>
+
+namespace ricochet {
+
+/// What one end of an element carries, Hinton, Rock and Zienkiewicz (1976): half the element's mass for a translation;
+/// for the rotation of a Hermite element the consistent diagonal ρSℓ(156, 4ℓ², 156, 4ℓ²)/420 scaled alike, ρSℓ³/78.
+inline double lumped_share(const FiniteElementSpace& space, const FiniteElementSpace::Element& element, int function) {
+  const double mass = element.line_density * element.length;
+  const bool rotation = space.basis == FiniteElementSpace::Basis::hermite && function % 2 == 1;
+  return rotation ? mass * element.length * element.length / 78 : mass / 2;
+}
+
+/// The diagonal of all elements and point masses; rotations without inertia where they shall have none.
+inline Eigen::VectorXd lumped_diagonal(const FiniteElementSpace& space, bool rotations) {
+  const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(space.dofs);
+  for (const auto& element : space.elements)
+    for (int a = 0; a < space.functions(); ++a)
+      if (element.dof[a] >= 0 && (rotations || !hermite || a % 2 == 0))
+        diagonal[element.dof[a]] += lumped_share(space, element, a);
+  for (const auto& point : space.point_masses) diagonal[point.dof] += point.mass;
+  return diagonal;
+}
+
+/// A diagonal mass matrix; its kernel are the dofs without mass.
+inline Inertia diagonal_inertia(const Eigen::VectorXd& diagonal) {
+  Inertia inertia;
+  const auto dofs = static_cast<int>(diagonal.size());
+  inertia.mass.resize(dofs, dofs);
+  for (int i = 0; i < dofs; ++i) {
+    if (diagonal[i] == 0) ++inertia.kernel_dimension;
+    if (diagonal[i] != 0) inertia.mass.insert(i, i) = diagonal[i];
+  }
+  inertia.mass.makeCompressed();
+  return inertia;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,102 @@
+#pragma once
+#include <ricochet/contract/plugin.hpp>
+
+namespace ricochet {
+
+/// The α-methods: Newmark's updates, with inertia weighted over both ends of the step by α_m, and elastic, viscous and
+/// applied forces by α_f. With f = 1 − α_f and z = a_{n+1}:
+///
+///     M((1−α_m) z + α_m a_n) + f(C v_{n+1} + K q_{n+1}) + α_f(C v_n + K q_n) = f F(t+h) + α_f F(t) + Hᵀπ(p)
+///     q ← q + h v + (½−β)h² a + βh² z,   v ← v + (1−γ)h a + γh z,   a ← z,   y = H q_{n+1}
+///
+/// π(p) = p, or f p + α_f p₋₁ where contact is one of the weighted forces. α_m = α_f = 0 is Newmark (1959), α_m = 0
+/// Hilber, Hughes and Taylor (1977), α_f = 0 Wood, Bossak and Zienkiewicz (1980), both Chung and Hulbert (1993).
+struct AlphaMethod {
+  double mass = 0;   ///< α_m
+  double force = 0;  ///< α_f
+  double beta = 0.25, gamma = 0.5;
+  bool weighted_contact = false;
+
+  double now() const { return 1 - force; }
+  double lag(double h) const { return (1 - gamma) * h; }
+  double curve(double h) const { return (0.5 - beta) * h * h; }
+  Combination end(double h) const { return {.slots = {1, h, curve(h)}, .z = beta * h * h}; }
+  Combination end_rate(double h) const { return {.slots = {0, 1, lag(h)}, .z = gamma * h}; }
+  Combination increment(double h) const { return {.slots = {0, h, curve(h)}, .z = beta * h * h}; }
+  std::vector<double> both_ends() const { return force == 0 ? std::vector{1.0} : std::vector{now(), force}; }
+
+  /// Slots q, v, a and the stages; energy, work and facts are the method's own.
+  StepPlan plan(double h, const ProblemFacts& facts) const {
+    StepPlan plan;
+    plan.slots = {"q", "v", "a"};
+    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
+    plan.velocity = {.slots = {0, 1}};
+    plan.start = {initial_acceleration(h, facts.mass_kernel_dimension > 0)};
+    plan.stages = {step(h)};
+    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+    plan.facts.order = 2;
+    return plan;
+  }
+
+  Stage step(double h) const {
+    const double f = now();
+    Stage stage;
+    stage.matrix = {1 - mass, f * gamma * h, f * beta * h * h};
+    stage.history = {{0, 0, -1}, {0, -1, -f * h}, {0 - mass, -f * lag(h), -f * curve(h)}};
+    stage.load = {{1, f}};
+    if (force != 0) stage.load.push_back({0, force});
+    stage.impact = {.value = end(h), .bound = {{1, 1}}, .effort = weighted_contact ? both_ends() : std::vector{1.0}};
+    stage.at(Evaluation::implicit_end) = {end(h), {{1, 1}}, end_rate(h), {{1, 1}}, {1}};
+    // The elastic force enters as K q of both ends, and so does the spring.
+    stage.at(Evaluation::averaged) = {end(h), {{1, 1}}, end_rate(h), {{1, 1}}, both_ends()};
+    stage.at(Evaluation::explicit_start) = {
+        {.slots = {1, h, curve(h)}}, {{1, 1}}, {.slots = {0, 1, lag(h)}}, {{1, 1}}, {1}};
+    stage.update = {end(h), end_rate(h), {.slots = {}, .z = 1}};
+    return stage;
+  }
+
+  /// M a₀ = F(0) − C v₀ − K q₀ (+ Hᵀp so that the Taylor step does not pass a stop that the state rests on). On the
+  /// kernel of a singular mass a₀ is not defined: βh²K is added to M there, an O(h²) change of a₀ on the regular modes.
+  Stage initial_acceleration(double h, bool singular_mass) const {
+    Stage stage;
+    stage.matrix = {1, 0, singular_mass ? beta * h * h : 0};
+    stage.history = {{0, 0, -1}, {0, -1, 0}};
+    stage.load = {{0, 1}};
+    stage.impact = {.value = {.slots = {1, h}, .z = 0.5 * h * h}, .bound = {{1, 1}}};
+    for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+      stage.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+    return stage;
+  }
+
+  /// One more slot, kept by the start rule, changed by the step.
+  static void add_slot(StepPlan& plan, const char* name, std::array<double, 2> initial, const Combination& update) {
+    plan.slots.emplace_back(name);
+    plan.initial.push_back(initial);
+    Combination kept;
+    kept.slots.assign(plan.slots.size(), 0);
+    kept.slots.back() = 1;
+    plan.start[0].update.push_back(kept);
+    plan.stages[0].update.push_back(update);
+  }
+
+  /// With ε = α_f − α_m > 0, γ = ½ + ε, β = ¼(1+ε)² and σ ← (ε Δq − α_m σ)/(1−α_m) in slot `at`, the energy
+  ///
+  ///     E = ½|v|²_M + ½|q|²_K + ⅛ε²h²|a|²_M + ((½−α_f)/2ε)|σ|²_K
+  ///     −ΔE = ¼ε³h²|Δa|²_M + ((½−α_f)(½−α_m)/ε)|Δσ|²_K
+  ///
+  /// of the undamped free structure never grows: what is added to plan.energy here. The first line alone where ε = 0.
+  void add_filtered_energy(StepPlan& plan, double h) const {
+    const double shift = force - mass;
+    if (shift == 0) return;
+    Combination filtered = increment(h);
+    for (double& slot : filtered.slots) slot *= shift / (1 - mass);
+    filtered.z *= shift / (1 - mass);
+    filtered.slots.push_back(0 - mass / (1 - mass));
+    add_slot(plan, "s", {0, 0}, filtered);
+    plan.energy.push_back({EnergyMatrix::M, 0.125 * shift * shift * h * h, {0, 0, 1}});
+    if (force != 0.5) plan.energy.push_back({EnergyMatrix::K, (0.5 - force) / (2 * shift), {0, 0, 0, 1}});
+  }
+};
+
+}  // namespace ricochet

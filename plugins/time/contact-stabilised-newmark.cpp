@@ -1,0 +1,89 @@
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// Deuflhard, Krause and Ertel's contact-stabilised Newmark (¼, ½). First the predictor is brought between the stops in
+/// the metric of the mass, then the step is made from there, with z = v_{n+1} − v_n:
+///
+///     stage 1:   M d/h² = Hᵀν,                    y = H(q + h v + d)
+///     stage 2:   (M/h + ½C + h/4 K) z = ½F(t) + ½F(t+h) − C v − K(q + h/2 v + ½d) + Hᵀp
+///                q ← q + h v + d + h/2 z,   v ← v + z,   y = H q_{n+1}
+///
+/// original: d moves positions alone. corrected: v gains d/h as well. Energy (undamped, free): ½|v|²_M + ½|q|²_K; at a
+/// fixed stop a step of the original changes it by pᵀ(Hq_{n+1} − Hq_n) − νᵀH(v_{n+1} − v_n) h, both ≤ 0. The second
+/// product is of two stages: no plan says it, and the balance is left open.
+class ContactStabilisedNewmark final : public TimeScheme {
+ public:
+  explicit ContactStabilisedNewmark(bool corrected) : corrected_(corrected) {}
+
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    if (facts.mass_kernel_dimension > 0)
+      return Refusal{
+          "the projection of the predictor is made in the metric of the mass, which is singular here: use a regular "
+          "mass, or midpoint"};
+    StepPlan plan;
+    plan.slots = {"q", "v", "d"};
+    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
+    plan.velocity = {.slots = {0, 1}};
+    plan.stages = {projection(h), step(h)};
+    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+    plan.facts.order = 2;
+    plan.facts.needs_regular_mass = true;
+    plan.facts.contact_never_gains = true;
+    return plan;
+  }
+
+ private:
+  static Stage projection(double h) {
+    Stage stage;
+    stage.matrix = {1 / (h * h), 0, 0};
+    stage.impact = {.value = {.slots = {1, h}, .z = 1}, .bound = {{1, 1}}};
+    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+    return stage;
+  }
+
+  Stage step(double h) const {
+    const double pushed = corrected_ ? 1 / h : 0;
+    Stage stage;
+    stage.matrix = {1 / h, 0.5, h / 4};
+    stage.history = {{0, 0, -1}, {0, -1, -h / 2}, {0, -0.5 * pushed, -0.5}};
+    stage.load = {{0, 0.5}, {1, 0.5}};
+    const Combination end{.slots = {1, h, 1}, .z = h / 2}, end_rate{.slots = {0, 1, pushed}, .z = 1};
+    const Combination mean{.slots = {1, h / 2, 0.5}, .z = h / 4};
+    const Combination mean_rate{.slots = {0, 1, 0.5 * pushed}, .z = 0.5};
+    stage.impact = {.value = end, .bound = {{1, 1}}};
+    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
+    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
+    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.at(Evaluation::conserving) = {end, {{1, 1}}, mean_rate, {{0.5, 1}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
+    stage.update = {end, end_rate, {}};
+    return stage;
+  }
+
+  bool corrected_;
+};
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "contact-stabilised-newmark",
+       .summary = "Newmark (¼, ½) from a predictor that is first brought between the stops",
+       .text =
+           "The predictor q + h v is brought between the stops before the step is made: forces at contact are clean "
+           "and contact never gives energy. The original leaves velocities alone, so that a node that rests on a stop "
+           "keeps the velocity of its arrival for as long as it stays: a single mass never leaves its stop, and on a "
+           "mesh the motion as the step shrinks is not that of the mesh but O(element length) away. `corrected` takes "
+           "the projection into the velocity and has no such defect.",
+       .source = "Deuflhard, Krause and Ertel (2008), A contact-stabilized Newmark method for dynamical contact "
+                 "problems; corrected: this program",
+       .parameters = {word_parameter("velocity", {"original", "corrected"}, "original",
+                                     "whether the projection moves positions alone, or velocities with them")}},
+      [](const Parameters& p) {
+        return std::make_unique<ContactStabilisedNewmark>(p.word("velocity") == "corrected");
+      });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, contact_stabilised_newmark, register_all)

@@ -1,0 +1,67 @@
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// Laursen and Chawla's conserving contact on the mid-point rule. With z = v_{n+1} − v_n:
+///
+///     (M/h + ½C + h/4 K) z = F(t+h/2) − C v − K(q + h/2 v) + Hᵀp
+///     q ← q + h v + h/2 z,   v ← v + z
+///
+/// and on the points that have reached a stop at t_n and do not leave it, the persistency condition
+/// 0 ≤ p ⊥ v_n + v_{n+1} ≥ 0 against the stop, that is p (g_{n+1} − g_n) = 0: Newton's law with e = 1. Invariant:
+/// ½|v|²_M + ½|q|²_K, kept through contact as well; test displacement q_{n+1} − q_n.
+class LaursenChawla final : public TimeScheme {
+ public:
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    if (facts.contact && facts.mass_kernel_dimension > 0)
+      return Refusal{
+          "a contact point without mass (singular mass) has no velocity that persistency could act on, and the "
+          "mid-point rule leaves the root −1 there: use a regular mass, or midpoint"};
+    StepPlan plan;
+    plan.slots = {"q", "v"};
+    plan.initial = {{1, 0}, {0, 1}};
+    plan.velocity = {.slots = {0, 1}};
+    Stage stage;
+    stage.matrix = {1 / h, 0.5, h / 4};
+    stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
+    stage.load = {{0.5, 1}};
+    const Combination end{.slots = {1, h}, .z = h / 2}, end_rate{.slots = {0, 1}, .z = 1};
+    const Combination mean{.slots = {1, h / 2}, .z = h / 4}, mean_rate{.slots = {0, 1}, .z = 0.5};
+    stage.impact = {end_rate, {{1, 1}}, VelocityGate{{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, 1}};
+    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
+    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
+    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.at(Evaluation::conserving) = {end, {{1, 1}}, mean_rate, {{0.5, 1}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
+    stage.update = {end, end_rate};
+    stage.work = {.displacement = {.slots = {0, h}, .z = h / 2},
+                  .rate = mean_rate,
+                  .load = {{0.5, 1}},
+                  .support = {{1, 1}, {0, -1}}};
+    plan.stages = {stage};
+    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+    plan.facts.order = 2;
+    plan.facts.needs_regular_mass = true;
+    plan.facts.contact_never_gains = true;
+    return plan;
+  }
+};
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "laursen-chawla",
+       .summary = "mid-point rule with contact that conserves energy: no work over a step",
+       .text = "The mid-point rule; a point that has passed its stop may be pushed only where it does not move against "
+               "the stop over the step, p (g_{n+1} − g_n) = 0. So rigid contact does no work and the energy of an "
+               "undamped structure is kept to round-off; the penetration with which a contact begins stays until it "
+               "is over. It is Newton's law with e = 1 asked at the beginning of the step.",
+       .source = "Laursen and Chawla (1997), Design of energy conserving algorithms for frictionless dynamic contact "
+                 "problems",
+       .parameters = {}},
+      [](const Parameters&) { return std::make_unique<LaursenChawla>(); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, laursen_chawla, register_all)

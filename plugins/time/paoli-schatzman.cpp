@@ -1,0 +1,24 @@
+#include "three_level.hpp"
+
+namespace {
+
+using namespace ricochet;
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "paoli-schatzman",
+       .summary = "central differences with the constraint on (q_{n+1} + e q_{n−1})/(1+e)",
+       .text = "Central differences whose effort keeps (q_{n+1} + e q_{n−1})/(1+e) between the stops: "
+               "newmark-dumont-paoli with β = 0. As the step shrinks a point leaves its stop at e times the speed of "
+               "arrival; q_{n+1} itself may pass the stop by O(h). Explicit where the mass is diagonal and nothing is "
+               "damped; stable up to hω = 2.",
+       .source = "Paoli and Schatzman (2002), A numerical scheme for impact problems",
+       .parameters = {with_role(
+           real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+           ParameterRole::restitution)}},
+      [](const Parameters& p) { return std::make_unique<ThreeLevel>(0.0, p.real("restitution"), true); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, paoli_schatzman, register_all)
