@@ -77,9 +77,14 @@ PointAnswer at_point(LawBench& bench, int side, double depth, double speed, doub
   lane.before = one(side * before);
   lane.effort = one(0);
   bench.solve(W, 0, 0, {lane}, {0});
-  PointAnswer answer{bench.effort(0)[0], bench.outcome(0).dissipation, {}};
+  const double effort = bench.effort(0)[0];
+  PointAnswer answer{effort, bench.outcome(0).dissipation, bench.outcome(0).converged && std::isfinite(effort), {}};
   if (bench.law().offers_slopes()) answer.slopes = bench.law().slopes(0, 0);
   return answer;
+}
+
+bool is_barrier(LawBench& bench) {
+  return bench.law().reads() && bench.layer() > 0 && !at_point(bench, -1, 1e-3, 0, 1e-3).answered;
 }
 
 LaneProblem random_lane(std::mt19937& random, int points, bool two_sided) {
@@ -111,8 +116,8 @@ double flexibility_of(const Law& law) {
   LawBench bench(law, 1, 1);
   if (!bench.law().reads()) return 1e-4;
   constexpr double depth = 0.01;
-  const double p = at_point(bench, -1, depth, 0, depth).effort;
-  return std::isfinite(p) && p > 0 ? depth / p : 1e-4;
+  const PointAnswer at = at_point(bench, -1, depth, 0, depth);
+  return at.answered && at.effort > 0 ? depth / at.effort : 1e-4;
 }
 
 }  // namespace ricochet::checking

@@ -54,12 +54,16 @@ class LawBench {
 };
 
 /// The answer of the law at one point whose measure no effort moves: p at depth δ beyond the lower (side −1) or upper
-/// (+1) stop, with the point's speed u and, one step before, the depth δ⁻.
+/// (+1) stop, with the point's speed u and, one step before, the depth δ⁻. Not `answered`: the law has no force there,
+/// as a barrier beyond its stop.
 struct PointAnswer {
   double effort = 0, dissipation = 0;
+  bool answered = true;
   ContactSlopes slopes;
 };
 PointAnswer at_point(LawBench& bench, int side, double depth, double speed, double before);
+/// Whether the law acts before its stop and has no force beyond it.
+bool is_barrier(LawBench& bench);
 
 /// A lane with a random measure between random stops, m points of size 1e-2 m. `two_sided`: both stops, so near that
 /// points touch both; else the lower one alone.

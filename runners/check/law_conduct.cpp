@@ -21,7 +21,7 @@ Verdict no_contact_at_all() {
 // A barrier is only asked before its stop.
 bool is_barrier(const Law& law) {
   LawBench bench(law, 1, 1);
-  return bench.law().reads() && bench.layer() > 0 && !std::isfinite(at_point(bench, -1, 1e-3, 0, 1e-3).effort);
+  return checking::is_barrier(bench);
 }
 
 std::vector<LaneProblem> random_lanes(const Law& law, std::mt19937& random, int points) {
