@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/observed_stability.hpp>
+#include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/kinds/stability/stability_steps.hpp"
@@ -89,6 +91,8 @@ class StabilityRun {
     record_.status = "done";
     tabulate(sides, observe);
     measure(sides);
+    if (touches_ && !law->reads()) say_restitution();
+    say_highest_frequencies();
     return std::move(record_);
   }
 
@@ -333,6 +337,30 @@ class StabilityRun {
     put_measure(record_, "limit_observed", observed);
     if (radius >= 0) put_measure(record_, "largest_radius", radius);
     put_measure(record_, "agreement", agreement);
+  }
+
+  // The smallest step of the range that has a plan: neither depends on how long it is.
+  std::optional<std::pair<StepPlan, double>> some_plan() const {
+    for (const double h : steps_) {
+      const auto made = plan(h);
+      if (const auto* step = std::get_if<StepPlan>(&made)) return std::pair(*step, h);
+    }
+    return std::nullopt;
+  }
+
+  void say_restitution() {
+    const auto step = some_plan();
+    const auto range = step ? restitution_range(step->first, step->second) : std::nullopt;
+    if (!range) return;
+    Table table = restitution_head();
+    table.rows.push_back({step->second, range->least, range->mean, range->most});
+    record_.tables.push_back(std::move(table));
+  }
+
+  void say_highest_frequencies() {
+    const auto step = some_plan();
+    if (const auto root = step ? root_at_infinity(step->first) : std::nullopt)
+      put_measure(record_, "rho_infinity", *root);
   }
 
   const StudyCase& case_;

@@ -41,9 +41,20 @@ Table stability_observed_head() {
           {}};
 }
 
+Table restitution_head() {
+  return {"restitution",
+          "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives; from "
+          "the plan alone.",
+          {{"step", "s", "Step of the plan that was asked: the smallest of the range that has one."},
+           {"least", "1", "Smallest −v⁺/v⁻ over 64 phases of the impact within the step."},
+           {"mean", "1", "Their mean."},
+           {"most", "1", "The largest; beyond 1 the scheme throws a mass back faster than it came."}},
+          {}};
+}
+
 void describe_stability(CaseRecord& record) {
   for (Table& table : record.tables)
-    for (const Table& head : {stability_head(), stability_observed_head()}) {
+    for (const Table& head : {stability_head(), stability_observed_head(), restitution_head()}) {
       if (head.name != table.name) continue;
       if (const auto contact = find_column(table.columns, "contact")) {
         table.columns[*contact].name = "closed";

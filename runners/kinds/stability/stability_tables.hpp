@@ -9,6 +9,9 @@ Table stability_head();
 /// `stability_observed`, without rows: one per step and contact state that was marched.
 Table stability_observed_head();
 
+/// `restitution`, without rows: one, what a free mass keeps of its speed at a rigid stop, over the phases of a step.
+Table restitution_head();
+
 /// Gives the tables that a case of a stability study left their units and meanings, and today's column names: stores
 /// that are older say the contact state in the words of a column `contact`.
 void describe_stability(CaseRecord& record);

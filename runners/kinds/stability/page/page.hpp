@@ -11,4 +11,8 @@ KindPage stability_page();
 /// grows first. Empty without the table `step_limits`.
 std::string stability_html(const CaseView& view);
 
+/// One row per time scheme: what a free mass keeps of its speed at a rigid stop, and ρ∞. Empty without the table
+/// `restitution`.
+std::string restitution_html(const CaseView& view);
+
 }  // namespace ricochet::report

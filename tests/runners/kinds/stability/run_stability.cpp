@@ -189,6 +189,27 @@ TEST_CASE("an explicit spring limits the step of the closed cells, and the scene
   for (const Cell& impacts : result.column("impacts", "closed", "stability_observed")) CHECK(impacts.number());
 }
 
+TEST_CASE("a rigid stop's restitution over the phases of a step is told from the plan") {
+  const auto told = [](const Json& contact, const Json& time) {
+    Json text = study_text("consistent", contact, time, 1e-4, 1e-3, 2);
+    text["observe"] = false;
+    return run(text);
+  };
+  // Newmark (1/4, 1/2) with the multiplier at the end of the step: −1 + 4ξ at the phase ξ, where that leaves the stop;
+  // 64 phases come within 4/64 of its ends.
+  const Result newmark = told("signorini", {{"name", "newmark"}, {"beta", 0.25}, {"gamma", 0.5}});
+  const TableReader rows(newmark.table("restitution"));
+  REQUIRE(rows.size() == 1);
+  CHECK(rows.number(0, "most").value() == Approx(3).margin(4.0 / 64));
+  CHECK(newmark.measure("rho_infinity").value() == Approx(1));
+  const Result exact = told("signorini", {{"name", "moreau-jean"}, {"theta", 0.5}, {"restitution", 0.7}});
+  const TableReader exactly(exact.table("restitution"));
+  for (const char* column : {"least", "mean", "most"})
+    CHECK(exactly.number(0, column).value() == Approx(0.7).epsilon(1e-9));
+  // A spring rebounds by itself.
+  CHECK_FALSE(told({{"name", "penalty"}, {"stiffness", 1e4}}, {{"name", "newmark"}}).has("restitution"));
+}
+
 TEST_CASE("where marches and spectrum disagree the row says so") {
   // Newmark's rigid impacts make energy that no spectrum of a fixed contact set shows.
   Json text = study_text("consistent", "signorini", {{"name", "newmark"}}, 1e-4, 1e-3, 3);
