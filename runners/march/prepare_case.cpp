@@ -6,6 +6,8 @@
 #include <ctime>
 #include <limits>
 
+#include "runners/march/explicit_limit.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -80,6 +82,12 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
     return prepared;
   }
   const StepPlan& steps = std::get<StepPlan>(plan);
+  const double asked = thread_seconds();
+  prepared.refusal = beyond_explicit_limit(prepared.problem, steps, study_case.step, [&](double h) {
+    return scheme->plan(h, problem_facts(*prepared.problem, *law));
+  });
+  prepared.aside_seconds = thread_seconds() - asked;
+  if (!prepared.refusal.empty()) return prepared;
   if (law->reads() && steps.facts.restitution != Restitution::ignored &&
       scheme_restitution(study_case, registry).value_or(0) != 0)
     prepared.notes.push_back(

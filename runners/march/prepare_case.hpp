@@ -18,6 +18,7 @@ struct Prepared {
   std::string refusal;
   long long steps = 0;  ///< whole steps within the duration
   std::vector<std::string> notes;
+  double aside_seconds = 0;  ///< processor time of looking for the limit of an explicit step: no part of the method
 };
 
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).

@@ -3,7 +3,9 @@
 // core in the same run.
 //
 //     bench_march [--rounds N]
-//     bench_march --calibrate      the rates of core/engine/cost_model.cpp: nanoseconds per multiply-add of each kernel
+//     bench_march --schemes [--rounds N]   each time scheme on a lumped beam of 10 elements, against the three-level
+//     one bench_march --calibrate      the rates of core/engine/cost_model.cpp: nanoseconds per multiply-add of each
+//     kernel
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -95,6 +97,71 @@ void calibrate() {
   }
 }
 
+// Interleaved rounds of all cases; returns the FMA peak of the same time.
+double measure_rounds(std::vector<Case>& cases, int rounds) {
+  double peak = 0;
+  for (int round = 0; round < rounds; ++round) {
+    peak = std::max(peak, fma_peak());
+    for (Case& one : cases) {
+      const long long steps = std::max(1500, 6000 / one.lanes * 2);
+      const double start = thread_nanoseconds();
+      if (one.sampler)
+        for (int k = 0; k < steps / steps_per_sample; ++k) one.sampler->next();
+      else
+        one.marcher->march(steps, one.audit.get());
+      const double elapsed = thread_nanoseconds() - start;
+      one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
+    }
+  }
+  return peak;
+}
+
+constexpr const char* measure_of_schemes = "newmark-dumont-paoli";
+
+// Every time scheme with its defaults on one scene that explicit ones march too: lumped, h ω = 0.3 at the most.
+void add_schemes(const Registry& registry, std::vector<Case>& cases) {
+  const auto* mass = registry.mass("lumped");
+  const auto problem = std::make_shared<const SemiDiscrete>(std::get<SemiDiscrete>(
+      discretise(reference_beam(StopsSpec::Place::nodes), 10, *mass->make(defaults(mass->manual, {})))));
+  for (const std::string& name : registry.names(Role::time)) {
+    const auto* time = registry.time(name);
+    auto law = registry.contact("signorini")->make({});
+    constexpr double h = 2e-5;
+    auto plan = time->make(defaults(time->manual, {}))->plan(h, problem_facts(*problem, *law));
+    if (const auto* refusal = std::get_if<Refusal>(&plan)) {
+      fmt::print("{}: refused: {}\n", name, refusal->sentence);
+      continue;
+    }
+    LaneSpec lane = scene_lane(*problem, {});
+    lane.amplitude = 0.088;
+    CompileOptions options;
+    options.kind = OperatorKind::band;
+    auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {lane}, options);
+    Case one{name, StopsSpec::Place::nodes, "lumped", "", options.kind, 1, {}, nullptr, nullptr, nullptr, 0};
+    one.marcher = std::make_unique<Marcher>(std::move(std::get<Program>(program)));
+    one.marcher->start();
+    one.marcher->march(40000);  // into the impacting regime
+    cases.push_back(std::move(one));
+  }
+}
+
+void print_schemes(std::vector<Case>& cases) {
+  const auto median = [](Case& one) {
+    std::sort(one.nanoseconds.begin(), one.nanoseconds.end());
+    return one.nanoseconds[one.nanoseconds.size() / 2];
+  };
+  const auto first =
+      std::find_if(cases.begin(), cases.end(), [](const Case& one) { return one.name == measure_of_schemes; });
+  const double measure = median(*first);
+  fmt::print("{:<32} {:>7} {:>12} {:>22} {:>8}\n", "time scheme", "stages", "ns/step", "spread", "ratio");
+  for (Case& one : cases) {
+    const double middle = median(one);
+    fmt::print("{:<32} {:>7} {:>12.1f} {:>22} {:>8.2f}{}\n", one.name, one.marcher->program().stages.size(), middle,
+               fmt::format("[{:.1f}, {:.1f}]", one.nanoseconds.front(), one.nanoseconds.back()), middle / measure,
+               one.marcher->any_running() ? "" : "  stopped: " + text(one.marcher->status(0).end));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,8 +169,10 @@ int main(int argc, char** argv) {
     calibrate();
     return 0;
   }
+  const bool schemes = argc > 1 && std::strcmp(argv[1], "--schemes") == 0;
+  const int next = schemes ? 2 : 1;
   int rounds = 7;
-  if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[2]));
+  if (argc == next + 2 && std::strcmp(argv[next], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[next + 1]));
   Catalogue catalogue = Catalogue::standard();
   Registry registry;
   catalogue.open_all(registry);
@@ -112,6 +181,12 @@ int main(int argc, char** argv) {
     return 4;
   }
   std::vector<Case> cases;
+  if (schemes) {
+    add_schemes(registry, cases);
+    measure_rounds(cases, rounds);
+    print_schemes(cases);
+    return 0;
+  }
   const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity,
                        OperatorKind kind, Watch watch = Watch::nothing) {
     for (const int lanes : {1, 8, 16, 32}) {
@@ -162,20 +237,7 @@ int main(int argc, char** argv) {
   add("consistent, all nodes, sampled", nodes, "consistent", "", OperatorKind::band, Watch::samples);
   add("consistent, sparse", nodes, "consistent", "", OperatorKind::sparse);
 
-  double peak = 0;
-  for (int round = 0; round < rounds; ++round) {
-    peak = std::max(peak, fma_peak());
-    for (Case& one : cases) {
-      const long long steps = std::max(1500, 6000 / one.lanes * 2);
-      const double start = thread_nanoseconds();
-      if (one.sampler)
-        for (int k = 0; k < steps / steps_per_sample; ++k) one.sampler->next();
-      else
-        one.marcher->march(steps, one.audit.get());
-      const double elapsed = thread_nanoseconds() - start;
-      one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
-    }
-  }
+  const double peak = measure_rounds(cases, rounds);
   fmt::print("reference scene: N = 50, alpha = 1e-4, forced at 10 rad/s, 6000 steps per period, Signorini\n");
   fmt::print("kernels: {}; FMA peak {:.1f} per ns; {} interleaved rounds, median [fastest, slowest]\n\n",
              lane_instruction_set(), peak, rounds);

@@ -62,7 +62,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const SchemeFacts facts = prepared.program->plan.facts;
   const bool point_mass = prepared.problem->space.elements.empty();
   Marcher marcher(std::move(*prepared.program));
-  record.setup_seconds = thread_seconds() - set_up;
+  record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const ReferenceSet set = references.of(study_case, stop);
   if (set.applicable.empty()) {

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/march/explicit_limit.hpp"
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
@@ -39,13 +40,22 @@ int ForcedScenes::add(const std::function<StudyCase()>& variant) {
     candidate.problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
     scene.lane = candidate.lane = scene_lane(*candidate.problem, one.contact.parameters);
     const auto law = make_law(one, registry_);
-    const auto plan = make_scheme(one, registry_)->plan(candidate.h, problem_facts(*candidate.problem, *law));
+    const auto scheme = make_scheme(one, registry_);
+    const auto plan_at = [&, facts = problem_facts(*candidate.problem, *law)](double h) {
+      return scheme->plan(h, facts);
+    };
+    const auto plan = plan_at(candidate.h);
     if (const auto* refusal = std::get_if<Refusal>(&plan)) {
       scene.refusal = refusal->sentence;
       return number;
     }
     candidate.plan = std::get<StepPlan>(plan);
+    const auto problem = candidate.problem;
+    const double h = candidate.h;
     scene.group = groups_.add(std::move(candidate));
+    if (scene.group == static_cast<int>(beyond_limit_.size()))
+      beyond_limit_.push_back(beyond_explicit_limit(problem, std::get<StepPlan>(plan), h, plan_at));
+    scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];
   } catch (const InputError& error) {
     scene.refusal = (error.pointer().empty() ? "" : error.pointer() + ": ") + error.what();
   } catch (const Refusal& refusal) {

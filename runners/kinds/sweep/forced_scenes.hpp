@@ -54,6 +54,7 @@ class ForcedScenes {
   const Registry& registry_;
   std::vector<ForcedScene> scenes_;
   LaneGroups groups_;
+  std::vector<std::string> beyond_limit_;  // per group: why an explicit step of it is refused
 };
 
 /// Item and reason of what the march of a case does without; tangents belong to the exponents, where these are asked

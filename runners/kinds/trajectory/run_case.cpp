@@ -125,7 +125,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Marcher marcher(std::move(*prepared.program));
   EnergyAudit audit(marcher);
   Sampler sampler;
-  record.setup_seconds = thread_seconds() - set_up;
+  record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   bool spent = false;
