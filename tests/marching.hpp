@@ -54,8 +54,12 @@ std::unique_ptr<Interface> make(const Entry<Interface>* entry, const Choice& cho
   return entry->make(complete(entry->manual.parameters, choice.values));
 }
 
-inline std::shared_ptr<const SemiDiscrete> problem_of(const SceneSpec& scene, int elements, const Choice& mass) {
-  return std::make_shared<const SemiDiscrete>(discretised(scene, elements, *make(registry().mass(mass.name), mass)));
+/// Without a law, the problem of laws that do not change it.
+inline std::shared_ptr<const SemiDiscrete> problem_of(const SceneSpec& scene, int elements, const Choice& mass,
+                                                      const std::optional<Choice>& contact = {}) {
+  const auto law = contact ? make(registry().contact(contact->name), *contact) : nullptr;
+  return std::make_shared<const SemiDiscrete>(
+      discretised(scene, elements, *make(registry().mass(mass.name), mass), law.get()));
 }
 
 inline PlanOrRefusal plan_of(const Choice& time, double h, const ProblemFacts& facts) {
@@ -79,7 +83,7 @@ inline ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& prob
 
 inline Marcher marcher(const SceneSpec& scene, int elements, const Methods& methods, double h,
                        const CompileOptions& options = {}, const Lanes& lanes = one_lane) {
-  auto program = compiled(problem_of(scene, elements, methods.mass), methods, h, options, lanes);
+  auto program = compiled(problem_of(scene, elements, methods.mass, methods.contact), methods, h, options, lanes);
   INFO((std::holds_alternative<Refusal>(program) ? std::get<Refusal>(program).sentence : ""));
   REQUIRE(std::holds_alternative<Program>(program));
   return Marcher(std::move(std::get<Program>(program)));

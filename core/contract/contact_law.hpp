@@ -7,6 +7,8 @@
 
 namespace ricochet {
 
+struct ContactStructure;
+
 /// Columns of the Delassus operator W = H S⁻¹ Hᵀ (m × m, SPD or semidefinite, m/N), computed when first asked for: the
 /// first time a column costs one solve with S, then it is a lookup.
 class DelassusColumns {
@@ -63,8 +65,9 @@ inline constexpr int most_memory = 16;
 
 /// A contact law: it never knows the scheme, nor the scheme the law.
 ///
-/// The loop calls prepare() once (and again when parameters of a lane change), then, at each stage that has the measure
-/// the law reads, solve() with the lanes that are touched; slopes() and the outcomes are read right after.
+/// A law that changes the problem is shown it first, by prepare_problem(). The loop calls prepare() once (and again
+/// when parameters of a lane change), then, at each stage that has the measure the law reads, solve() with the lanes
+/// that are touched; slopes() and the outcomes are read right after.
 class ContactLaw {
  public:
   virtual ~ContactLaw() = default;
@@ -74,6 +77,16 @@ class ContactLaw {
   virtual std::optional<Evaluation> reads() const { return std::nullopt; }
   /// Whether rate_free is needed.
   virtual bool reads_rate() const { return false; }
+  /// Of a law that reads the measure before the step: whether its force at rest is the discrete gradient of its
+  /// potential, p (δ − δ⁻) = U(δ) − U(δ⁻), whatever the step; a damper's force comes on top, and is dissipation.
+  virtual bool conserves_energy() const { return false; }
+
+  /// Whether it measures something else than displacements, or changes the stiffness: prepare_problem() is then called
+  /// before prepare(), once for each law object. All lanes of such a law have the same parameters.
+  virtual bool changes_problem() const { return false; }
+  /// Replaces `measured` and `stiffness`, the same for the same parameters; a Refusal where the structure is none for
+  /// it.
+  virtual std::optional<Refusal> prepare_problem(ContactStructure& /*structure*/) { return std::nullopt; }
   /// Sizes workspaces; `lanes` holds one checked parameter set per lane (only `per_lane` parameters differ).
   virtual void prepare(int points, std::span<const Parameters> lanes) = 0;
   /// Finds p for each touched lane. No allocation here.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>
+#include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/contract/guarded.hpp>
 
 namespace ricochet {
@@ -97,6 +98,22 @@ class GuardedLaw final : public Guard<ContactLaw> {
     return answer;
   }
   bool reads_rate() const override { RICOCHET_FORWARD(reads_rate); }
+  bool conserves_energy() const override { RICOCHET_FORWARD(conserves_energy); }
+  bool changes_problem() const override { RICOCHET_FORWARD(changes_problem); }
+  std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
+    const Eigen::Index points = structure.contact->rows(), n = structure.contact->cols();
+    auto refusal = ask("prepare_problem", [&](auto& inner) { return inner.prepare_problem(structure); });
+    if (refusal) {
+      check_refusal(*plugin_, "prepare_problem", *refusal);
+      return refusal;
+    }
+    const SparseMatrix& K = structure.stiffness;
+    if (structure.measured.rows() != points || structure.measured.cols() != n || K.rows() != n || K.cols() != n)
+      fault("prepare_problem",
+            fmt::format("makes {} × {} rows and a stiffness of {} × {}; {} points of {} dofs were given",
+                        structure.measured.rows(), structure.measured.cols(), K.rows(), K.cols(), points, n));
+    return refusal;
+  }
   void prepare(int points, std::span<const Parameters> lanes) override { RICOCHET_FORWARD(prepare, points, lanes); }
   void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
   double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }

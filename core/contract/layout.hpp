@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <span>
 #include <string>
@@ -35,6 +36,7 @@
   X(LaneOutcome, ricochet::LaneOutcome)               \
   X(ReducedProblem, ricochet::ReducedProblem)         \
   X(FiniteElementSpace, ricochet::FiniteElementSpace) \
+  X(ContactStructure, ricochet::ContactStructure)     \
   X(Inertia, ricochet::Inertia)                       \
   X(DiscreteProblem, ricochet::DiscreteProblem)       \
   X(ReferenceProblem, ricochet::ReferenceProblem)     \

@@ -90,8 +90,8 @@ struct ComplianceMeasure {
   Combination rate = {};               ///< u, m/s, for laws with damping
   Levels rate_bound = {};              ///< of the stop's rate
   std::vector<double> effort = {1.0};  ///< π₀, π₁, …
-  /// g⁻, the same displacement one step before, over the slots before the stage: for laws that conserve energy through
-  /// the difference g − g⁻, which is then H·work.displacement.
+  /// g⁻, the same displacement one step before, over the slots before the stage: for laws that take a mean of g and g⁻,
+  /// or conserve energy through the difference g − g⁻, which is then H·work.displacement.
   std::optional<Combination> before = {};
   Levels before_bound = {};  ///< the stop's position in it
 };

@@ -9,6 +9,18 @@
 namespace ricochet {
 namespace {
 
+// Lanes share the problem, and a law that changed it with its parameters.
+std::optional<Refusal> meet_law(ContactLaw& law, const SemiDiscrete& problem, const std::vector<LaneSpec>& lanes) {
+  show_problem(law, problem);
+  if (!law.changes_problem()) return std::nullopt;
+  for (const LaneSpec& lane : lanes)
+    if (lane.law.values() != lanes.front().law.values())
+      return Refusal{
+          "the contact law changes the stiffness of the structure with its parameters: lanes of one block cannot have "
+          "different ones, march them as problems of their own"};
+  return std::nullopt;
+}
+
 Combination padded(Combination c, std::size_t slots) {
   c.slots.resize(slots, 0.0);
   return c;
@@ -188,6 +200,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.tangents = options.tangents;
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
     return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
+  if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
   program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
   program.support = options.moving_support;
   program.lanes = std::move(lanes);
@@ -228,7 +241,9 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   if (program.contact && !contact_read) {
     if (const auto evaluation = program.law->reads())
       return Refusal{std::string("the time scheme offers no ") + evaluation_word(*evaluation) +
-                     " evaluation of a compliant law: choose another evaluation"};
+                     " evaluation of a compliant law" +
+                     (*evaluation == Evaluation::conserving ? ", nor the displacement before the step" : "") +
+                     ": choose another evaluation"};
     return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
   add_contact_facts(program);

@@ -18,7 +18,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
       clamp_.offsets(phase, offset_.data(), rate);
       offset = offset_.data();
     }
-    kernels_.measure(program_.model->contact().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
+    kernels_.measure(program_.model->measured().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
   };
   measure(state.gap_weights, program.predictor_phase, false, state.gap);
   state.closed_lanes = 0;
@@ -71,21 +71,25 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
     clamp_.offsets(program.measure_phase, offset_.data(), gated);
     offset = offset_.data();
   }
-  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.measure_weights.data(),
+  kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.measure_weights.data(),
                    offset, state.free.data());
   if (state.rate.rows() > 0) {
     if (program_.support) clamp_.offsets(program.rate_phase, offset_.data(), true);
-    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
+    kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
                      offset, state.rate.data());
   }
   if (state.before.rows() > 0) {
     if (program_.support) clamp_.offsets(program.before_phase, offset_.data(), false);
-    kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
+    kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
                      offset, state.before.data());
   }
   const Block& lower = gated ? state.gate_lower : lower_;
   const Block& upper = gated ? state.gate_upper : upper_;
-  return kernels_.outside(lower_.rows(), state.free.data(), lower.data(), upper.data());
+  std::uint32_t outside = kernels_.outside(lower_.rows(), state.free.data(), lower.data(), upper.data());
+  // A mean over the step may push a point that leaves its stop within it, whether or not it was pushed before.
+  if (state.before.rows() > 0)
+    outside |= kernels_.outside(lower_.rows(), state.before.data(), lower.data(), upper.data());
+  return outside;
 }
 
 }  // namespace ricochet

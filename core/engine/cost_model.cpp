@@ -43,7 +43,7 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int
   const double nano = 1e-9, stages = std::max(1, solves);
   Cost cost;
   const double entries = kind == OperatorKind::modal ? static_cast<double>(problem.points()) * n
-                                                     : static_cast<double>(problem.contact.nonZeros());
+                                                     : static_cast<double>(problem.measured().nonZeros());
   double nanoseconds = n * (slots + 1) * slots * rate.elementwise + entries * (slots + 2) * rate.measure;
   if (kind == OperatorKind::modal) {
     nanoseconds += n * (slots + 1) * rate.diagonal;

@@ -43,6 +43,7 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
     stiffness_ = p.stiffness;
     inertia_ = p.inertia;
     contact_ = RowMatrix::from(p.contact);
+    measured_ = RowMatrix::from(p.law_rows);
     tip_ = RowMatrix::from(p.tip);
     shape_ = p.support_shape;
     return;
@@ -56,6 +57,7 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
   inertia_.mass = diagonal(mu);
   inertia_.kernel_dimension = p.inertia.kernel_dimension;
   contact_ = dense_rows(p.contact * modes_);
+  if (p.changed_by_law()) measured_ = dense_rows(p.law_rows * modes_);
   tip_ = dense_rows(p.tip * modes_);
   shape_ = modes_.transpose() * p.support_shape;
 }

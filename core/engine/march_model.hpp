@@ -38,7 +38,9 @@ class MarchModel {
   /// K and M in these coordinates (M empty when it stays factored), and the factors.
   const SparseMatrix& stiffness() const { return stiffness_; }
   const Inertia& inertia() const { return inertia_; }
+  /// H, where the contact points are; and what the law measures and pushes along, H too unless it changed the problem.
   const RowMatrix& contact() const { return contact_; }
+  const RowMatrix& measured() const { return problem_->changed_by_law() ? measured_ : contact_; }
   const RowMatrix& tip() const { return tip_; }
   const Eigen::VectorXd& support_shape() const { return shape_; }
 
@@ -53,7 +55,7 @@ class MarchModel {
   int rows_ = 0;
   SparseMatrix stiffness_;
   Inertia inertia_;
-  RowMatrix contact_, tip_;
+  RowMatrix contact_, measured_, tip_;
   Eigen::VectorXd shape_;
 };
 

@@ -78,7 +78,7 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->update.insert(state->update.end(), row.begin(), row.end());
   }
   if (!program_.contact || !stage.reads_contact) return state;
-  state->delassus = std::make_unique<StageDelassus>(*stage.op, model.contact(), model.rows());
+  state->delassus = std::make_unique<StageDelassus>(*stage.op, model.measured(), model.rows());
   state->effort.emplace_back(points, T);
   state->free = Block(points, T);
   if (stage.effort.size() > 1 || stage.effort[0] != 1.0) state->weighted = Block(points, T);

@@ -2,23 +2,28 @@
 
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/initial.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <stdexcept>
 
 namespace ricochet {
 namespace {
 
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
-  problem.stiffness = bending_stiffness(problem.space, section_properties(beam.section, beam.young, beam.density).EI);
+  problem.rigidity = section_properties(beam.section, beam.young, beam.density).EI;
+  problem.stiffness = bending_stiffness(problem.space, problem.rigidity);
   problem.damping = beam.damping;
 }
 void add_stiffness(const BarSpec& bar, SemiDiscrete& problem) {
+  problem.rigidity = bar.EA;
   problem.stiffness = axial_stiffness(problem.space, bar.EA);
   problem.damping = bar.damping;
 }
 void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
+  problem.rigidity = oscillator.stiffness;
   problem.stiffness.resize(1, 1);
   problem.stiffness.insert(0, 0) = oscillator.stiffness;
   problem.stiffness.makeCompressed();
@@ -37,6 +42,26 @@ Formula whole_load(const SceneSpec& scene) {
       "/scene/structure/force", "xt");
 }
 
+// The structure itself, before any law.
+ContactStructure structure_of(const SemiDiscrete& problem) {
+  return {.space = &problem.space,
+          .rigidity = problem.rigidity,
+          .contact = &problem.contact,
+          .measured = problem.contact,
+          .stiffness = problem.changed_by_law() ? problem.own_stiffness : problem.stiffness};
+}
+
+std::optional<Refusal> change_by(ContactLaw& law, SemiDiscrete& problem) {
+  ContactStructure structure = structure_of(problem);
+  if (auto refusal = law.prepare_problem(structure)) return refusal;
+  problem.own_stiffness = std::move(problem.stiffness);
+  problem.stiffness = std::move(structure.stiffness);
+  problem.law_rows = std::move(structure.measured);
+  problem.stiffness.makeCompressed();
+  problem.law_rows.makeCompressed();
+  return std::nullopt;
+}
+
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what) {
   const double support = support_at_start(problem.support).position;
   const Eigen::VectorXd absolute = (problem.contact * problem.position).array() + support;
@@ -45,7 +70,7 @@ void check_start(const SemiDiscrete& problem, const std::string& pointer, const 
 
 }  // namespace
 
-SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass) {
+SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law) {
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   check_scene(scene, elements);
 
@@ -65,6 +90,8 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
   problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
   problem.tip = displacement_rows(problem.space, {tip_position(scene)});
+  if (law && law->changes_problem() && problem.points() > 0)
+    if (auto refusal = change_by(*law, problem)) return *refusal;
 
   interpolate_initial(scene, problem);
   check_start(problem, "/scene/initial/displacement", "the initial displacement");
@@ -75,6 +102,16 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
     measure_mass_constraint(problem);
   }
   return problem;
+}
+
+void show_problem(ContactLaw& law, const SemiDiscrete& problem) {
+  if (problem.points() == 0 || law.absent() || (!law.changes_problem() && !problem.changed_by_law())) return;
+  ContactStructure structure = structure_of(problem);
+  const bool refused = law.changes_problem() && law.prepare_problem(structure).has_value();
+  const bool same = !refused && problem.changed_by_law() && law.changes_problem() &&
+                    (structure.stiffness - problem.stiffness).squaredNorm() == 0 &&
+                    (structure.measured - problem.law_rows).squaredNorm() == 0;
+  if (!same) throw std::logic_error("the problem was discretised for another contact law");
 }
 
 }  // namespace ricochet

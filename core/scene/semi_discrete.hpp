@@ -2,14 +2,16 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace ricochet {
+
+class ContactLaw;
 
 /// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element;
 /// without elements, the force f(0,t) (N) itself.
@@ -32,26 +34,33 @@ class DistributedLoad {
 
 /// The semi-discrete problem for w = u − φ:
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
-/// with s_i = ∫ρS φ_i (whatever the mass strategy).
+/// with s_i = ∫ρS φ_i (whatever the mass strategy). Of a contact law that changes the problem, K is the K' and H the G
+/// of contact_structure.hpp; `contact` stays H.
 struct SemiDiscrete {
   FiniteElementSpace space;
   Inertia inertia;
+  double rigidity = 0;     ///< EI (N m²), EA (N), k (N/m)
   SparseMatrix stiffness;  ///< K, both triangles, n × n
   Damping damping;         ///< α, η
   SupportSpec support;
   Eigen::VectorXd support_shape;  ///< s (kg)
   std::shared_ptr<const DistributedLoad> load;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> contact;  ///< H, m × n
-  std::vector<double> contact_x;                         ///< position of each contact point, m
-  Eigen::VectorXd lower, upper;                          ///< g1, g2 at the contact points; ±∞ where absent
-  Eigen::SparseMatrix<double, Eigen::RowMajor> tip;      ///< 1 × n: the displacement shown to people
-  Eigen::VectorXd position, velocity;                    ///< q₀, v₀ of w
+  SparseRows contact;                                ///< H, m × n: displacements of the contact points
+  SparseRows law_rows;                               ///< G, where the law changed the problem; else empty
+  SparseMatrix own_stiffness;                        ///< K of the structure itself there; else empty
+  std::vector<double> contact_x;                     ///< position of each contact point, m
+  Eigen::VectorXd lower, upper;                      ///< g1, g2 at the contact points; ±∞ where absent
+  Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
+  Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
   /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0), Z = Ker M: what an initial state off the constraint of a singular mass exceeds
   /// the equilibrium of its massless part by (J), and loses in the first steps at any h; 0 for a regular mass or after
   /// projection.
   double kernel_energy = 0;
   std::vector<std::string> notes;  ///< what was done that a reader should know
+  /// What the law measures and pushes along: H, or G.
+  const SparseRows& measured() const { return changed_by_law() ? law_rows : contact; }
+  bool changed_by_law() const { return own_stiffness.rows() > 0; }
   int dofs() const { return static_cast<int>(position.size()); }
   int points() const { return static_cast<int>(contact.rows()); }
   bool damped() const { return damping.stiffness != 0 || damping.mass != 0; }
@@ -64,8 +73,14 @@ FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
 /// …) for stops that cross (lower ≥ upper somewhere), a clamp that the support pushes through a stop, an initial state
-/// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal.
-SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass);
+/// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal, and so is a law.
+/// Without a law the problem is that of laws that do not change it.
+SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass,
+                                 ContactLaw* law = nullptr);
+
+/// Shows a law the problem that was discretised for one with its parameters; nothing to do for laws that do not change
+/// it. Throws std::logic_error where the problem was made for another law.
+void show_problem(ContactLaw& law, const SemiDiscrete& problem);
 
 /// The checks of discretise() that need no mass and no mesh, for a study to run before any case (mesh: finest of the
 /// study).

@@ -42,10 +42,12 @@ class Barrier final : public PointwiseContact {
     laws_.clear();
     for (const Parameters& lane : lanes) laws_.push_back({lane.real("stiffness"), lane.real("thickness")});
   }
-  PointForce force(const ContactState& state) const override {
+  PointForce at(const ContactState& state) const override {
     const BarrierLaw& law = this->law(state.lane);
-    if (evaluation() != Evaluation::conserving)
-      return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
+    return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
+  }
+  PointForce gradient(const ContactState& state) const override {
+    const BarrierLaw& law = this->law(state.lane);
     const double left = law.thickness - std::max(state.depth, state.before);
     return mean_force(law, state.depth, state.before, std::min({state.depth, state.before, left}));
   }
@@ -66,13 +68,16 @@ void register_all(Registry& registry) {
            "From D before the stop on a point is pushed back by the barrier −κ δ² ln(1 − δ/D), δ = D − clearance, "
            "smooth where it begins and without bound at the stop: with an evaluation at the end of the step a point "
            "never reaches it. The smaller κ and D, the nearer to a rigid stop, and the stiffer. Nothing is lost by "
-           "the law; evaluated at the end of the step the scheme loses at each impact what the step does not resolve, "
-           "conserving gives it back to round-off. An explicit evaluation that lands beyond the stop has no force: the "
-           "run fails there.",
+           "the law; evaluated at the end of the step the scheme loses at each impact what the step does not "
+           "resolve. " +
+           std::string(evaluation_text) +
+           "Explicit, midpoint or hybrid, a step may land beyond the stop, where the law has no energy and the run "
+           "fails.",
        .source = "Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang and Kaufman (2020), Incremental potential "
-                 "contact, eq. 6",
+                 "contact, eq. 6; " +
+                 std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m", "κ, scale of the barrier at each contact point"), thickness,
-                      evaluation_parameter(true)}},
+                      evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Barrier>(evaluation_of(p)); });
 }
 

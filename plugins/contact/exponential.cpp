@@ -35,10 +35,12 @@ class Exponential final : public PointwiseContact {
     for (const Parameters& lane : lanes)
       laws_.push_back({lane.real("force") * std::exp(-lane.real("reach")), lane.real("length"), lane.real("reach")});
   }
-  PointForce force(const ContactState& state) const override {
+  PointForce at(const ContactState& state) const override {
     const ExponentialLaw& law = this->law(state.lane);
-    if (evaluation() != Evaluation::conserving)
-      return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
+    return {.value = law.force(state.depth), .stiffness = law.slope(state.depth)};
+  }
+  PointForce gradient(const ContactState& state) const override {
+    const ExponentialLaw& law = this->law(state.lane);
     return mean_force(law, state.depth, state.before, std::min({law.length, state.depth, state.before}));
   }
   double stored(double depth, int lane) const override { return law(lane).stored(depth); }
@@ -61,11 +63,12 @@ void register_all(Registry& registry) {
        .text =
            "A point at depth x beyond the stop, or before it where x < 0, is pushed back with F (e^(x/l) − e^(−r)), "
            "from r lengths before the stop on: continuous, elastic, without a corner at the stop. The shorter l, "
-           "the nearer to a rigid stop, and the stiffer: the slope at the stop is F/l. The restitution of the time "
-           "scheme has no part in it.",
+           "the nearer to a rigid stop, and the stiffer: the slope at the stop is F/l. " +
+           std::string(evaluation_text) + "The restitution of the time scheme has no part in it.",
        .source = "a regularisation of the stop by a smooth potential that no one author owns; the cut-off is this "
-                 "program's",
-       .parameters = {force, length, reach, evaluation_parameter(true)}},
+                 "program's; " +
+                 std::string(evaluation_source),
+       .parameters = {force, length, reach, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Exponential>(evaluation_of(p)); });
 }
 

@@ -4,7 +4,7 @@ namespace {
 
 using namespace ricochet;
 
-/// p = k δ₊ⁿ at each point and side, U = k δ₊ⁿ⁺¹/(n+1); conserving: p = [U(δ) − U(δ⁻)]/(δ − δ⁻).
+/// p = k δ₊ⁿ at each point and side, U = k δ₊ⁿ⁺¹/(n+1).
 class Hertz final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
@@ -15,9 +15,9 @@ class Hertz final : public PointwiseContact {
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override { laws_ = power_laws(lanes); }
-  PointForce force(const ContactState& state) const override {
-    const PowerLaw& law = this->law(state.lane);
-    return evaluation() == Evaluation::conserving ? law.between(state.depth, state.before) : law.at(state.depth);
+  PointForce at(const ContactState& state) const override { return law(state.lane).at(state.depth); }
+  PointForce gradient(const ContactState& state) const override {
+    return law(state.lane).between(state.depth, state.before);
   }
   double stored(double depth, int lane) const override { return law(lane).stored(depth); }
   const PowerLaw& law(int lane) const { return laws_[static_cast<std::size_t>(lane)]; }
@@ -32,14 +32,13 @@ void register_all(Registry& registry) {
        .text =
            "A point that passes a stop by δ is pushed back with k δⁿ, as a sphere on a plane is for n = 3/2; n = 1 is "
            "the penalty. Nothing is lost: a mass m that arrives at speed v goes in by ((n+1) m v²/(2k))^(1/(n+1)) and "
-           "leaves at v. Where in the step δ is measured is `evaluation`: implicit at the end of the step, averaged "
-           "over the levels over which the scheme averages the elastic force, explicit at what is known when the step "
-           "begins, conserving by the difference of the stored energy over the step, which the energy of the scheme "
-           "then gives and takes back to round-off. The restitution of the time scheme has no part in it.",
-       .source = "Hertz (1881), Über die Berührung fester elastischer Körper; conserving: Simo and Tarnow (1992), "
-                 "Gonzalez (2000)",
+           "leaves at v. " +
+           std::string(evaluation_text) +
+           "The restitution of the time scheme has no part in it. For n = 1 hybrid never gives energy; for other n it "
+           "may, little.",
+       .source = "Hertz (1881), Über die Berührung fester elastischer Körper; " + std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m^n", "k, force at a depth of 1 m at each contact point"),
-                      exponent_parameter(), evaluation_parameter(true)}},
+                      exponent_parameter(), evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Hertz>(evaluation_of(p)); });
 }
 

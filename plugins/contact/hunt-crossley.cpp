@@ -18,9 +18,13 @@ class HuntCrossley final : public PointwiseContact {
     damping_.clear();
     for (const Parameters& lane : lanes) damping_.push_back(lane.real("damping"));
   }
-  PointForce force(const ContactState& state) const override {
+  PointForce at(const ContactState& state) const override {
     const auto lane = static_cast<std::size_t>(state.lane);
-    return damped(laws_[lane], damping_[lane], state);
+    return damped(laws_[lane].at(state.depth), damping_[lane], state.rate);
+  }
+  PointForce gradient(const ContactState& state) const override {
+    const auto lane = static_cast<std::size_t>(state.lane);
+    return damped(laws_[lane].between(state.depth, state.before), damping_[lane], state.rate);
   }
   double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
 
@@ -39,11 +43,13 @@ void register_all(Registry& registry) {
            "A point that passes a stop by δ is pushed back with k δⁿ (1 + χ δ̇), never pulled. The force starts and "
            "ends at zero, other than that of a spring beside a dashpot. The restitution follows from χ v alone, "
            "whatever k, n and the mass: χ v (1+e) = ln[(1 + χ v)/(1 − e χ v)], that is 0.71 at χ v = 0.6 and 0.41 at "
-           "χ v = 2, near 1 − (2/3) χ v for small ones. The restitution of the time scheme has no part in it. What the "
-           "damping takes is reported as dissipated by the law.",
+           "χ v = 2, near 1 − (2/3) χ v for small ones. " +
+           std::string(damped_evaluation_text) +
+           "The restitution of the time scheme has no part in it. What the damping takes is reported as dissipated by "
+           "the law.",
        .source = "Hunt and Crossley (1975), Coefficient of restitution interpreted as damping in vibroimpact",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
-                      exponent_parameter(), damping, evaluation_parameter(false)}},
+                      exponent_parameter(), damping, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<HuntCrossley>(evaluation_of(p)); });
 }
 

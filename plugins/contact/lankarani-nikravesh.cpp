@@ -47,10 +47,16 @@ class LankaraniNikravesh final : public PointwiseContact {
     loss_.clear();
     for (const Parameters& lane : lanes) loss_.push_back(1 - lane.real("restitution") * lane.real("restitution"));
   }
-  PointForce force(const ContactState& state) const override {
-    const auto lane = static_cast<std::size_t>(state.lane);
+  double damping(const ContactState& state) const {
     const double entry = std::abs(memory_[place(state.point, state.lane)]);
-    return damped(laws_[lane], entry > 0 ? 0.75 * loss_[lane] / entry : 0.0, state);
+    return entry > 0 ? 0.75 * loss_[static_cast<std::size_t>(state.lane)] / entry : 0.0;
+  }
+  PointForce at(const ContactState& state) const override {
+    return damped(laws_[static_cast<std::size_t>(state.lane)].at(state.depth), damping(state), state.rate);
+  }
+  PointForce gradient(const ContactState& state) const override {
+    return damped(laws_[static_cast<std::size_t>(state.lane)].between(state.depth, state.before), damping(state),
+                  state.rate);
   }
   double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
 
@@ -72,12 +78,13 @@ void register_all(Registry& registry) {
            "where v⁻ is the speed at which the point closed when this contact began. The formula for χ supposes e near "
            "1, and the law does not deliver the e that it is given: it asks for 0.8 and gives 0.847102, for 0.5 and "
            "gives 0.725241, whatever k, n, the mass and the speed. A point that is found beyond its stop without "
-           "having "
-           "closed on it is not damped. As the law remembers v⁻, it offers no tangents: exponents are those of twins.",
+           "having closed on it is not damped. " +
+           std::string(damped_evaluation_text) +
+           "As the law remembers v⁻, it offers no tangents: exponents are those of twins.",
        .source = "Lankarani and Nikravesh (1990), A contact force model with hysteresis damping for impact analysis of "
                  "multibody systems",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
-                      exponent_parameter(), restitution, evaluation_parameter(false)}},
+                      exponent_parameter(), restitution, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<LankaraniNikravesh>(evaluation_of(p)); });
 }
 

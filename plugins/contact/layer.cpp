@@ -24,8 +24,11 @@ class Layer final : public PointwiseContact {
       thickness_.push_back(lane.real("thickness"));
     }
   }
-  PointForce force(const ContactState& state) const override {
+  PointForce at(const ContactState& state) const override {
     return laws_[static_cast<std::size_t>(state.lane)].at(state.depth);
+  }
+  PointForce gradient(const ContactState& state) const override {
+    return laws_[static_cast<std::size_t>(state.lane)].between(state.depth, state.before);
   }
   double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
 
@@ -42,11 +45,13 @@ void register_all(Registry& registry) {
        .summary = "a compliant layer in front of each stop",
        .text = "Each stop is covered by a layer of thickness D that pushes back with k times its compression: from D "
                "before the stop on, and beyond it with the same stiffness. Penetration is measured at the stop, and is "
-               "zero as long as the layer holds. With D = 0 it is the penalty. With stops at all nodes the stiffness "
-               "per metre grows as the mesh is refined. The restitution of the time scheme has no part in it.",
-       .source = "Winkler (1867), elastic foundation, one spring per contact point",
+               "zero as long as the layer holds. With D = 0 it is the penalty. " +
+               std::string(evaluation_text) +
+               "With stops at all nodes the stiffness per metre grows as the mesh is refined. The restitution of the "
+               "time scheme has no part in it.",
+       .source = "Winkler (1867), elastic foundation, one spring per contact point; " + std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m", "k, stiffness of the layer at each contact point"), thickness,
-                      evaluation_parameter(false)}},
+                      evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Layer>(evaluation_of(p)); });
 }
 

@@ -40,11 +40,11 @@ class Penalty final : public ContactLaw {
   std::vector<double> stiffness_;
 };
 
-/// The same springs by the difference of their energy over the step: p = [U(δ) − U(δ⁻)]/(δ − δ⁻), U = ½κδ₊². Within
-/// contact that is the mean of both ends; where it begins or ends it is not linear any more.
-class ConservingPenalty final : public PointwiseContact {
+/// The same springs by a mean over the step (see StepForce), U = ½κδ₊². Within contact all of them are the mean of both
+/// ends; where it begins or ends the force is not linear any more.
+class MeanPenalty final : public PointwiseContact {
  public:
-  ConservingPenalty() : PointwiseContact(Evaluation::conserving) {}
+  using PointwiseContact::PointwiseContact;
   std::optional<double> constant_stiffness(int lane) const override { return law(lane).stiffness; }
 
  private:
@@ -52,7 +52,8 @@ class ConservingPenalty final : public PointwiseContact {
     laws_.clear();
     for (const Parameters& lane : lanes) laws_.push_back({lane.real("stiffness"), 1});
   }
-  PointForce force(const ContactState& state) const override {
+  PointForce at(const ContactState& state) const override { return law(state.lane).at(state.depth); }
+  PointForce gradient(const ContactState& state) const override {
     return law(state.lane).between(state.depth, state.before);
   }
   double stored(double depth, int lane) const override { return law(lane).stored(depth); }
@@ -66,22 +67,20 @@ void register_all(Registry& registry) {
       {.name = "penalty",
        .summary = "linear springs behind the stops",
        .text =
-           "A point that passes a stop by δ is pushed back with κ δ. Where in the step δ is measured is `evaluation`: "
-           "implicit at the end of the step, averaged over the levels over which the scheme averages the elastic "
-           "force, "
-           "explicit at what is known when the step begins (then the step is limited by √(m/κ)), conserving by the "
-           "difference of the springs' energy over the step, which the energy of the scheme then gives and takes back "
-           "to round-off. The restitution of the time scheme has no part in it. The stiffness is per contact point: "
-           "with stops at all nodes, the "
-           "stop's stiffness per metre grows as the mesh is refined.",
+           "A point that passes a stop by δ is pushed back with κ δ. " + std::string(evaluation_text) +
+           "Evaluated explicit, the step is limited by √(m/κ); hybrid never gives energy. The restitution of the time "
+           "scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the stop's "
+           "stiffness per metre grows as the mesh is refined.",
        .source = "Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli (2006); "
-                 "conserving: Simo and Tarnow (1992), Armero and Petocz (1998)",
+                 "Armero and Petocz (1998); " +
+                 std::string(evaluation_source),
        .parameters = {with_role(stiffness_parameter("N/m", "κ, stiffness of the spring at each contact point"),
                                 ParameterRole::stiffness),
-                      evaluation_parameter(true)}},
+                      evaluation_parameter()}},
       [](const Parameters& p) -> std::unique_ptr<ContactLaw> {
-        if (evaluation_of(p) == Evaluation::conserving) return std::make_unique<ConservingPenalty>();
-        return std::make_unique<Penalty>(evaluation_of(p));
+        const ForceEvaluation evaluation = evaluation_of(p);
+        if (evaluation.force != StepForce::at_measure) return std::make_unique<MeanPenalty>(evaluation);
+        return std::make_unique<Penalty>(evaluation.measure);
       });
 }
 

@@ -46,19 +46,33 @@ inline PointForce PowerLaw::between(double depth, double before) const {
   return mean;
 }
 
-/// The evaluation that the word parameter `evaluation` names.
-inline Evaluation evaluation_of(const Parameters& parameters) {
+/// What the word parameter `evaluation` names: a measure of the scheme, or a mean over the step.
+inline ForceEvaluation evaluation_of(const Parameters& parameters) {
   const std::string& word = parameters.word("evaluation");
-  for (int e = 0; e < evaluations; ++e)
-    if (word == evaluation_word(static_cast<Evaluation>(e))) return static_cast<Evaluation>(e);
-  return Evaluation::implicit_end;
+  if (word == "midpoint") return {Evaluation::conserving, StepForce::midpoint};
+  if (word == "hybrid") return {Evaluation::conserving, StepForce::hybrid};
+  if (word == "conserving") return {Evaluation::conserving, StepForce::gradient};
+  if (word == "averaged") return {Evaluation::averaged};
+  if (word == "explicit") return {Evaluation::explicit_start};
+  return {};
 }
 
-inline ParameterSpec evaluation_parameter(bool conserving) {
-  std::vector<std::string> words = {"implicit", "averaged", "explicit"};
-  if (conserving) words.push_back("conserving");
-  return word_parameter("evaluation", words, "implicit", "the level at which the contact force is evaluated");
+inline ParameterSpec evaluation_parameter() {
+  return word_parameter("evaluation", {"implicit", "averaged", "explicit", "midpoint", "conserving", "hybrid"},
+                        "implicit", "where in the step the depth is taken that makes the contact force");
 }
+
+inline constexpr const char* evaluation_source =
+    "conserving: Simo and Tarnow (1992), Gonzalez (2000); hybrid: Chouly, Hild and Renard (2015), A Nitsche finite "
+    "element method for dynamic contact";
+
+/// What the words mean, for the manual of a law without losses.
+inline constexpr const char* evaluation_text =
+    "Where in the step δ is measured is `evaluation`: implicit at the end of the step, averaged over the levels over "
+    "which the scheme averages the elastic force, explicit at what is known when the step begins, midpoint half-way "
+    "between the depths before and after the step, hybrid the same where the step begins in contact and else half of "
+    "the force at its end, conserving by the difference of the stored energy over the step, which the energy of the "
+    "scheme then gives and takes back to round-off. ";
 
 inline ParameterSpec stiffness_parameter(const char* unit, const char* text) {
   ParameterSpec stiffness = real_parameter("stiffness", unit, std::nullopt, {.low = 0, .low_open = true}, text);

@@ -96,8 +96,8 @@ SceneSpec structure_scene(const StructureBench& bench) {
   return scene;
 }
 
-ProblemPointer discretised(const SceneSpec& scene, int elements, const MassStrategy& mass) {
-  auto made = discretise(scene, elements, mass);
+ProblemPointer discretised(const SceneSpec& scene, int elements, const MassStrategy& mass, ContactLaw* law) {
+  auto made = discretise(scene, elements, mass, law);
   if (auto* refusal = std::get_if<Refusal>(&made)) throw Refused{refusal->sentence};
   return std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
 }

@@ -50,7 +50,7 @@ struct StructureBench {
 SceneSpec structure_scene(const StructureBench& bench);
 
 /// Throws what discretise() throws, and Refused.
-ProblemPointer discretised(const SceneSpec& scene, int elements, const MassStrategy& mass);
+ProblemPointer discretised(const SceneSpec& scene, int elements, const MassStrategy& mass, ContactLaw* law = nullptr);
 /// The consistent mass, and as many elements as the structure allows of `elements`.
 ProblemPointer discretised(const SceneSpec& scene, int elements = 4);
 

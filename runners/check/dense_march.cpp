@@ -22,7 +22,7 @@ DenseMarch::DenseMarch(const Marcher& marcher)
       absent_(marcher.law().absent()),
       M_(problem_.inertia.mass),
       K_(problem_.stiffness),
-      H_(problem_.contact) {
+      H_(problem_.measured()) {
   C_ = problem_.damping.stiffness * K_ + problem_.damping.mass * M_;
   for (const LaneSpec& spec : marcher.program().lanes) {
     Lane lane;

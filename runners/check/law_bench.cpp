@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "runners/check/allocation_count.hpp"
+#include "runners/check/bench.hpp"
 
 namespace ricochet::checking {
 namespace {
@@ -13,6 +14,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 LawBench::LawBench(const Law& law, int points, int lanes) : law_(law.make()), points_(points), lanes_(lanes) {
+  const StructureBench beam{.beam = true, .stops = true, .everywhere = true};
+  if (law_->changes_problem()) discretised(structure_scene(beam), points, *consistent_bench_mass(), law_.get());
   const std::vector<Parameters> parameters(static_cast<std::size_t>(lanes), law.set.values);
   law_->prepare(points, parameters);
   const auto size = static_cast<std::size_t>(points * lanes);

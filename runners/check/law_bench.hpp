@@ -31,7 +31,8 @@ struct LaneProblem {
 /// A block of lanes before a law, and what the law answers. Nothing allocates between asking and answer.
 class LawBench {
  public:
-  /// Makes and prepares the law for `points` points and `lanes` lanes.
+  /// Makes and prepares the law for `points` points and `lanes` lanes; one that changes the problem for those of a beam
+  /// with stops at all nodes. Throws Refused.
   LawBench(const Law& law, int points, int lanes);
   ContactLaw& law() { return *law_; }
   const ContactLaw& law() const { return *law_; }

@@ -14,7 +14,11 @@ Verdict solution_answers_the_force_law(const Law& law);
 Verdict stiffness_as_declared(const Law& law);
 Verdict slopes_are_derivatives(const Law& law);
 Verdict potential_stores_the_force(const Law& law);
+Verdict energy_over_a_step(const Law& law);
 Verdict dissipation_is_reported(const Law& law);
+
+// Laws that change the problem (law_problem.cpp).
+Verdict changed_problem_is_sound(const Law& law);
 
 // All laws (law_conduct.cpp).
 Verdict solve_allocates_nothing(const Law& law);

@@ -26,6 +26,33 @@ std::vector<double> depths_of(LawBench& bench) {
   return depths;
 }
 
+bool reads_before(const LawBench& bench) {
+  return bench.law().reads() == Evaluation::conserving;
+}
+
+// From a depth before a step, in contact or without, to each depth after it; the same one where the law does not know.
+struct Way {
+  double depth = 0, before = 0;
+};
+std::vector<Way> steps_of(LawBench& bench) {
+  std::vector<Way> steps;
+  for (const double depth : depths_of(bench)) {
+    const double within = depth + bench.layer();
+    if (!reads_before(bench)) {
+      steps.push_back({depth, depth});
+      continue;
+    }
+    for (const double share : {0.8, 1.1, -0.3, -0.9}) {
+      const double other = share * within - bench.layer();
+      if (other >= 0 && bench.layer() > 0 && !at_point(bench, -1, other, 0, other).answered) continue;
+      steps.push_back({depth, other});
+      // And out of contact again.
+      if (share < 0) steps.push_back({other, depth});
+    }
+  }
+  return steps;
+}
+
 std::vector<double> speeds_of(const LawBench& bench) {
   if (!bench.law().reads_rate()) return {0.0};
   return {0.0, -0.2, 0.2, -2, 2};
@@ -45,7 +72,7 @@ double answer_at(LawBench& bench, const LaneProblem& lane, Eigen::Index i, doubl
   for (const int side : sides) {
     const double stop = side < 0 ? lane.lower[i] - layer : lane.upper[i] + layer;
     const double depth = side * (g - stop), before = side * (lane.before[i] - stop);
-    const bool acts = depth > -layer || (bench.law().reads() == Evaluation::conserving && before > -layer);
+    const bool acts = depth > -layer || (reads_before(bench) && before > -layer);
     // What a step leads from one stop to the other, both answer for.
     if (acts) effort += at_point(bench, side, depth, u, before).effort;
   }
@@ -162,11 +189,10 @@ Verdict slopes_are_derivatives(const Law& law) {
   if (!is_compliant(law)) return rigid();
   LawBench bench(law, 1, 1);
   if (!bench.law().offers_slopes()) return not_declared("no slopes: exponents are those of twins");
-  const bool conserving = bench.law().reads() == Evaluation::conserving;
+  const bool remembers = reads_before(bench);
   for (const int side : sides)
-    for (const double depth : depths_of(bench))
+    for (const auto& [depth, before] : steps_of(bench))
       for (const double speed : speeds_of(bench)) {
-        const double before = conserving ? 0.8 * depth : depth;
         const PointAnswer here = at_point(bench, side, depth, speed, before);
         if (here.effort == 0) continue;  // a damper that lets go
         const double dg = 1e-5 * std::abs(depth), du = 1e-5;
@@ -178,10 +204,10 @@ Verdict slopes_are_derivatives(const Law& law) {
           return ahead - behind;
         };
         // δp = −stiffness δg − viscosity δu − before δg⁻, with g = side · depth.
-        const double stiffness = -side * difference(dg, 0, conserving ? 0 : dg) / (2 * dg);
+        const double stiffness = -side * difference(dg, 0, remembers ? 0 : dg) / (2 * dg);
         const double viscosity = bench.law().reads_rate() ? -difference(0, du, 0) / (2 * du) : 0;
         if (lets_go) continue;
-        const double backwards = conserving ? -side * difference(0, 0, dg) / (2 * dg) : 0;
+        const double backwards = remembers ? -side * difference(0, 0, dg) / (2 * dg) : 0;
         const double size = std::max(std::abs(stiffness), std::abs(here.effort / depth));
         const auto wrong = [&](const char* what, double says, double is) {
           return fmt::format("at a depth of {:g} m and {:g} m/s it says a {} of {:.6g}, differences give {:.6g}", depth,
@@ -210,7 +236,7 @@ Verdict potential_stores_the_force(const Law& law) {
   }
   if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
   const auto U = [&](double depth) { return bench.law().potential(depth, 0); };
-  const bool conserving = bench.law().reads() == Evaluation::conserving;
+  const bool conserving = bench.law().conserves_energy();
   const double rest = U(-bench.layer());
   for (const double depth : depths_of(bench)) {
     const double stored = U(depth);
@@ -229,6 +255,39 @@ Verdict potential_stores_the_force(const Law& law) {
                                p, slope));
   }
   return fine("its slope is the force at rest");
+}
+
+Verdict energy_over_a_step(const Law& law) {
+  LawBench bench(law, 1, 1);
+  const bool conserving = bench.law().conserves_energy();
+  if (!reads_before(bench)) {
+    if (conserving) return fails("declares that it conserves energy, and does not read the measure before the step");
+    return not_applicable("it does not know the step, only one measure of it");
+  }
+  if (bench.law().memory_per_point() > 0) return not_applicable("its force depends on what it remembers");
+  const double layer = bench.layer();
+  const auto U = [&](double depth) { return depth > -layer ? bench.law().potential(depth, 0) : 0.0; };
+  double given = 0, kept = 0;
+  for (const int side : sides)
+    for (const auto& [depth, before] : steps_of(bench)) {
+      const double work = std::abs(at_point(bench, side, depth, 0, before).effort) * (depth - before);
+      const double stored = U(depth) - U(before);
+      const double share = (stored - work) / std::max(U(depth), U(before));
+      given = std::max(given, share);
+      kept = std::max(kept, -share);
+    }
+  // Round-off of a difference of energies over one of depths 1e-1 to 1e-2 of them.
+  constexpr double tolerance = 1e-11;
+  const double most = std::max(given, kept);
+  if (conserving && !(most <= tolerance))
+    return fails(
+        fmt::format("declares that it conserves energy; over a step it gives or keeps {:.3g} of what is stored", most));
+  if (conserving) return fine(fmt::format("p (δ − δ⁻) = U(δ) − U(δ⁻) to {:.1g}", most));
+  const auto part = [](const char* does, double share) {
+    return share <= tolerance ? fmt::format("{} nothing", does) : fmt::format("{} up to {:.2g}", does, share);
+  };
+  return not_declared(
+      fmt::format("of what is stored at a depth a step {}, and {}", part("gives", given), part("keeps", kept)));
 }
 
 Verdict dissipation_is_reported(const Law& law) {

@@ -160,9 +160,13 @@ std::string facts_of(const PluginManual& manual, ContactLaw& law, const Paramete
   if (const auto reads = law.reads()) {
     text += fmt::format("  reads the displacement, evaluated {}{}\n", evaluation_word(*reads),
                         law.reads_rate() ? ", and its rate" : "");
+    if (law.conserves_energy()) text += "  gives back to the scheme's energy what it stores\n";
     const auto stiffness = law.constant_stiffness(0);
-    text += stiffness ? fmt::format("  linear: {:g} N/m whatever the depth\n", *stiffness)
-                      : std::string("  not linear: spectra of closed contact and linear references leave it out\n");
+    if (law.changes_problem())
+      text += "  changes the stiffness of the structure and what is measured at its stops, its own with them\n";
+    else
+      text += stiffness ? fmt::format("  linear: {:g} N/m whatever the depth\n", *stiffness)
+                        : std::string("  not linear: spectra of closed contact and linear references leave it out\n");
     text += law.offers_slopes() ? "  exponents by tangents\n" : "  exponents by twins: it offers no slopes\n";
     if (const double layer = law.layer(0); layer > 0)
       text += fmt::format("  acts from {:g} m before the stop\n", layer);

@@ -69,7 +69,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   auto law = make_law(study_case, registry);
   const auto scheme = make_scheme(study_case, registry);
 
-  auto discretised = discretise(study_case.scene, study_case.elements, *mass);
+  auto discretised = discretise(study_case.scene, study_case.elements, *mass, law.get());
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
     prepared.refusal = refusal->sentence;
     return prepared;

@@ -203,7 +203,7 @@ TEST_CASE("conformance: any law, scheme and mass either run together or refuse i
     for (const Choice& contact : all(Role::contact))
       for (const Choice& time : all(Role::time)) {
         INFO(mass.name << " × " << contact.name << " × " << time.name);
-        const auto problem = problem_of(scene_for(mass, 4), 4, mass);
+        const auto problem = problem_of(scene_for(mass, 4), 4, mass, contact);
         auto program = compiled(problem, {mass, contact, time}, 1e-5);
         const auto* refusal = std::get_if<Refusal>(&program);
         // θ = ½ keeps the root −1 on a contact point without mass. As they come, all others run.

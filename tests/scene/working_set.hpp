@@ -67,8 +67,9 @@ inline Inertia built(const MassStrategy& strategy, const FiniteElementSpace& spa
   return std::get<Inertia>(result);
 }
 
-inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const MassStrategy& strategy) {
-  auto result = discretise(scene, elements, strategy);
+inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const MassStrategy& strategy,
+                                ContactLaw* law = nullptr) {
+  auto result = discretise(scene, elements, strategy, law);
   REQUIRE(std::holds_alternative<SemiDiscrete>(result));
   return std::get<SemiDiscrete>(result);
 }

@@ -82,7 +82,7 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* sl
   if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
   const double layer = marcher.law().layer(lane);
   for (int j = 0; j < model_.problem().points(); ++j) {
-    const double depth = marcher.depth(lane, j, model_.contact().times(j, place.data()), phi);
+    const double depth = marcher.depth(lane, j, model_.measured().times(j, place.data()), phi);
     if (depth > -layer) sample.contact += marcher.law().potential(depth, lane);
   }
   return sample;
@@ -164,7 +164,7 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
     for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
       if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
     if (effort == 0) continue;
-    state.step_contact += effort * (model_.contact().times(j, s.data()) + lift);
+    state.step_contact += effort * (model_.measured().times(j, s.data()) + lift);
     state.step_loads -= effort * lift;
   }
 }

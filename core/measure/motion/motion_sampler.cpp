@@ -218,7 +218,7 @@ bool MotionSampler::next() {
   const double support = marcher_.support(0, t), rate = marcher_.support_rate(0, t);
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
-    const Eigen::VectorXd touched = problem.contact * w;
+    const Eigen::VectorXd touched = problem.measured() * w;
     const double layer = marcher_.law().layer(0);
     for (int j = 0; j < problem.points(); ++j)
       if (const double depth = marcher_.depth(0, j, touched[j], support); depth > -layer)

@@ -19,7 +19,7 @@ constexpr double resolved_turn = 0.1;
 std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
   std::vector<bool> massive(static_cast<std::size_t>(problem.points()), true);
   if (problem.inertia.kernel_dimension == 0) return massive;
-  const Eigen::MatrixXd moved = problem.contact * mass_kernel(problem.inertia);
+  const Eigen::MatrixXd moved = problem.measured() * mass_kernel(problem.inertia);
   // The kernel's basis has entries of order one.
   for (int i = 0; i < problem.points(); ++i) massive[static_cast<std::size_t>(i)] = moved.row(i).norm() < 1e-9;
   return massive;
@@ -40,7 +40,7 @@ std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
   const InverseForm within_step = given_way(h), at_once = given_way(1e-3 * h);
   std::vector<bool> resolved(static_cast<std::size_t>(problem.points()));
   for (int i = 0; i < problem.points(); ++i) {
-    const Eigen::VectorXd push = problem.contact.row(i).transpose();
+    const Eigen::VectorXd push = problem.measured().row(i).transpose();
     const auto step = within_step(push), instant = at_once(push);
     resolved[static_cast<std::size_t>(i)] = step && instant && *instant <= (1 + resolved_turn * resolved_turn) * *step;
   }
@@ -153,7 +153,7 @@ void ImpactJump::stage_solved(const Marcher& marcher, const StageView& view) {
 // The orbit just before an impact, carried to the time at which the gap of the point closes.
 void ImpactJump::watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time) {
   const double h = marcher.program().h;
-  const RowMatrix& rows = marcher.program().model->contact();
+  const RowMatrix& rows = marcher.program().model->measured();
   const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(index)];
   Impact& impact = lane.impact;
   impact.point = point;
@@ -200,7 +200,7 @@ void ImpactJump::step_done(Marcher& marcher) {
 void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
   const Program& program = marcher.program();
   const double h = program.h, since = marcher.time() - lane.impact.time;
-  const RowMatrix& rows = program.model->contact();
+  const RowMatrix& rows = program.model->measured();
   const Impact& impact = lane.impact;
   const double omega = program.problem->support.pulsation;
   const Eigen::VectorXd after = lane.orbit.velocity(h, since), acceleration = lane.orbit.acceleration(h);

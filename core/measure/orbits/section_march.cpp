@@ -117,7 +117,9 @@ class SectionMarch::Watch final : public StepObserver {
     const Program& program = marcher.program();
     const StageProgram& stage = program.stages[static_cast<std::size_t>(view.stage)];
     const Combination& update = view.plan->update[0];
-    if (dt == 0 || stage.gate || stage.measure_z == 0 || update.z == 0) return before;
+    // What a law of its own rows measures does not say where the point is.
+    if (dt == 0 || stage.gate || stage.measure_z == 0 || update.z == 0 || program.problem->changed_by_law())
+      return before;
     // H q₊ of the free step from what the law measured, which is affine in the same z°.
     const auto at = [&](const std::vector<double>& weights) {
       double sum = 0;

@@ -67,7 +67,7 @@ std::optional<LinearResponse> linear_response(const SemiDiscrete& problem, const
       sum += rows.value[static_cast<std::size_t>(e)] * position[rows.index[static_cast<std::size_t>(e)]];
     return sum;
   };
-  for (int i = 0; i < model.contact().rows(); ++i) response.contact.push_back(read(model.contact(), i));
+  for (int i = 0; i < model.measured().rows(); ++i) response.contact.push_back(read(model.measured(), i));
   response.tip = read(model.tip(), 0);
   return response;
 }

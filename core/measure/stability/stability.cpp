@@ -161,7 +161,7 @@ SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, cons
   StructureModes modes = *modes_;
   MatrixXd rows(points, n);
   for (Index i = 0; i < points; ++i)
-    rows.row(i) = Eigen::RowVectorXd(problem_->contact.row(set.points[static_cast<std::size_t>(i)])) * modes.shapes;
+    rows.row(i) = Eigen::RowVectorXd(problem_->measured().row(set.points[static_cast<std::size_t>(i)])) * modes.shapes;
   // Within Ker M any orthogonal basis serves: one in which only the first directions move the points.
   const Index kernel = n - modes.regular;
   Index felt = n;

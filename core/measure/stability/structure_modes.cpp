@@ -55,7 +55,7 @@ StructureModes held_modes(const SemiDiscrete& problem, const std::vector<int>& p
   const Index n = problem.dofs();
   MatrixXd rows(static_cast<Index>(points.size()), n);
   for (Index i = 0; i < rows.rows(); ++i)
-    rows.row(i) = Eigen::RowVectorXd(problem.contact.row(points[static_cast<std::size_t>(i)]));
+    rows.row(i) = Eigen::RowVectorXd(problem.measured().row(points[static_cast<std::size_t>(i)]));
   const PivotedBasis pivoted = pivoted_basis(rows.transpose());
   const MatrixXd basis = pivoted.basis.rightCols(n - pivoted.rank);
   int kernel = 0;

@@ -122,8 +122,9 @@ class BifurcationRun {
         "section at step {} of {} per period; recurrence within {:g} of {:g} m and of {:g} m/s", section_.strobe,
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
     // At a depth of a thousandth of the room: whoever compares cases orders them by it.
-    const auto compliance =
-        contact_compliance(*make_law(case_, registry_), case_.contact.parameters, 1e-3 * section_.scale);
+    const auto one = make_law(case_, registry_);
+    show_problem(*one, *scenes_.problem(0));
+    const auto compliance = contact_compliance(*one, case_.contact.parameters, 1e-3 * section_.scale);
     NumberTable law = contact_law_head();
     law.add({compliance.value_or(std::numeric_limits<double>::quiet_NaN())});
     record_.numbers.push_back(std::move(law));

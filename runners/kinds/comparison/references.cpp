@@ -63,7 +63,7 @@ DiscreteProblem dense(const SemiDiscrete& problem, const SampleGrid& grid) {
     discrete.mass = problem.inertia.mass;
   }
   discrete.stiffness = problem.stiffness;
-  discrete.contact = problem.contact;
+  discrete.contact = problem.measured();
   discrete.lower = problem.lower;
   discrete.upper = problem.upper;
   discrete.support_shape = problem.support_shape;
@@ -220,13 +220,19 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
   ReferenceProblem problem = reference_problem(study_case, registry_);
   DiscreteProblem discrete;
   if (solver->of_the_mesh()) {
-    auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_));
+    const auto law = make_law(study_case, registry_);
+    auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get());
     if (const auto* refusal = std::get_if<Refusal>(&built)) {
       known.refusal = refusal->sentence;
       return known;
     }
     discrete = dense(std::get<SemiDiscrete>(built), grid);
     problem.discrete = &discrete;
+    // The stiffness of a law that changes the problem is known since.
+    if (law->changes_problem() && law->constant_stiffness(0)) {
+      problem.contact_nonlinear = false;
+      problem.contact_stiffness = *law->constant_stiffness(0);
+    }
   } else {
     problem.contact_stiffness = 0;
     problem.contact_nonlinear = false;

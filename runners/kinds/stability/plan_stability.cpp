@@ -25,14 +25,15 @@ std::vector<double> steps_of(const StudyCase& study_case) {
 
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
-  const auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry));
+  const auto law = make_law(study_case, registry);
+  const auto discretised =
+      discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry), law.get());
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
     out.refusal = refusal->sentence;
     return out;
   }
   const SemiDiscrete& problem = std::get<SemiDiscrete>(discretised);
   out.notes = problem.notes;
-  const auto law = make_law(study_case, registry);
   const auto scheme = make_scheme(study_case, registry);
   const std::vector<double> steps = steps_of(study_case);
   const auto made = scheme->plan(steps.front(), problem_facts(problem, *law));

@@ -63,12 +63,12 @@ class StabilityRun {
 
   CaseRecord run() {
     begin_ = thread_seconds();
-    auto discretised = discretise(case_.scene, case_.elements, *make_mass(case_, registry_));
+    const auto law = make_law(case_, registry_);
+    auto discretised = discretise(case_.scene, case_.elements, *make_mass(case_, registry_), law.get());
     if (const auto* refusal = std::get_if<Refusal>(&discretised)) return refused(refusal->sentence);
     problem_ = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
     record_.notes = problem_->notes;
     scheme_ = make_scheme(case_, registry_);
-    const auto law = make_law(case_, registry_);
     facts_ = problem_facts(*problem_, *law);
     const LinearLaw linear = linear_law(*law, problem_->points(), case_.contact.parameters);
     if (law->reads_rate())

@@ -32,14 +32,14 @@ int ForcedScenes::add(const std::function<StudyCase()>& variant) {
     candidate.scheme = one.time.parameters.values();
     candidate.law = shared_parameters(one.contact.parameters, entry->manual);
     candidate.make_law = [entry, parameters = one.contact.parameters] { return entry->make(parameters); };
-    auto made = discretise(one.scene, one.elements, *make_mass(one, registry_));
+    const auto law = make_law(one, registry_);
+    auto made = discretise(one.scene, one.elements, *make_mass(one, registry_), law.get());
     if (const auto* refusal = std::get_if<Refusal>(&made)) {
       scene.refusal = refusal->sentence;
       return number;
     }
     candidate.problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
     scene.lane = candidate.lane = scene_lane(*candidate.problem, one.contact.parameters);
-    const auto law = make_law(one, registry_);
     const auto scheme = make_scheme(one, registry_);
     const auto plan_at = [&, facts = problem_facts(*candidate.problem, *law)](double h) {
       return scheme->plan(h, facts);

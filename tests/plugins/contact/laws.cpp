@@ -36,6 +36,22 @@ TEST_CASE("one augmentation from zero is the penalty") {
   CHECK(once == penalty);
 }
 
+TEST_CASE("the perturbed Lagrangian is one augmentation from zero, to the last bit, on any impact measure") {
+  const auto time =
+      GENERATE(Choice{"newmark-dumont-paoli", {{"restitution", 0.5}}}, Choice{"moreau-jean"}, Choice{"newmark"});
+  const double stiffness = GENERATE(1e3, 1e6);
+  const double h = 1e-4;
+  const double perturbed =
+      tip_after({{"consistent"}, {"perturbed-lagrangian", {{"stiffness", stiffness}}}, time}, h, 0.3);
+  const double once = tip_after(
+      {{"consistent"},
+       {"augmented-lagrangian",
+        {{"augmentation", stiffness}, {"iterations", 1LL}, {"tolerance", 0.0}, {"start", std::string("zero")}}},
+       time},
+      h, 0.3);
+  CHECK(perturbed == once);
+}
+
 TEST_CASE("many augmentations are Signorini") {
   const auto start = GENERATE(std::string("zero"), std::string("previous"));
   const Choice time{"newmark-dumont-paoli"};
