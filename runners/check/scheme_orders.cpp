@@ -149,7 +149,7 @@ Verdict compliance_is_right(const Scheme& scheme) {
     if (evaluation == Evaluation::conserving && !remembers)
       return fails("offers a conserving evaluation without the displacement one step before (`before`)");
     // The stop lies far above the motion about its new rest, so that the spring never opens.
-    const double eta = rated && evaluation != Evaluation::conserving ? 0.3 : 0;
+    const double eta = rated ? 0.3 : 0;
     OscillatorBench bench{.damping = 0.4, .force = 3, .support = 0.2, .stop = true};
     const double rest = kappa * stop / (bench.stiffness + kappa);
     bench.position = rest + 0.3;

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/algebra/pointwise_contact.hpp>
+#include <ricochet/contract/contact_structure.hpp>
 
 #include "runners/check/allocation_count.hpp"
 #include "runners/check/law_checks.hpp"
@@ -94,6 +96,47 @@ Entry<ContactLaw> law_entry(bool rigid, Wrong wrong) {
   return entry;
 }
 
+enum class Change { none, sound, indefinite, skew, changing, poor_refusal };
+
+/// Springs by a mean over the step, on a structure that they soften.
+class SofteningLaw final : public PointwiseContact {
+ public:
+  SofteningLaw(StepForce force, bool says, Change change)
+      : PointwiseContact({Evaluation::conserving, force}), says_(says), change_(change) {}
+  bool changes_problem() const override { return change_ != Change::none; }
+  std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
+    static int calls = 0;
+    if (change_ == Change::poor_refusal) return Refusal{"this cannot be done at all"};
+    const double left = change_ == Change::indefinite ? -0.1 : change_ == Change::changing ? 0.9 / ++calls : 0.9;
+    structure.stiffness *= left;
+    if (change_ == Change::skew && structure.stiffness.rows() > 1) structure.stiffness.coeffRef(0, 1) *= 1.5;
+    return std::nullopt;
+  }
+
+ private:
+  void set_lanes(std::span<const Parameters>) override {}
+  PointForce at(const ContactState& state) const override {
+    return state.depth > 0 ? PointForce{.value = kappa * state.depth, .stiffness = kappa} : PointForce{};
+  }
+  // One that says more than it keeps takes the force at the end.
+  PointForce gradient(const ContactState& state) const override {
+    if (!says_) return at(state);
+    const double work = stored(std::max(state.depth, 0.0), 0) - stored(std::max(state.before, 0.0), 0);
+    const double way = state.depth - state.before;
+    return way == 0 ? at(state) : PointForce{.value = work / way};
+  }
+  double stored(double depth, int) const override { return 0.5 * kappa * depth * depth; }
+
+  bool says_;
+  Change change_;
+};
+
+CheckResult of_softening(StepForce force, bool says, Change change, const std::string& check) {
+  Entry<ContactLaw> entry{full_manual("made-here"), {}, ""};
+  entry.make = [=](const Parameters&) { return std::make_unique<SofteningLaw>(force, says, change); };
+  return one_check(checking::law_checks(), entry, check);
+}
+
 void caught(bool rigid, Wrong wrong, const std::string& check, const std::string& words) {
   const CheckResult result = one_check(checking::law_checks(), law_entry(rigid, wrong), check);
   INFO(text_of({result}));
@@ -152,4 +195,31 @@ TEST_CASE("check: lanes that know of each other, or of lanes that are not theirs
 TEST_CASE("check: a solution that depends on where the search begins is caught") {
   caught(true, Wrong::memory_of_last, "warm start", "another solution");
   caught(false, Wrong::memory_of_last, "warm start", "another solution");
+}
+
+TEST_CASE("check: a law that conserves energy is measured, and one that only says so is caught") {
+  const std::string check = "energy over a step";
+  CHECK(of_softening(StepForce::gradient, true, Change::none, check).finding == Finding::ok);
+  const CheckResult wrong = of_softening(StepForce::gradient, false, Change::none, check);
+  CHECK(wrong.finding == Finding::fails);
+  CHECK_THAT(text_of({wrong}), Contains("declares that it conserves energy"));
+  // Half of it is kept where a step leaves the stop: nothing was declared, and what is so is said.
+  const CheckResult hybrid = of_softening(StepForce::hybrid, true, Change::none, check);
+  CHECK(hybrid.finding == Finding::not_declared);
+  CHECK_THAT(text_of({hybrid}), Contains("gives nothing") || Contains("keeps"));
+}
+
+TEST_CASE("check: a changed problem that is not symmetric, not positive or not the same twice is caught") {
+  const auto result = [](Change change) { return of_softening(StepForce::midpoint, true, change, "changed problem"); };
+  CHECK(result(Change::none).finding == Finding::not_declared);
+  CHECK(result(Change::sound).finding == Finding::ok);
+  for (const auto& [change, words] : {std::pair{Change::indefinite, "not positive"},
+                                      {Change::skew, "not symmetric"},
+                                      {Change::changing, "another contact law"},
+                                      {Change::poor_refusal, "no remedy"}}) {
+    const CheckResult wrong = result(change);
+    INFO(text_of({wrong}));
+    CHECK(wrong.finding == Finding::fails);
+    CHECK_THAT(text_of({wrong}), Contains(words));
+  }
 }

@@ -36,6 +36,9 @@ Choice law_of(const std::string& name, const std::string& evaluation) {
 
 const Choice midpoint{"midpoint"};
 
+constexpr double fine = 2.5e-4;
+constexpr int fine_steps = 20000;
+
 struct Run {
   double drift, gain, change, deepest;
   long contacts;
@@ -61,8 +64,8 @@ TEST_CASE("conserving laws keep the energy of the scheme and of the stops, whate
             << run.contacts);
   CHECK(run.contacts > 50);
   CHECK(run.deepest > 0.3);
-  // Round-off of 5000 steps, each 1e-16 of the energy or of the law's own terms.
-  CHECK(run.drift < 2e-12);
+  // Round-off of 5000 steps, a few units in the last place of the energy each: ½k δ² and its like for Hertz' powers.
+  CHECK(run.drift < 5000 * 1e-15);
 }
 
 TEST_CASE("conserving laws that damp lose what they report, to round-off") {
@@ -72,7 +75,7 @@ TEST_CASE("conserving laws that damp lose what they report, to round-off") {
   INFO(name << ": drift " << run.drift << ", without the losses " << alone.change);
   CHECK(alone.change < -0.3);
   CHECK(alone.gain < 1e-12);
-  CHECK(run.drift < 2e-12);
+  CHECK(run.drift < 5000 * 1e-15);
 }
 
 TEST_CASE("the hybrid evaluation never gives energy where the law is linear, and little where it is not") {
@@ -82,19 +85,23 @@ TEST_CASE("the hybrid evaluation never gives energy where the law is linear, and
     CHECK(linear.gain < 1e-12);
     CHECK(linear.change < 0);
   }
-  const Run hertz = bounced(law_of("hertz", "hybrid"), midpoint);
+  // The midpoint rule of the work ∫Φ dδ errs by Φ''(Δδ)³/24: to one sign here, in the step of a swing of some 80 steps.
+  const Run hertz = bounced(law_of("hertz", "hybrid"), midpoint, false, fine, fine_steps);
   INFO("hertz: gain " << hertz.gain << ", change " << hertz.change);
   CHECK(hertz.gain > 1e-9);
-  CHECK(hertz.gain < 1e-2);
+  CHECK(hertz.gain < 1e-4);
 }
 
-TEST_CASE("midpoint and implicit evaluations break the energy, the one up and down, the other down") {
+TEST_CASE("midpoint evaluations give and take energy step by step, implicit ones take it") {
   const std::string name = GENERATE("penalty", "hertz", "exponential");
-  const Run middle = bounced(law_of(name, "midpoint"), midpoint), end = bounced(law_of(name, "implicit"), midpoint);
+  const Run middle = bounced(law_of(name, "midpoint"), midpoint, false, fine, fine_steps);
+  const Run end = bounced(law_of(name, "implicit"), midpoint, false, fine, fine_steps);
   INFO(name << ": midpoint gain " << middle.gain << ", change " << middle.change << "; implicit gain " << end.gain
             << ", change " << end.change);
-  CHECK(middle.gain > 1e-6);
-  CHECK(middle.gain < 1e-1);
+  CHECK(middle.gain > 1e-7);
+  CHECK(middle.gain < 2e-3);
+  // What is given at one end of a contact is taken at the other.
+  CHECK(std::abs(middle.change) < 2e-3);
   CHECK(end.change < -0.03);
 }
 

@@ -141,13 +141,14 @@ TEST_CASE("a barrier is never passed by an evaluation at the end of the step, ho
   const double D = 1e-3;
   const double h = GENERATE(1e-5, 4e-4, 1e-2);
   const Choice law{"barrier", {{"stiffness", GENERATE(10.0, 1e4)}, {"thickness", D}}};
-  const Choice time = GENERATE(Choice{"midpoint"}, Choice{"newmark"}, Choice{"newmark-dumont-paoli"});
+  // Not Newmark's: stiff and at the end of the step, it throws a mass back faster than it came.
+  const Choice time = GENERATE(Choice{"midpoint"}, Choice{"kane"}, Choice{"newmark-dumont-paoli"});
   SceneSpec scene = thrown_mass();
   scene.stops.upper = Formula(0.02);
   Marcher mass = marcher(scene, 1, {{"consistent"}, law, time}, h);
   const EnergyAudit audit = audited(mass, 2000 * h);
-  REQUIRE(mass.status(0).running);
-  INFO(time.name << ", h = " << h);
+  INFO(time.name << ", h = " << h << ": " << (mass.status(0).running ? "" : text(mass.status(0).end)));
+  CHECK(mass.status(0).running);
   CHECK(audit.contact(0).impacts > 0);
   CHECK(audit.contact(0).deepest_penetration == 0);
 }
