@@ -21,11 +21,12 @@ class ThreeLevel final : public TimeScheme {
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
     if (facts.mass_kernel_dimension > 0 && beta_ == 0 && !facts.damped)
-      return Refusal{"beta = 0 leaves S singular on the kernel of a singular mass: use beta ≥ 0.25"};
+      return Refusal{
+          "beta = 0 leaves S singular on the kernel of a singular mass: use beta ≥ 0.25 of newmark-dumont-paoli"};
     if (facts.mass_kernel_dimension > 0 && beta_ < 0.25)
       return Refusal{
           fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step "
-                      "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25",
+                      "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25 of newmark-dumont-paoli",
                       beta_)};
     StepPlan plan;
     plan.slots = {"q", "d"};
