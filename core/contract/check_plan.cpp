@@ -41,6 +41,37 @@ class Checker {
     for (const Level& level : list) sum += level.weight;
     demand(std::abs(sum - 1) < 1e-9, what + " must weight its levels to one");
   }
+  // Stage k of a step, where it gives back the work of another one.
+  void restoring(const std::vector<Stage>& stages, std::size_t k, const std::string& name) {
+    const auto& impact = stages[k].impact;
+    if (!impact || impact->restores == 0) return;
+    const auto works_whole = [](const Stage& stage) {
+      return stage.impact && !stage.impact->gate && stage.impact->effort == std::vector{1.0} && stage.work &&
+             stage.work->effort == std::vector{1.0};
+    };
+    const auto same = [&](const Combination& a, const Combination& b) {
+      bool equal = a.z == b.z;
+      for (std::size_t j = 0; j < slots_; ++j)
+        equal = equal && (j < a.slots.size() ? a.slots[j] : 0.0) == (j < b.slots.size() ? b.slots[j] : 0.0);
+      return equal;
+    };
+    demand(impact->restores > 0 && static_cast<std::size_t>(impact->restores) <= k,
+           fmt::format("{}: gives back the work of the stage {} before it, which is none of the same step", name,
+                       impact->restores));
+    demand(works_whole(stages[k]),
+           name + ": a stage that gives work back has a work form, its own effort alone and no gate");
+    if (wrong) return;
+    demand(impact->value.z > 0 && same(impact->value, stages[k].work->displacement),
+           name + ": what a stage that gives work back measures is its test displacement, which its effort moves");
+    const Stage& source = stages[k - static_cast<std::size_t>(impact->restores)];
+    demand(works_whole(source) && source.impact->restores == 0,
+           name + ": the stage whose work is given back measures positions, with its own effort alone and a work form");
+    for (std::size_t other = 0; other < k; ++other)
+      demand(!stages[other].impact || stages[other].impact->restores == 0 ||
+                 other + static_cast<std::size_t>(impact->restores) !=
+                     k + static_cast<std::size_t>(stages[other].impact->restores),
+             name + ": the work that it gives back was given back before");
+  }
   void stage(const Stage& stage, const std::string& name) {
     number(stage.matrix.M, name + ": S");
     number(stage.matrix.C, name + ": S");
@@ -62,7 +93,8 @@ class Checker {
     if (stage.impact) {
       combination(stage.impact->value, name + ": impact measure");
       levels(stage.impact->bound, name + ": impact bound");
-      if (!stage.impact->gate) partition(stage.impact->bound, name + ": position-level impact bound");
+      if (!stage.impact->gate && stage.impact->restores == 0)
+        partition(stage.impact->bound, name + ": position-level impact bound");
       if (stage.impact->gate) {
         combination(stage.impact->gate->predictor, name + ": gate predictor");
         combination(stage.impact->gate->approach, name + ": gate approach");
@@ -115,8 +147,14 @@ std::optional<std::string> check_plan(const StepPlan& plan) {
                fmt::format("the plan has {} stages, one to {} are marched", plan.stages.size(), most_stages));
   check.demand(plan.start.size() <= most_stages,
                fmt::format("the start has {} stages, at most {} are marched", plan.start.size(), most_stages));
-  for (const Stage& stage : plan.start) check.stage(stage, "start");
-  for (std::size_t k = 0; k < plan.stages.size(); ++k) check.stage(plan.stages[k], fmt::format("stage {}", k + 1));
+  for (const Stage& stage : plan.start) {
+    check.stage(stage, "start");
+    check.demand(!stage.impact || stage.impact->restores == 0, "start: only a stage of a step gives work back");
+  }
+  for (std::size_t k = 0; k < plan.stages.size(); ++k) {
+    check.stage(plan.stages[k], fmt::format("stage {}", k + 1));
+    check.restoring(plan.stages, k, fmt::format("stage {}", k + 1));
+  }
   for (const QuadraticTerm& term : plan.energy) {
     check.demand(term.slots.size() <= plan.slots.size(), "energy: more slots than the plan has");
     check.number(term.coefficient, "energy");

@@ -47,6 +47,8 @@ std::string wrong_stage(const Stage& stage, const Uniform& motion, const std::st
       moves(gate->approach_bound, gate->approach, "gate approach bound");
       is_rate(gate->approach, "gate approach");
       is_rate(impact->value, "impact measure");
+    } else if (impact->restores > 0) {
+      stands(impact->bound, impact->value, "bound of the work given back");
     } else {
       stands(impact->bound, impact->value, "impact bound");
       if (wrong.empty() && !near(motion.weight(impact->value), 1))
@@ -71,7 +73,11 @@ std::string wrong_stage(const Stage& stage, const Uniform& motion, const std::st
   }
   if (stage.work) {
     stands(stage.work->support, stage.work->displacement, "work support");
-    is_rate(stage.work->rate, "work rate");
+    // Without C nothing is damped.
+    bool damped = stage.matrix.C != 0;
+    for (const OperatorWeights& row : stage.history) damped = damped || row.C != 0;
+    const bool empty = stage.work->rate.z == 0 && stage.work->rate.slots.empty();
+    if (damped || !empty) is_rate(stage.work->rate, "work rate");
     if (wrong.empty() && !is_zero(motion.weight(stage.work->displacement)))
       wrong = fmt::format("{}: the work displacement of a mass at rest is {:g} times its position", name,
                           motion.weight(stage.work->displacement));

@@ -65,6 +65,10 @@ const char* matrix_name(EnergyMatrix matrix) {
 }
 
 std::string impact_text(const ImpactMeasure& impact, const std::vector<std::string>& slots) {
+  if (impact.restores > 0)
+    return fmt::format("    y = H({}) against {}, p y gives back the work of contact in the stage {}before\n",
+                       combination_text(impact.value, slots), levels_text(impact.bound, "bound"),
+                       impact.restores == 1 ? "" : std::to_string(impact.restores) + " ");
   std::string text = "    y = H(" + combination_text(impact.value, slots) + "), bounded by " +
                      levels_text(impact.bound, impact.gate ? "bound'" : "bound") +
                      (impact.effort == std::vector{1.0} ? "" : ", effort " + effort_text(impact.effort)) + "\n";

@@ -93,9 +93,13 @@ Levels levels_of(const Uniform& motion, const Stage& stage, const StageFacts& fa
   add_level(levels, facts.to, share);
   if (!is_zero(weight)) {
     add_level(levels, moment / weight, weight);
-  } else if (!is_zero(moment)) {
+  } else if (!is_zero(moment) && facts.to != facts.from) {
     add_level(levels, facts.to, moment / (facts.to - facts.from));
     add_level(levels, facts.from, -moment / (facts.to - facts.from));
+  } else if (!is_zero(moment)) {
+    // A way at a time at which the position stands: half of it before, half after.
+    add_level(levels, facts.to + 0.5, moment);
+    add_level(levels, facts.to - 0.5, -moment);
   }
   return levels;
 }
@@ -123,6 +127,9 @@ void fill_levels(Stage& stage, StageFacts& facts, const Uniform& motion, const A
     if (levels.empty() && !is_zero(motion.rate(rate)))
       levels = {{settled ? settled->place_of(rate, index) : facts.to, simple(motion.rate(rate))}};
   };
+  if (stage.work) stands(stage.work->support, stage.work->displacement);
+  if (stage.impact && stage.impact->restores > 0 && stage.impact->bound.empty())
+    stage.impact->bound = stage.work->support;
   if (stage.impact) {
     if (stage.impact->gate) {
       moves(stage.impact->bound, stage.impact->value);
@@ -132,7 +139,7 @@ void fill_levels(Stage& stage, StageFacts& facts, const Uniform& motion, const A
       stands(stage.impact->bound, stage.impact->value);
     }
   }
-  double instant = stage.impact ? latest(stage.impact->bound) : -1;
+  double instant = stage.impact && stage.impact->restores == 0 ? latest(stage.impact->bound) : -1;
   for (auto& compliance : stage.compliance) {
     if (!compliance) continue;
     stands(compliance->bound, compliance->displacement);
@@ -140,7 +147,6 @@ void fill_levels(Stage& stage, StageFacts& facts, const Uniform& motion, const A
     if (compliance->before) stands(compliance->before_bound, *compliance->before);
     if (!stage.impact) instant = std::max(instant, latest(compliance->bound));
   }
-  if (stage.work) stands(stage.work->support, stage.work->displacement);
   const bool moves_position = !is_zero(facts.to - facts.from);
   facts.instant = moves_position || instant < 0 ? facts.to : simple(instant);
 }
@@ -170,6 +176,9 @@ std::vector<StageFacts> at_the_end(std::vector<Stage>& stages) {
     if (levels.empty()) levels = {{1, 1}};
   };
   for (Stage& stage : stages) {
+    if (stage.work && stage.work->support.empty()) stage.work->support = {{1, 1}, {0, -1}};
+    if (stage.impact && stage.impact->restores > 0 && stage.impact->bound.empty())
+      stage.impact->bound = stage.work->support;
     if (stage.impact) end(stage.impact->bound);
     if (stage.impact && stage.impact->gate) {
       end(stage.impact->gate->predictor_bound);
@@ -181,7 +190,6 @@ std::vector<StageFacts> at_the_end(std::vector<Stage>& stages) {
       end(compliance->rate_bound);
       if (compliance->before) end(compliance->before_bound);
     }
-    if (stage.work && stage.work->support.empty()) stage.work->support = {{1, 1}, {0, -1}};
     all.push_back({0, 1, 1, position_increment(stage)});
   }
   return all;

@@ -74,6 +74,17 @@ struct VelocityGate {
 /// The measure y of rigid laws. Position level (no gate): Σ w lower(t+ch) ≤ y ≤ Σ w upper(t+ch), with the same levels
 /// as y itself. Velocity level (gate): y is a velocity and `bound` weights the rates of the bounds.
 ///
+/// Work-restoring (restores = k > 0): the stage gives back what contact took in the stage k before it, of the same
+/// step (Laursen and Love 2002). With λ the efforts of that stage and δ = H s + Δφ the way that its test displacement s
+/// (its work form) takes the points against their stops, and y the same of this stage,
+///
+///     p_i y_i = −λ_i δ_i ≥ 0,   p_i and y_i on the side of λ_i;   p_i = 0 where λ_i = 0                       (4')
+///
+/// so that the stops do no work over both stages, point by point. y is a way, in metres: `value` is the stage's own
+/// test displacement, `bound` its work.support. The engine solves (4') in the place of any rigid law
+/// (restoring_solver.hpp); there is one solution wherever no λ_i δ_i is positive, as where the stage before began
+/// between the stops; else the lane ends.
+///
 /// Levels of stops, here and below, may be left empty: they are then those at which the combination itself stands
 /// (stage_facts.hpp). Given levels must agree with it on a motion at constant speed, to which check_plan() holds them.
 struct ImpactMeasure {
@@ -81,6 +92,7 @@ struct ImpactMeasure {
   Levels bound = {};
   std::optional<VelocityGate> gate = {};
   std::vector<double> effort = {1.0};  ///< π₀, π₁, …
+  int restores = 0;                    ///< k: how many stages before; 0: no work is given back
 };
 
 /// Where the scheme evaluates a compliant law, and how the resulting effort enters its equation.
@@ -106,9 +118,9 @@ const char* evaluation_word(Evaluation evaluation);
 /// the scheme's own energy equals s·F̄ − s·C r + s·Hᵀp̄ exactly (no remainder but round-off) where the scheme has an
 /// invariant.
 struct WorkForm {
-  Combination displacement;            ///< s
-  Combination rate;                    ///< r, the velocity that damping sees
-  Levels load;                         ///< F̄
+  Combination displacement;  ///< s
+  Combination rate;          ///< r, the velocity that damping sees; empty where the equation has no C
+  Levels load;               ///< F̄
   /// p̄ = Σ effort_k e₋ₖ, e = π₀p + π₁p₋₁ + … the effort as the equation of its stage has it.
   std::vector<double> effort = {1.0};
   Levels support = {};  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp

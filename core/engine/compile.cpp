@@ -42,6 +42,7 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
     program.measure_levels = stage.impact->bound;
     program.effort = stage.impact->effort;
     program.gate = stage.impact->gate;
+    program.restores = stage.impact->restores;
   }
   if (stage.matrix.M == 0 && stage.matrix.C == 0 && stage.matrix.K == 0)
     return Refusal{"the scheme measures contact in a stage that solves nothing"};
@@ -69,11 +70,23 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
     program.predictor_phase = phase(program.gate->predictor_bound);
     program.approach_phase = phase(program.gate->approach_bound);
   }
-  if (!program.folded.solves()) return std::nullopt;
+  program.driven = program.folded.driven() || !stage.load.empty();
+  if (!program.folded.solves() || (!program.driven && !program.reads_contact)) return std::nullopt;
   auto made = make_operator(whole.kind, *whole.model, program.folded, whole.width);
   if (auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
   program.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
   return std::nullopt;
+}
+
+// What a stage that gives work back needs to know of the one whose work it is.
+void connect_works(Program& program) {
+  for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    if (program.stages[k].restores == 0) continue;
+    const std::size_t source = k - static_cast<std::size_t>(program.stages[k].restores);
+    const WorkForm& work = *program.plan.stages[source].work;
+    program.stages[source].motion = padded(work.displacement, program.plan.slots.size());
+    program.stages[source].motion_phase = PhaseWeights(work.support, program.problem->support.pulsation, program.h);
+  }
 }
 
 void say_what_is_left_out(Program& program) {
@@ -104,6 +117,9 @@ void say_what_is_left_out(Program& program) {
     if (!program.eager_delassus)
       say("Delassus columns of points never touched", "computed when a point is first touched");
   }
+  for (std::size_t k = 0; k < program.stages.size(); ++k)
+    if (!program.stages[k].op && program.stages[k].folded.solves())
+      say(fmt::format("solve of stage {}", k + 1), "without contact nothing drives it");
   bool mass_products = false;
   for (const StageProgram& stage : program.stages) mass_products = mass_products || stage.folded.uses_mass();
   if (!mass_products) say("products with M", "the scheme's right-hand side has none");
@@ -201,6 +217,12 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())
     return Refusal{"the contact law offers no slopes, hence no tangents: its exponents are those of twins"};
   if (auto refusal = meet_law(*program.law, *problem, lanes)) return *refusal;
+  const auto restores = [](const Stage& stage) { return stage.impact && stage.impact->restores > 0; };
+  if (program.tangents > 0 && !program.law->reads() && !program.law->absent() &&
+      std::any_of(program.plan.stages.begin(), program.plan.stages.end(), restores))
+    return Refusal{
+        "the time scheme gives the work of rigid contact back by a quadratic equation, which has no tangents here: "
+        "its exponents are those of twins"};
   program.width = lane_width(static_cast<int>(lanes.size()) * (1 + program.tangents));
   program.support = options.moving_support;
   program.lanes = std::move(lanes);
@@ -246,6 +268,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
                      ": choose another evaluation"};
     return Refusal{"the time scheme has no impact measure for a rigid law: use a penalty"};
   }
+  connect_works(program);
   add_contact_facts(program);
   if (program.kind == OperatorKind::band && mass_only && !problem->inertia.factored()) {
     bool diagonal = true;

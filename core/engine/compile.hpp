@@ -53,12 +53,15 @@ struct StageProgram {
   Combination measure;                ///< what the law reads
   Levels measure_levels;
   bool reads_contact = false;
+  bool driven = true;                  ///< whether b has any term; else z° = 0
+  int restores = 0;                    ///< k > 0: its efforts give back the work of contact in the stage k before
+  Combination motion;                  ///< of a stage whose work is given back: its test displacement; else empty
   double measure_z = 0;                ///< η
   std::vector<double> effort = {1.0};  ///< π
   std::vector<double> work_effort;  ///< p̄ of the work form over p, p₋₁, …: its weights and those of the equations
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
-  PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase;
+  PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
   StageFacts facts;
   double momentum = 0;  ///< s: what an effort of 1 N of this stage finally gives to a free mass
   /// Contact stages that ask at the same instant (a velocity, then a projection) are one look at contact: whether this

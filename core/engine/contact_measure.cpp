@@ -63,6 +63,8 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
       state.gate_upper.fill(infinity);
     }
   }
+  // Work is given back where some was taken, and nowhere else.
+  if (state.restored && (state.restored->contact_lanes | state.contact_lanes) == 0) return 0;
   std::array<const double*, most_slots + 1> slots{};
   std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
   slots[static_cast<std::size_t>(slot_count())] = z;
@@ -83,6 +85,7 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
     kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
                      offset, state.before.data());
   }
+  if (state.restored) return state.restored->contact_lanes;
   const Block& lower = gated ? state.gate_lower : lower_;
   const Block& upper = gated ? state.gate_upper : upper_;
   std::uint32_t outside = kernels_.outside(lower_.rows(), state.free.data(), lower.data(), upper.data());

@@ -60,6 +60,14 @@ Marcher::Marcher(Program program)
   for (std::size_t k = 0; k < program_.stages.size(); ++k)
     stage_states_.push_back(make_state(program_.stages[k], program_.plan.stages[k]));
   connect_efforts();
+  connect_works();
+}
+
+// Which stage's work each gives back.
+void Marcher::connect_works() {
+  for (std::size_t k = 0; k < program_.stages.size(); ++k)
+    if (const int before = program_.stages[k].restores; before > 0)
+      stage_states_[k]->restored = stage_states_[k - static_cast<std::size_t>(before)].get();
 }
 
 // Storage of a stage, and its combinations as the kernels read them.
@@ -101,6 +109,12 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->gap_weights = with_z(stage.gate->predictor);
     state->approach_weights = with_z(stage.gate->approach);
   }
+  if (!stage.motion.slots.empty()) {
+    state->way = Block(points, T);
+    state->way_error = Block(1, T);
+    state->way_weights = with_z(stage.motion);
+  }
+  if (stage.restores > 0) state->restoring.prepare(points);
   if (program_.eager_delassus)
     for (int j = 0; j < points; ++j) state->delassus->column(j);
   return state;
@@ -142,23 +156,32 @@ void Marcher::combine_for(const StageProgram& program) {
   combined_for_ = &program;
 }
 
+// z° = S⁻¹ b.
+void Marcher::free_step(StageProgram& program, const Stage& plan) {
+  if (!program.driven) {
+    std::fill_n(program.op->unknown(), program_.model->rows() * program_.width, 0.0);
+    return;
+  }
+  FreeStepInput input;
+  input.slots = slot_pointers_.data();
+  if (program.op->keeps_combination()) {
+    combine_for(program);
+    input.k = combination_.data();
+  }
+  if (program_.support) {
+    clamp_.accelerations(program.load_phase, scale_.data());
+    input.scale = scale_.data();
+  }
+  input.load = distributed_load(plan.load, time());
+  program.op->free_step(input);
+  if (program_.tangents > 0 && input.load) remove_load(program, input.load);
+}
+
 void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index,
                         StepObserver* observer) {
   const double* z = elastic_.data();
   if (program.op) {
-    FreeStepInput input;
-    input.slots = slot_pointers_.data();
-    if (program.op->keeps_combination()) {
-      combine_for(program);
-      input.k = combination_.data();
-    }
-    if (program_.support) {
-      clamp_.accelerations(program.load_phase, scale_.data());
-      input.scale = scale_.data();
-    }
-    input.load = distributed_load(plan.load, time());
-    program.op->free_step(input);
-    if (program_.tangents > 0 && input.load) remove_load(program, input.load);
+    free_step(program, plan);
     if (state.delassus) contact(program, state, program.op->unknown());
     z = program.op->unknown();
   } else {
@@ -169,7 +192,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());
   const StageProgram& following = program_.stages[last ? 0 : static_cast<std::size_t>(index) + 1];
-  if (following.op && following.op->keeps_combination() && &program >= program_.stages.data() &&
+  if (following.op && following.driven && following.op->keeps_combination() && &program >= program_.stages.data() &&
       &program < program_.stages.data() + program_.stages.size())
     next = &following;
   kernels_.update(static_cast<long>(combination_.size()), slot_count(), slots_.data(), z, state.update.data(),

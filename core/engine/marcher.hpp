@@ -91,7 +91,9 @@ class Marcher {
  private:
   // marcher.cpp: the loop.
   std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
+  void connect_works();
   void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
+  void free_step(StageProgram& program, const Stage& plan);
   void combine_for(const StageProgram& program);
   void show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
             StepObserver& observer) const;
@@ -102,6 +104,8 @@ class Marcher {
   void correct(StageState& state, const double* effort, double* z);
   void choose_touched(StageState& state, std::uint32_t mask);
   void solve_law(const StageProgram& program, StageState& state);
+  void restore_work(const StageProgram& program, StageState& state);
+  void measure_way(const StageProgram& program, StageState& state, const double* z);
   void keep_contact(StageState& state);
   // contact_measure.cpp: what the law reads before any effort.
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);

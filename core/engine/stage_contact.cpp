@@ -22,7 +22,10 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   const std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
   if (mask == 0) return;
   choose_touched(state, mask);
-  solve_law(program, state);
+  if (state.restored)
+    restore_work(program, state);
+  else
+    solve_law(program, state);
   keep_contact(state);
   if (program_.tangents > 0) tangent_contact(program, state);
   if (program.effort[0] == 1.0) {
@@ -32,6 +35,7 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
     correct(state, state.weighted.data(), z);
   }
+  if (state.way.rows() > 0 && state.contact_lanes != 0) measure_way(program, state, z);
 }
 
 // z += S⁻¹Hᵀ p, column by column where some lane has an effort.

@@ -288,6 +288,10 @@ bool FoldedStage::uses_mass() const {
   return any(mass_history);
 }
 
+bool FoldedStage::driven() const {
+  return any(mass_history) || any(stiffness_history);
+}
+
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
   FoldedStage folded;
   folded.mass = stage.matrix.M + damping.mass * stage.matrix.C;

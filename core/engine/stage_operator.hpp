@@ -19,6 +19,8 @@ struct FoldedStage {
   double mass = 0, stiffness = 0;
   std::vector<double> mass_history, stiffness_history;  ///< one per slot
   bool uses_mass() const;
+  /// Whether the slots drive it.
+  bool driven() const;
   bool solves() const { return mass != 0 || stiffness != 0; }
 };
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots);

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <ricochet/algebra/block.hpp>
+#include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/engine/active_system.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
 #include <vector>
@@ -23,6 +24,12 @@ struct StageState {
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected
+  // Of a stage whose work another one gives back:
+  Block way, way_error;  ///< δ against the stops, points × T, and what is not known of it, 1 × T; m
+  std::vector<double> way_weights;
+  // Of the one that gives it back:
+  const StageState* restored = nullptr;
+  RestoringSolver restoring;
 };
 
 }  // namespace ricochet

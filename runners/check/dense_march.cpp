@@ -99,7 +99,20 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
       }
       z = (s.M * M_ + s.C * C_ + s.K * K_).eval().partialPivLu().solve(b);
     }
-    if (weights) look_at_contact(stage, lane, z, p, view.time);
+    if (view.stage == 0) {
+      lane.efforts.clear();
+      lane.ways.clear();
+    }
+    lane.efforts.push_back(p);
+    lane.ways.push_back(Eigen::VectorXd::Zero(points));
+    if (stage.work)
+      lane.ways.back() = (H_ * combined(lane, stage.work->displacement, z)).array() +
+                         support(lane, view.time, stage.work->support, false);
+    const std::size_t restores = weights && !reads_ ? static_cast<std::size_t>(stage.impact->restores) : 0;
+    if (restores > 0)
+      look_at_work(lane, lane.ways.size() - 1, lane.ways.size() - 1 - restores);
+    else if (weights)
+      look_at_contact(stage, lane, z, p, view.time);
     std::vector<Eigen::VectorXd> next;
     for (const Combination& row : stage.update) next.push_back(combined(lane, row, z));
     lane.slots = std::move(next);
@@ -135,6 +148,20 @@ void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Eig
     } else if ((p[i] > 0 && y[i] > lower + size) || (p[i] < 0 && y[i] < upper - size)) {
       note(fmt::format("{:g} N act where g = {:.10g} is open", p[i], y[i]));
     }
+  }
+}
+
+// Point by point the stops do no work over both stages, and push to one side.
+void DenseMarch::look_at_work(const Lane& lane, std::size_t k, std::size_t source) {
+  const Eigen::VectorXd &p = lane.efforts[k], &way = lane.ways[k], &before = lane.efforts[source];
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    const double given = p[i] * way[i], taken = before[i] * lane.ways[source][i];
+    const double size =
+        tolerance * (std::abs(p[i]) + std::abs(before[i])) * (std::abs(way[i]) + std::abs(lane.ways[source][i]) + 1e-6);
+    if (std::abs(given + taken) > size)
+      note(fmt::format("contact takes {:.10g} J in a stage, and {:.10g} J are given back", -taken, given));
+    if (p[i] * before[i] < 0 || (before[i] == 0 && p[i] != 0))
+      note(fmt::format("{:g} N give back the work of {:g} N", p[i], before[i]));
   }
 }
 

@@ -48,6 +48,7 @@ std::vector<double> numbers_of(const StepPlan& plan) {
       append(all, stage.impact->value);
       append(all, stage.impact->bound);
       all.insert(all.end(), stage.impact->effort.begin(), stage.impact->effort.end());
+      all.push_back(stage.impact->restores);
       if (const auto& gate = stage.impact->gate) {
         append(all, gate->predictor);
         append(all, gate->approach);

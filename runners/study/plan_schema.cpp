@@ -67,7 +67,8 @@ Json impact() {
   return closed({{"value", described(combination(), "y, what rigid laws keep between the stops.")},
                  {"bound", described(named(number()), "Levels of the stop in y; derived when left out.")},
                  {"gate", described(gate, "For a measure at velocity level.")},
-                 {"effort", described(list(number()), "π₀, π₁, …")}},
+                 {"effort", described(list(number()), "π₀, π₁, …")},
+                 {"restores", described(number(), "How many stages before lies the one whose work is given back.")}},
                 {"value"});
 }
 
@@ -80,11 +81,11 @@ Json term(const char* value, const char* meaning) {
 
 Json stage() {
   const Json work = closed({{"displacement", described(combination(), "s.")},
-                            {"rate", described(combination(), "r.")},
+                            {"rate", described(combination(), "r; none where nothing is damped.")},
                             {"load", described(named(number()), "F̄.")},
                             {"effort", described(list(number()), "p̄.")},
                             {"support", described(named(number()), "What the stops move by; derived when left out.")}},
-                           {"displacement", "rate"});
+                           {"displacement"});
   return closed({{"matrix", described(matrices(), "S; none: no solve.")},
                  {"history", described(named(matrices()), "Rows of b by slot.")},
                  {"load", described(named(number()), "Weights of F by level.")},

@@ -1,5 +1,7 @@
 #include "runners/study/plan_stages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "runners/study/check_object.hpp"
@@ -83,16 +85,24 @@ class StageReader {
     return weights;
   }
 
+  int stages_before(const JsonPlace& place) {
+    const double stages = values_.number(place);
+    for (int k = 1; k < most_stages; ++k)
+      if (stages == k) return k;
+    place.unexpected(fmt::format("how many stages before, a whole number from 1 to {}", most_stages - 1));
+  }
+
   Levels levels_in(const JsonPlace& place, const char* key) {
     return place.has(key) ? levels(place.at(key)) : Levels{};
   }
 
   ImpactMeasure impact(const JsonPlace& place) {
-    place.close({"value", "bound", "gate", "effort"});
+    place.close({"value", "bound", "gate", "effort", "restores"});
     ImpactMeasure measure;
     measure.value = combination(place.at("value", "a combination of slots and z between the stops"));
     measure.bound = levels_in(place, "bound");
     measure.effort = effort(place);
+    if (place.has("restores")) measure.restores = stages_before(place.at("restores"));
     if (!place.has("gate")) return measure;
     const JsonPlace gate = place.at("gate");
     gate.close({"predictor", "predictor_bound", "approach", "approach_bound", "restitution"});
@@ -129,7 +139,7 @@ class StageReader {
     place.close({"displacement", "rate", "load", "effort", "support"});
     WorkForm work;
     work.displacement = combination(place.at("displacement", "the test displacement of the balance"));
-    work.rate = combination(place.at("rate", "the velocity that damping sees"));
+    if (place.has("rate")) work.rate = combination(place.at("rate"));
     work.load = levels_in(place, "load");
     work.effort = effort(place);
     work.support = levels_in(place, "support");

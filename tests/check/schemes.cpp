@@ -34,7 +34,7 @@ Stage& step(StepPlan& plan) {
 
 TEST_CASE("check: schemes that declare what is true pass every check") {
   for (const auto& entry : {newmark_entry(0.25, 0.5), newmark_entry(0.4, 0.7), newmark_entry(0, 0.5),
-                            three_level_entry(0), three_level_entry(0.5)}) {
+                            three_level_entry(0), three_level_entry(0.5), restoring_entry()}) {
     const auto results = checking::check_scheme(entry, {.child = false});
     INFO(text_of(results));
     CHECK(checking::all_hold(results));
@@ -147,6 +147,23 @@ TEST_CASE("check: facts about contact that are wrong are caught") {
   caught(
       newmark_entry(0.25, 0.5, [](StepPlan& plan, double) { step(plan).at(Evaluation::implicit_end)->effort = {1.2}; }),
       "compliant contact", "does not tend to its closed form");
+}
+
+TEST_CASE("check: work of contact that is not what is given back is caught") {
+  // The way of the stops that the engine reads is no longer the one that the work form has.
+  caught(restoring_entry([](StepPlan& plan, double) {
+           plan.stages[1].impact->bound = {{1, 1}, {0, -1}};
+         }),
+         "march = plan", "are given back");
+  caught(restoring_entry([](StepPlan& plan, double h) {
+           plan.stages[1].work->displacement.z = plan.stages[1].impact->value.z = 0.45 * h;
+         }),
+         "energy at contact", "declares that its energy never grows");
+  caught(restoring_entry([](StepPlan& plan, double) {
+           plan.stages.pop_back();
+           plan.facts.restitution = Restitution::exact;
+         }),
+         "restitution", "a free mass rebounds with");
 }
 
 TEST_CASE("check: without an impact measure the report says that rigid laws are refused") {

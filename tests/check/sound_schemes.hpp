@@ -88,6 +88,32 @@ inline StepPlan three_level_plan(double h, double e) {
   return plan;
 }
 
+/// The mid-point rule, positions between the stops, and a change of velocities that gives the work of contact back.
+inline StepPlan restoring_plan(double h) {
+  const Combination end{.slots = {1, h}, .z = h / 2}, way{.slots = {0, h}, .z = h / 2};
+  StepPlan plan;
+  plan.slots = {"q", "v"};
+  plan.initial = {{1, 0}, {0, 1}};
+  plan.velocity = {.slots = {0, 1}};
+  Stage stage;
+  stage.matrix = {1 / h, 0.5, h / 4};
+  stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
+  stage.load = {{0.5, 1}};
+  stage.impact = ImpactMeasure{.value = end};
+  stage.update = {end, {.slots = {0, 1}, .z = 1}};
+  stage.work = WorkForm{.displacement = way, .rate = {.slots = {0, 1}, .z = 0.5}, .load = {{0.5, 1}}};
+  Stage back;
+  back.matrix = {1 / h, 0, 0};
+  back.impact = ImpactMeasure{.value = way, .restores = 1};
+  back.update = {{.slots = {1}}, {.slots = {0, 1}, .z = 1}};
+  back.work = WorkForm{.displacement = way, .rate = {}, .load = {}};
+  plan.stages = {stage, back};
+  plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+  plan.facts.order = 2;
+  plan.facts.needs_regular_mass = plan.facts.contact_never_gains = true;
+  return plan;
+}
+
 using PlanMaker = std::function<PlanOrRefusal(double h, const ProblemFacts& facts)>;
 
 class GivenScheme final : public TimeScheme {
@@ -132,6 +158,16 @@ inline Entry<TimeScheme> three_level_entry(double e, const Change& change = {}) 
         return plan;
       },
       {with_role(real_parameter("restitution", "1", e, {.low = e, .high = e}, "e"), ParameterRole::restitution)});
+}
+
+inline Entry<TimeScheme> restoring_entry(const Change& change = {}) {
+  return scheme_entry([=](double h, const ProblemFacts& facts) -> PlanOrRefusal {
+    if (facts.mass_kernel_dimension > 0)
+      return Refusal{"velocities are changed in the metric of the mass, which is singular: use a regular mass"};
+    StepPlan plan = restoring_plan(h);
+    if (change) change(plan, h);
+    return plan;
+  });
 }
 
 /// What one check says of a method, in this process.

@@ -49,6 +49,19 @@ StepPlan gated_plan() {
   return plan;
 }
 
+// The same, with a second stage that gives the work of the first one back.
+StepPlan restoring_plan() {
+  StepPlan plan = full_plan();
+  plan.stages[0].loss.clear();
+  Stage back;
+  back.matrix = {100, 0, 0};
+  back.work = WorkForm{.displacement = {.slots = {0, 1}, .z = 0.5}, .rate = {}, .load = {}};
+  back.impact = ImpactMeasure{.value = back.work->displacement, .restores = 1};
+  back.update = {{.slots = {1}}, {.slots = {0, 1}, .z = 1}};
+  plan.stages.push_back(back);
+  return plan;
+}
+
 struct Fault {
   const char* sentence;
   std::function<void(StepPlan&)> make;
@@ -135,6 +148,56 @@ TEST_CASE("a bound of positions weights its levels to one, a bound of rates need
              Contains("gate predictor bound must weight its levels to one"));
   // The rate of a stop that is asked twice, for a velocity that is asked twice.
   CHECK(wrong(gated_plan(), {"", [](StepPlan& p) { p.stages[0].impact->bound = {{1, 2}, {0, -1}}; }}) == "nothing");
+}
+
+TEST_CASE("a stage gives back the work of a stage that has done some, once") {
+  CHECK(check_plan(restoring_plan()).value_or("nothing") == "nothing");
+  const auto clear = [](Levels& levels) { levels.clear(); };
+  const std::vector<Fault> faults = {
+      {"stage 1: gives back the work of the stage 1 before it, which is none of the same step",
+       [](StepPlan& p) { std::swap(p.stages[0], p.stages[1]); }},
+      {"stage 2: gives back the work of the stage -1 before it",
+       [](StepPlan& p) { p.stages[1].impact->restores = -1; }},
+      {"stage 2: a stage that gives work back has a work form", [](StepPlan& p) { p.stages[1].work.reset(); }},
+      {"stage 2: a stage that gives work back has a work form, its own effort alone and no gate",
+       [](StepPlan& p) {
+         p.stages[1].impact->effort = {0.5, 0.5};
+       }},
+      {"and no gate", [](StepPlan& p) { p.stages[1].impact->gate = gated_plan().stages[0].impact->gate; }},
+      {"stage 2: what a stage that gives work back measures is its test displacement",
+       [](StepPlan& p) { p.stages[1].impact->value.z = 1; }},
+      {"which its effort moves",
+       [](StepPlan& p) { p.stages[1].impact->value.z = p.stages[1].work->displacement.z = 0; }},
+      {"stage 2: the stage whose work is given back measures positions",
+       [](StepPlan& p) { p.stages[0].impact.reset(); }},
+      {"stage 2: the stage whose work is given back",
+       [](StepPlan& p) {
+         p.stages[0].work->effort = {0.5, 0.5};
+       }},
+      {"stage 3: the work that it gives back was given back before",
+       [](StepPlan& p) {
+         p.stages.push_back(p.stages[1]);
+         p.stages[2].impact->restores = 2;
+       }},
+      {"stage 3: the stage whose work is given back measures positions",
+       [](StepPlan& p) { p.stages.push_back(p.stages[1]); }},
+      {"start: only a stage of a step gives work back",
+       [&](StepPlan& p) {
+         p.start = {p.stages[0], p.stages[1]};
+         clear(p.start[1].impact->bound);
+       }},
+      {"stage 2: bound of the work given back stands at t + 2h",
+       [](StepPlan& p) {
+         p.stages[1].impact->bound = {{2, 1}, {0, -1}};
+       }},
+      // A stage without C needs no rate in its work form; one with C does.
+      {"stage 1: work rate is 0 m/s", [](StepPlan& p) { p.stages[0].work->rate = {}; }},
+  };
+  for (const Fault& fault : faults) CHECK_THAT(wrong(restoring_plan(), fault), Contains(fault.sentence));
+  const std::string text = print_plan(restoring_plan());
+  INFO(text);
+  CHECK_THAT(text, Contains("y = H(d + 0.5 z) against bound(t+1.5h) − bound(t+0.5h), p y gives back the work of "
+                            "contact in the stage before"));
 }
 
 TEST_CASE("levels of stops may be left to be derived") {

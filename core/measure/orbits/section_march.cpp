@@ -29,7 +29,7 @@ class SectionMarch::Watch final : public StepObserver {
   }
 
   bool begin_period() {
-    keeping_ = closed_ = 0;
+    keeping_ = closed_ = pushed_ = 0;
     for (std::size_t lane = 0; lane < orbits_.size(); ++lane) {
       if (!orbits_[lane] || orbits_[lane]->stage != Orbit::Stage::keep) continue;
       keeping_ |= 1u << lane;
@@ -43,7 +43,9 @@ class SectionMarch::Watch final : public StepObserver {
 
   void stage_solved(const Marcher& marcher, const StageView& view) override {
     if (!view.effort) return;
-    for (std::uint32_t mask = (view.contact_lanes | closed_) & keeping_; mask != 0; mask &= mask - 1)
+    if (view.program->opens_instant) pushed_ = 0;
+    pushed_ |= view.contact_lanes;
+    for (std::uint32_t mask = (pushed_ | closed_) & keeping_; mask != 0; mask &= mask - 1)
       look(marcher, view, std::countr_zero(mask));
   }
 
@@ -175,6 +177,7 @@ class SectionMarch::Watch final : public StepObserver {
   std::vector<std::optional<Orbit>>& orbits_;
   double h_, offset_;
   std::uint32_t keeping_ = 0, closed_ = 0;
+  std::uint32_t pushed_ = 0;  // at the present instant, by any of its stages
   std::array<std::array<int, 2>, 32> counts_{};
   std::array<std::array<bool, 2>, 32> asked_{};  // sides in contact at the present instant
   std::vector<Tips> tips_;

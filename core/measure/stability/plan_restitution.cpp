@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/contract/unit_mass.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
@@ -14,7 +16,9 @@ class BouncingMass {
   /// Returns whether an effort of the stop could have moved an impact measure.
   bool step(const std::vector<Stage>& stages) {
     bool measured = false;
-    for (const Stage& stage : stages) {
+    std::array<double, most_stages> works{};
+    for (std::size_t n = 0; n < stages.size(); ++n) {
+      const Stage& stage = stages[n];
       double effort = 0, found = 0;
       const double S = stage.matrix.M;
       if (stage.impact)
@@ -24,9 +28,13 @@ class BouncingMass {
       const double reach = stage.impact && S != 0 ? stage.impact->value.z * weight / S : 0.0;
       if (reach > 0) {
         measured = true;
-        found = push(*stage.impact, z) / reach;
+        const int restores = stage.impact->restores;
+        found = restores > 0 ? RestoringSolver::alone(combined(stage.impact->value, mass_.slots, z), reach,
+                                                      std::max(0.0, -works[n - static_cast<std::size_t>(restores)]))
+                             : push(*stage.impact, z) / reach;
         z += weight * found / S;
       }
+      if (stage.work) works[n] = found * combined(stage.work->displacement, mass_.slots, z);
       std::rotate(past_.begin(), past_.end() - 1, past_.end());
       past_[0] = found;
       mass_.update(stage, z);

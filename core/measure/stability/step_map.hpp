@@ -12,7 +12,8 @@
 /// over the closed points alone,
 ///
 ///     z° = S⁻¹ Σ_j (β^M_j M + β^C_j C + β^K_j K) x_j + R(π₁ p₋₁ + π₂ p₋₂ + …),     z = z° + π₀ R p
-///     rigid:      0 = H(Σ_j y_j x_j + y_z z)                                   the impact measure rests on its stop
+///     rigid:      0 = H(Σ_j y_j x_j + y_z z)                                   the impact measure rests on its stop,
+///                                                                              or a way that no work comes back on
 ///     compliant:  p = −κ H(Σ_j g_j x_j + g_z z)                                the spring, pulling as well as pushing
 ///     conserving: p = −½κ H(Σ_j (g_j + g⁻_j) x_j + g_z z)                      its discrete gradient
 ///

@@ -167,6 +167,10 @@ TEST_CASE("a plan at velocity level, with its gate, has the bits of its plugin",
                 {{}, {{"theta", 0.7}}, {{"theta", 0.7}, {"restitution", 0.8}}, {{"restitution", 1.0}}});
 }
 
+TEST_CASE("a plan that gives work back, its levels derived, has the bits of its plugin", "[plan-file]") {
+  require_twins("laursen-love.json", "laursen-love-as-plan", "laursen-love", {{}});
+}
+
 TEST_CASE("Bathe's two sub-steps as a plan have the bits of the same sums in C++", "[plan-file]") {
   const Registry stated = registered(plans / "bathe.json");
   for (const auto& [rho, split] : {std::pair(0.0, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {0.3, 0.25}})

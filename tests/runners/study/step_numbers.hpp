@@ -64,7 +64,7 @@ class StepNumbers {
         combination(stage.impact->value);
         levels(stage.impact->bound);
         list(stage.impact->effort);
-        add({stage.impact->gate ? 1.0 : 0.0});
+        add({stage.impact->gate ? 1.0 : 0.0, static_cast<double>(stage.impact->restores)});
         if (const auto& gate = stage.impact->gate) {
           combination(gate->predictor);
           levels(gate->predictor_bound);

@@ -1,0 +1,88 @@
+#include <ricochet/contract/plugin.hpp>
+
+namespace {
+
+using namespace ricochet;
+
+/// Laursen and Love's velocity update on the mid-point rule: conserving, and no penetration at the end of a step.
+///
+///     stage 1, z = v* − v_n:       (M/h + ½C + h/4 K) z = F(t+h/2) − C v − K(q + h/2 v) + Hᵀλ
+///                                  q ← q + h v + h/2 z,   v ← v + z,   y = H q_{n+1} between the stops
+///     stage 2, z = v_{n+1} − v*:   M z/h = Hᵀp,   v ← v + z,
+///                                  p_i h(H_i v* + ½ H_i z) = −λ_i (g_{n+1} − g_n)_i,   p_i on the side of λ_i
+///
+/// g_{n+1} − g_n is the motion of a point against its stop over the step. Where the stop moves, so does the velocity of
+/// the second stage: by φ' at t+h, as φ(t+3h/2) − φ(t+h/2). With g_n between the stops λ_i (g_{n+1} − g_n)_i ≤ 0, and
+/// there is one p. Invariant: ½|v|²_M + ½|q|²_K, kept through contact: both stages together do no work at any point.
+/// Test displacements h(v + z/2) of both; one massed point leaves as fast as it came.
+class LaursenLove final : public TimeScheme {
+ public:
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    if (facts.contact && facts.mass_kernel_dimension > 0)
+      return Refusal{
+          "a contact point without mass (singular mass) has no velocity that could be changed alone, and the mid-point "
+          "rule leaves the root −1 there: use a regular mass, or midpoint"};
+    StepPlan plan;
+    plan.slots = {"q", "v"};
+    plan.initial = {{1, 0}, {0, 1}};
+    plan.velocity = {.slots = {0, 1}};
+    plan.stages = {step(h), velocity_update(h)};
+    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+    plan.facts.order = 2;
+    plan.facts.needs_regular_mass = true;
+    plan.facts.contact_never_gains = true;
+    return plan;
+  }
+
+ private:
+  static Stage step(double h) {
+    Stage stage;
+    stage.matrix = {1 / h, 0.5, h / 4};
+    stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
+    stage.load = {{0.5, 1}};
+    const Combination end{.slots = {1, h}, .z = h / 2}, end_rate{.slots = {0, 1}, .z = 1};
+    const Combination mean{.slots = {1, h / 2}, .z = h / 4}, mean_rate{.slots = {0, 1}, .z = 0.5};
+    stage.impact = {.value = end, .bound = {{1, 1}}};
+    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
+    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
+    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    stage.at(Evaluation::conserving) = {end, {{1, 1}}, mean_rate, {{0.5, 1}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
+    stage.update = {end, end_rate};
+    stage.work = {.displacement = {.slots = {0, h}, .z = h / 2},
+                  .rate = mean_rate,
+                  .load = {{0.5, 1}},
+                  .support = {{1, 1}, {0, -1}}};
+    return stage;
+  }
+
+  static Stage velocity_update(double h) {
+    Stage stage;
+    stage.matrix = {1 / h, 0, 0};
+    stage.work = {
+        .displacement = {.slots = {0, h}, .z = h / 2}, .rate = {}, .load = {}, .support = {{1.5, 1}, {0.5, -1}}};
+    stage.impact = {.value = stage.work->displacement, .bound = stage.work->support, .restores = 1};
+    stage.update = {{.slots = {1}}, {.slots = {0, 1}, .z = 1}};
+    return stage;
+  }
+};
+
+void register_all(Registry& registry) {
+  registry.add_time(
+      {.name = "laursen-love",
+       .summary = "mid-point rule, stops at position level, then an impulse that gives contact's work back",
+       .text =
+           "The mid-point rule with the positions of its end between the stops; then the velocity alone is changed at "
+           "the points that were pushed, until the stops have done no work over the step. So rigid contact conserves "
+           "the energy of an undamped structure to round-off and nothing penetrates at the end of a step; a massed "
+           "point leaves as fast as it came. Nothing is dissipated, hence contact forces chatter: read impulses. A "
+           "step that begins beyond a stop (a law that lets points pass, a stop that was set anew) has no such "
+           "impulse and ends the march. Compliant laws are those of midpoint: nothing is then given back.",
+       .source = "Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric "
+                 "admissibility within the conserving framework",
+       .parameters = {}},
+      [](const Parameters&) { return std::make_unique<LaursenLove>(); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, laursen_love, register_all)
