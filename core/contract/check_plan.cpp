@@ -25,10 +25,23 @@ class Checker {
       number(level.weight, what);
     }
   }
-  void combination(const Combination& c, const std::string& what) {
+  /// `jumps`: whether w is known there.
+  void combination(const Combination& c, const std::string& what, bool jumps = false) {
     demand(c.slots.size() <= slots_, what + " combines more slots than the plan has");
     for (const double w : c.slots) number(w, what);
     number(c.z, what);
+    number(c.w, what);
+    demand(jumps || c.w == 0, what + " weighs w, which is known only after the effort of a stage that has an impulse");
+  }
+  void operators(const OperatorWeights& weights, const std::string& what) {
+    for (const double w : {weights.M, weights.C, weights.K}) number(w, what);
+  }
+  void impulse(const Stage& stage, const std::string& name) {
+    operators(stage.impulse->R, name + ": R of the impulse");
+    operators(stage.impulse->feed, name + ": feed of the impulse");
+    const auto some = [](const OperatorWeights& w) { return w.M != 0 || w.C != 0 || w.K != 0; };
+    demand(some(stage.impulse->R), name + ": R of the impulse is zero: no w solves R w = Hᵀp");
+    demand(some(stage.matrix), name + ": an impulse in a stage that solves nothing: its S is zero");
   }
   void effort(const std::vector<double>& weights, const std::string& what) {
     demand(!weights.empty() && weights.size() <= most_efforts,
@@ -73,25 +86,22 @@ class Checker {
              name + ": the work that it gives back was given back before");
   }
   void stage(const Stage& stage, const std::string& name) {
-    number(stage.matrix.M, name + ": S");
-    number(stage.matrix.C, name + ": S");
-    number(stage.matrix.K, name + ": S");
+    const bool jumps = stage.impulse.has_value();
+    operators(stage.matrix, name + ": S");
+    if (jumps) impulse(stage, name);
     demand(stage.history.size() <= slots_, name + ": history names more slots than the plan has");
-    for (const OperatorWeights& w : stage.history) {
-      number(w.M, name + ": history");
-      number(w.C, name + ": history");
-      number(w.K, name + ": history");
-    }
+    for (const OperatorWeights& w : stage.history) operators(w, name + ": history");
     levels(stage.load, name + ": load");
     demand(stage.update.size() == slots_, name + ": update must give one combination per slot");
-    for (const Combination& c : stage.update) combination(c, name + ": update");
+    for (const Combination& c : stage.update) combination(c, name + ": update", jumps);
     for (const LossTerm& term : stage.loss) {
       number(term.coefficient, name + ": loss");
       demand(!(term.coefficient < 0), name + ": loss has a negative coefficient: it would be a gain");
-      combination(term.value, name + ": loss");
+      combination(term.value, name + ": loss", jumps);
     }
     if (stage.impact) {
-      combination(stage.impact->value, name + ": impact measure");
+      combination(stage.impact->value, name + ": impact measure", jumps);
+      number(stage.impact->impulse, name + ": impact impulse");
       levels(stage.impact->bound, name + ": impact bound");
       if (!stage.impact->gate && stage.impact->restores == 0)
         partition(stage.impact->bound, name + ": position-level impact bound");
@@ -107,8 +117,9 @@ class Checker {
     }
     for (const auto& compliance : stage.compliance) {
       if (!compliance) continue;
-      combination(compliance->displacement, name + ": compliance");
-      combination(compliance->rate, name + ": compliance rate");
+      combination(compliance->displacement, name + ": compliance", jumps);
+      combination(compliance->rate, name + ": compliance rate", jumps);
+      number(compliance->impulse, name + ": compliance impulse");
       levels(compliance->bound, name + ": compliance bound");
       partition(compliance->bound, name + ": compliance bound");
       levels(compliance->rate_bound, name + ": compliance rate bound");
@@ -119,8 +130,9 @@ class Checker {
       }
     }
     if (stage.work) {
-      combination(stage.work->displacement, name + ": work displacement");
-      combination(stage.work->rate, name + ": work rate");
+      combination(stage.work->displacement, name + ": work displacement", jumps);
+      combination(stage.work->rate, name + ": work rate", jumps);
+      number(stage.work->impulse, name + ": work impulse");
       levels(stage.work->load, name + ": work load");
       effort(stage.work->effort, name + ": work");
       levels(stage.work->support, name + ": work support");

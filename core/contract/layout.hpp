@@ -26,6 +26,7 @@
   X(PluginManual, ricochet::PluginManual)             \
   X(Registry, ricochet::Registry)                     \
   X(Combination, ricochet::Combination)               \
+  X(Impulse, ricochet::Impulse)                       \
   X(ImpactMeasure, ricochet::ImpactMeasure)           \
   X(ComplianceMeasure, ricochet::ComplianceMeasure)   \
   X(WorkForm, ricochet::WorkForm)                     \

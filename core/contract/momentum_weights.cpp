@@ -21,10 +21,11 @@ double settled_momentum(const StepPlan& plan, UnitMass mass, const StageEfforts&
   for (int n = 0; n < most_steps && quiet < 4 + most_efforts; ++n) {
     for (std::ptrdiff_t k = 0; k < stages; ++k) {
       const std::ptrdiff_t back = n * stages + k - source;
-      const auto& weights = efforts[static_cast<std::size_t>(k)];
+      const auto& [weights, impulse] = efforts[static_cast<std::size_t>(k)];
       const bool acts = back >= 0 && back < static_cast<std::ptrdiff_t>(weights.size());
       const Stage& stage = plan.stages[static_cast<std::size_t>(k)];
-      mass.update(stage, mass.unknown(stage, 0, acts ? weights[static_cast<std::size_t>(back)] : 0.0));
+      const double w = back == 0 ? UnitMass::jump(stage, impulse) : 0.0;
+      mass.update(stage, mass.unknown(stage, 0, acts ? weights[static_cast<std::size_t>(back)] : 0.0, w), w);
     }
     const double now = combined(plan.velocity, mass.slots), change = std::abs(now - speed);
     largest_change = std::max(largest_change, change);
@@ -40,11 +41,13 @@ StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional
   StageEfforts efforts;
   for (const Stage& stage : stages) {
     efforts.emplace_back();
-    if (evaluation) {
-      if (stage.at(*evaluation)) efforts.back() = stage.at(*evaluation)->effort;
-    } else if (stage.impact) {
-      efforts.back() = stage.impact->effort;
-    }
+    const auto reads = [&](const auto& measure) {
+      if (measure) efforts.back() = {measure->effort, stage.impulse ? measure->impulse : 0.0};
+    };
+    if (evaluation)
+      reads(stage.at(*evaluation));
+    else
+      reads(stage.impact);
   }
   return efforts;
 }
@@ -64,8 +67,9 @@ double start_momentum(const StepPlan& plan, std::size_t stage, const StageEffort
   if (!has_inertia(plan)) return std::numeric_limits<double>::quiet_NaN();
   UnitMass mass(plan, 0, 0);
   for (std::size_t k = 0; k < plan.start.size(); ++k) {
-    const bool acts = k >= stage && k - stage < start[k].size();
-    mass.update(plan.start[k], mass.unknown(plan.start[k], 0, acts ? start[k][k - stage] : 0.0));
+    const bool acts = k >= stage && k - stage < start[k].weights.size();
+    const double w = k == stage ? UnitMass::jump(plan.start[k], start[k].impulse) : 0.0;
+    mass.update(plan.start[k], mass.unknown(plan.start[k], 0, acts ? start[k].weights[k - stage] : 0.0, w), w);
   }
   const double h = Uniform(plan).h();
   const auto source = static_cast<std::ptrdiff_t>(stage) - static_cast<std::ptrdiff_t>(plan.start.size());

@@ -28,6 +28,7 @@ std::string combination_text(const Combination& c, const std::vector<std::string
   std::string text;
   for (std::size_t j = 0; j < c.slots.size(); ++j) append_term(text, c.slots[j], slot_name(slots, j));
   append_term(text, c.z, "z");
+  append_term(text, c.w, "w");
   return text.empty() ? "0" : text;
 }
 
@@ -64,14 +65,24 @@ const char* matrix_name(EnergyMatrix matrix) {
   return matrix == EnergyMatrix::M ? "M" : "K";
 }
 
-std::string impact_text(const ImpactMeasure& impact, const std::vector<std::string>& slots) {
+// ι p and what of it: nothing where the stage has no w.
+std::string impulse_text(const Stage& stage, double impulse) {
+  if (!stage.impulse) return "";
+  std::string text;
+  append_term(text, impulse, "p");
+  return ", impulse " + (text.empty() ? "0" : text);
+}
+
+std::string impact_text(const Stage& stage, const std::vector<std::string>& slots) {
+  const ImpactMeasure& impact = *stage.impact;
   if (impact.restores > 0)
     return fmt::format("    y = H({}) against {}, p y gives back the work of contact in the stage {}before\n",
                        combination_text(impact.value, slots), levels_text(impact.bound, "bound"),
                        impact.restores == 1 ? "" : std::to_string(impact.restores) + " ");
   std::string text = "    y = H(" + combination_text(impact.value, slots) + "), bounded by " +
                      levels_text(impact.bound, impact.gate ? "bound'" : "bound") +
-                     (impact.effort == std::vector{1.0} ? "" : ", effort " + effort_text(impact.effort)) + "\n";
+                     (impact.effort == std::vector{1.0} ? "" : ", effort " + effort_text(impact.effort)) +
+                     impulse_text(stage, impact.impulse) + "\n";
   if (const auto& gate = impact.gate)
     text += "    closed where H(" + combination_text(gate->predictor, slots) + ") passes " +
             levels_text(gate->predictor_bound, "bound") +
@@ -80,11 +91,12 @@ std::string impact_text(const ImpactMeasure& impact, const std::vector<std::stri
   return text;
 }
 
-std::string compliance_text(const ComplianceMeasure& c, Evaluation evaluation, const std::vector<std::string>& slots) {
-  std::string text =
-      fmt::format("    g ({}) = H({}) against {}, effort {}\n", evaluation_word(evaluation),
-                  combination_text(c.displacement, slots), levels_text(c.bound, "bound"), effort_text(c.effort));
-  if (!c.rate.slots.empty() || c.rate.z != 0)
+std::string compliance_text(const Stage& stage, Evaluation evaluation, const std::vector<std::string>& slots) {
+  const ComplianceMeasure& c = *stage.at(evaluation);
+  std::string text = fmt::format("    g ({}) = H({}) against {}, effort {}{}\n", evaluation_word(evaluation),
+                                 combination_text(c.displacement, slots), levels_text(c.bound, "bound"),
+                                 effort_text(c.effort), impulse_text(stage, c.impulse));
+  if (!c.rate.slots.empty() || c.rate.z != 0 || c.rate.w != 0)
     text +=
         "        rate H(" + combination_text(c.rate, slots) + ") against " + levels_text(c.rate_bound, "bound'") + "\n";
   if (c.before)
@@ -95,7 +107,8 @@ std::string compliance_text(const ComplianceMeasure& c, Evaluation evaluation, c
 
 std::string work_text(const WorkForm& work, const std::vector<std::string>& slots) {
   return "    work: s = " + combination_text(work.displacement, slots) + ", r = " + combination_text(work.rate, slots) +
-         ", load " + levels_text(work.load, "F") + ", effort " + effort_text(work.effort) + ", stops move by " +
+         ", load " + levels_text(work.load, "F") + ", effort " + effort_text(work.effort) +
+         (work.impulse == 0 ? "" : fmt::format(" and {:g} of the impulse", work.impulse)) + ", stops move by " +
          levels_text(work.support, "φ") + "\n";
 }
 
@@ -109,13 +122,17 @@ std::string stage_text(const Stage& stage, const std::vector<std::string>& slots
       const std::string term = operator_text(stage.history[j]);
       if (!term.empty()) b += (b.empty() ? "(" : " + (") + term + ") " + slot_name(slots, j);
     }
+    if (stage.impulse)
+      if (const std::string fed = operator_text(stage.impulse->feed); !fed.empty())
+        b += (b.empty() ? "(" : " + (") + fed + ") w";
     const std::string load = levels_text(stage.load, "F");
     text += b + (load == "0" ? "" : (b.empty() ? "" : " + ") + load) + "\n";
   }
-  if (stage.impact) text += impact_text(*stage.impact, slots);
+  if (stage.impulse) text += "    impulse: (" + operator_text(stage.impulse->R) + ") w = Hᵀp\n";
+  if (stage.impact) text += impact_text(stage, slots);
   for (int k = 0; k < evaluations; ++k)
-    if (const auto& c = stage.compliance[static_cast<std::size_t>(k)])
-      text += compliance_text(*c, static_cast<Evaluation>(k), slots);
+    if (const auto evaluation = static_cast<Evaluation>(k); stage.at(evaluation))
+      text += compliance_text(stage, evaluation, slots);
   for (std::size_t j = 0; j < stage.update.size(); ++j)
     text += "    " + slot_name(slots, j) + " ← " + combination_text(stage.update[j], slots) + "\n";
   if (stage.work) text += work_text(*stage.work, slots);

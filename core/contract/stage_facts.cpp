@@ -87,7 +87,8 @@ void add_level(Levels& levels, double at, double weight) {
 // a motion at constant speed.
 Levels levels_of(const Uniform& motion, const Stage& stage, const StageFacts& facts, const Combination& c) {
   const Combination& position = stage.update[0];
-  const double share = position.z != 0 && facts.to != facts.from ? c.z / position.z : 0.0;
+  double share = position.z != 0 ? c.z / position.z : position.w != 0 ? c.w / position.w : 0.0;
+  if (facts.to == facts.from) share = 0;
   const double weight = motion.weight(c) - share, moment = motion.moment(c) - share * facts.to;
   Levels levels;
   add_level(levels, facts.to, share);

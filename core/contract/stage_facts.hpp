@@ -38,9 +38,14 @@ DerivedPlan derive(StepPlan plan);
 /// displacements measured on it; "" when nothing is. For check_plan(), which has looked at sizes before.
 std::string inconsistent_motion(const StepPlan& plan);
 
-/// Weights π of the effort in the equation of each stage, as a law that reads this evaluation (none: a rigid law) meets
-/// them; empty where the stage reads no contact.
-using StageEfforts = std::vector<std::vector<double>>;
+/// Weights of efforts in the equations of one stage: π₀, π₁, … in that of z, none where the stage reads no contact, and
+/// ι in that of w.
+struct StageEffort {
+  std::vector<double> weights;
+  double impulse = 0;  ///< 0 where the stage has no impulse
+};
+/// Those of each stage, as a law that reads this evaluation (none: a rigid law) meets them.
+using StageEfforts = std::vector<StageEffort>;
 StageEfforts stage_efforts(const std::vector<Stage>& stages, const std::optional<Evaluation>& evaluation);
 
 /// The momentum (N s per N, hence seconds) that one effort of 1 N, found once by each stage, finally gives to a free

@@ -21,6 +21,14 @@
 ///     g   = H(Σ_j g_j x_j + g_z z)          the displacement where the scheme evaluates compliance            (5)
 ///     x_j ← Σ_i u_ji x_i + u_jz z                                                                              (6)
 ///
+/// A stage may have an `impulse`: a second unknown w, which the effort that is found alone moves, apart from b. With
+/// R = r_M M + r_C C + r_K K, and f_M, f_C, f_K what of it the equation of z is fed with,
+///
+///     R w = ι Hᵀp,     S z = b + (f_M M + f_C C + f_K K) w + Hᵀ(π₀ p + π₁ p₋₁ + …)                              (7)
+///
+/// and the measures y, g, the rate u and the updates may weigh w beside z. So a contact may jump velocities by w and
+/// positions by h/2 w while z, an acceleration, stays that of a smooth motion.
+///
 /// Stages follow each other without end: after the last stage of a step comes the first of the next. p₋ₖ is the effort
 /// that the k-th stage before this one found (zero where that stage reads no contact): in a plan of one stage the
 /// effort of k steps ago; in a plan of s stages p₋₁ is that of the previous sub-step and p₋ₛ that of this stage one
@@ -37,10 +45,12 @@ inline constexpr int most_stages = 6;    ///< of a step, and of the start rule
 inline constexpr int most_efforts = 13;  ///< weights π₀, π₁, …: two steps of the longest plan and now
 inline constexpr int most_levels = 8;    ///< time levels of a load or of a stop in one stage
 
-/// Σ_j slots[j] x_j + z z, over the slots *before* the stage and the stage's unknown. Missing trailing slots are zero.
+/// Σ_j slots[j] x_j + z z + w w, over the slots *before* the stage and its unknowns. Missing trailing slots are zero;
+/// w only where the stage has an impulse, and in what follows the effort: not in a gate, nor in what was before a step.
 struct Combination {
   std::vector<double> slots;
   double z = 0;
+  double w = 0;
 };
 
 /// A weighted time level: weight · f(t + at·h), t the time when the step begins.
@@ -53,6 +63,15 @@ using Levels = std::vector<Level>;
 /// s_M M + s_C C + s_K K.
 struct OperatorWeights {
   double M = 0, C = 0, K = 0;
+};
+
+/// The second unknown of a stage, (7): R w = ι Hᵀp with the effort p of this stage, ι the weight `impulse` of the
+/// measure that found it. R acts on what moves with contact, so that no massless point may be in touch where it holds M
+/// alone. With C = αK + ηM every operator here is a combination of M and K: what a law sees of z and w together is
+/// symmetric.
+struct Impulse {
+  OperatorWeights R;
+  OperatorWeights feed;  ///< (f_M, f_C, f_K)
 };
 
 /// Velocity-level closure: which sides take part in the box problem, and how fast they rebound.
@@ -93,6 +112,7 @@ struct ImpactMeasure {
   std::optional<VelocityGate> gate = {};
   std::vector<double> effort = {1.0};  ///< π₀, π₁, …
   int restores = 0;                    ///< k: how many stages before; 0: no work is given back
+  double impulse = 1;                  ///< ι; nothing where the stage has no impulse
 };
 
 /// Where the scheme evaluates a compliant law, and how the resulting effort enters its equation.
@@ -106,6 +126,7 @@ struct ComplianceMeasure {
   /// or conserve energy through the difference g − g⁻, which is then H·work.displacement.
   std::optional<Combination> before = {};
   Levels before_bound = {};  ///< the stop's position in it
+  double impulse = 1;        ///< ι; 0: a compliant effort is one of the forces of the equation, and w = 0
 };
 
 /// The ways to evaluate a compliant law within a step.
@@ -124,6 +145,7 @@ struct WorkForm {
   /// p̄ = Σ effort_k e₋ₖ, e = π₀p + π₁p₋₁ + … the effort as the equation of its stage has it.
   std::vector<double> effort = {1.0};
   Levels support = {};  ///< the combination of φ that s is of q: what the stops move by in the frame of the clamp
+  double impulse = 0;   ///< weight of ι p in p̄, besides: what w brings
 };
 
 enum class EnergyMatrix { M, K };
@@ -140,6 +162,7 @@ struct Stage {
   OperatorWeights matrix;                                                ///< S; all zero: no solve, z = 0
   std::vector<OperatorWeights> history;                                  ///< (β^M_j, β^C_j, β^K_j) per slot
   Levels load;                                                           ///< (c_k, φ_k)
+  std::optional<Impulse> impulse;                                        ///< absent: no w
   std::optional<ImpactMeasure> impact;                                   ///< absent: this stage lets rigid laws be
   std::array<std::optional<ComplianceMeasure>, evaluations> compliance;  ///< indexed by Evaluation
   std::vector<Combination> update;                                       ///< one per slot

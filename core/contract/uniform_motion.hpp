@@ -22,11 +22,12 @@ inline double simple(double x) {
   return std::abs(x - nearest) < round_off * std::max(1.0, std::abs(x)) ? nearest : x;
 }
 
-/// Whether every S of the plan has an M, or solves nothing: else nothing tells how far a step goes.
+/// Whether every S and R of the plan has an M, or solves nothing: else nothing tells how far a step goes.
 inline bool has_inertia(const StepPlan& plan) {
   const auto all = [](const std::vector<Stage>& stages) {
     return std::all_of(stages.begin(), stages.end(), [](const Stage& stage) {
-      return stage.matrix.M != 0 || (stage.matrix.C == 0 && stage.matrix.K == 0);
+      return (stage.matrix.M != 0 || (stage.matrix.C == 0 && stage.matrix.K == 0)) &&
+             (!stage.impulse || stage.impulse->R.M != 0);
     });
   };
   return all(plan.start) && all(plan.stages);

@@ -10,15 +10,17 @@ struct UnitMass {
 
   /// From displacement and velocity, before the start rule.
   UnitMass(const StepPlan& plan, double displacement, double velocity);
-  /// The unknown of a stage under a constant force and a weighted effort Σ π_k p₋ₖ (N); 0 where S has no M.
-  double unknown(const Stage& stage, double force, double effort) const;
-  /// The slots after the stage, with its unknown.
-  void update(const Stage& stage, double z);
+  /// The unknown of a stage under a constant force and a weighted effort Σ π_k p₋ₖ (N), fed with w; 0 where S has no M.
+  double unknown(const Stage& stage, double force, double effort, double w = 0) const;
+  /// w of a stage under the effort ι p (N); 0 where it has no impulse, or R no M.
+  static double jump(const Stage& stage, double effort);
+  /// The slots after the stage, with its unknowns.
+  void update(const Stage& stage, double z, double w = 0);
   /// Stages under a constant force and without contact.
   void advance(const std::vector<Stage>& stages, double force);
 };
 
-/// Σ_j c_j x_j + c_z z.
-double combined(const Combination& combination, const std::vector<double>& slots, double z = 0);
+/// Σ_j c_j x_j + c_z z + c_w w.
+double combined(const Combination& combination, const std::vector<double>& slots, double z = 0, double w = 0);
 
 }  // namespace ricochet

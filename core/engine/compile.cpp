@@ -48,7 +48,44 @@ std::optional<Refusal> read_contact(StageProgram& program, const Stage& stage, c
     return Refusal{"the scheme measures contact in a stage that solves nothing"};
   program.measure = padded(program.measure, slots);
   program.measure_z = program.measure.z;
+  program.reach = program.measure_z * program.effort[0];
+  program.rate_reach = program.compliance ? program.compliance->rate.z * program.effort[0] : 0.0;
   program.reads_contact = true;
+  return std::nullopt;
+}
+
+// What a law reads moves with z and w by one set of columns: those of the measure, or of the rate where no effort moves
+// the measure.
+std::optional<Refusal> read_impulse(StageProgram& program, const Stage& stage, const Program& whole) {
+  const double weight = program.compliance ? program.compliance->impulse : stage.impact->impulse;
+  if (weight == 0) return std::nullopt;
+  const Damping& damping = whole.problem->damping;
+  const FoldedStage R = fold(stage.impulse->R, damping), feed = fold(stage.impulse->feed, damping);
+  if (R.mass == 0 && feed.mass != 0)
+    return Refusal{"the scheme's impulse feeds its step with mass and R has none: let R weigh M, or the feed K alone"};
+  ImpulseProgram& impulse = program.impulse;
+  const double mass = R.mass != 0 ? feed.mass / R.mass : 0.0;
+  impulse.weight = weight;
+  impulse.direct = program.effort[0] + weight * mass;
+  impulse.elastic = feed.stiffness - mass * R.stiffness;
+  const Combination rate = program.compliance ? program.compliance->rate : Combination{};
+  const auto moves = [](const Combination& c) { return c.z != 0 || c.w != 0; };
+  const Combination& base = moves(program.measure) ? program.measure : rate;
+  impulse.measure_z = base.z;
+  impulse.measure_w = base.w;
+  program.reach = moves(program.measure) ? 1 : 0;
+  const double across = rate.z * base.w - rate.w * base.z;
+  if (program.compliance && whole.law->reads_rate() &&
+      std::abs(across) > 1e-12 * (std::abs(rate.z * base.w) + std::abs(rate.w * base.z)))
+    return Refusal{
+        "the time scheme's impulse moves the rate at contact otherwise than the displacement, and the law reads both: "
+        "use a law without damping, or another evaluation"};
+  program.rate_reach = base.z != 0 ? rate.z / base.z : base.w != 0 ? rate.w / base.w : 0.0;
+  auto made = make_operator(whole.kind, *whole.model, R, 1);
+  if (const auto* refusal = std::get_if<Refusal>(&made))
+    return Refusal{"the scheme's impulse has no solution (" + refusal->sentence +
+                   "): use a regular mass, or a scheme without impulse"};
+  impulse.op = std::move(std::get<std::unique_ptr<StageOperator>>(made));
   return std::nullopt;
 }
 
@@ -57,6 +94,8 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   program.folded = fold(stage, whole.problem->damping, static_cast<int>(slots));
   if (whole.contact)
     if (auto refusal = read_contact(program, stage, *whole.law, slots)) return refusal;
+  if (stage.impulse && program.reads_contact)
+    if (auto refusal = read_impulse(program, stage, whole)) return refusal;
   const auto phase = [&](const Levels& levels) {
     return PhaseWeights(levels, whole.problem->support.pulsation, whole.h);
   };
@@ -131,19 +170,20 @@ void say_what_is_left_out(Program& program) {
 StageEfforts efforts_read(const std::vector<StageProgram>& stages) {
   StageEfforts efforts(stages.size());
   for (std::size_t k = 0; k < stages.size(); ++k)
-    if (stages[k].reads_contact) efforts[k] = stages[k].effort;
+    if (stages[k].reads_contact) efforts[k] = {stages[k].effort, stages[k].impulse.weight};
   return efforts;
 }
 
-// Σ_j w_j e₋ⱼ, e₋ⱼ = Σ_k π_k p₋ⱼ₋ₖ with the weights of the stage j before; `cyclic`: stages without end.
+// Σ_j w_j e₋ⱼ + w_ι ι p, e₋ⱼ = Σ_k π_k p₋ⱼ₋ₖ with the weights of the stage j before; `cyclic`: stages without end.
 std::vector<double> work_efforts(const WorkForm& work, std::size_t stage, const StageEfforts& efforts, bool cyclic) {
   const std::size_t stages = efforts.size();
   std::vector<double> weights;
   for (std::size_t j = 0; j < work.effort.size() && (cyclic || j <= stage); ++j) {
-    const std::vector<double>& pi = efforts[(stage + stages * j - j) % stages];
+    const std::vector<double>& pi = efforts[(stage + stages * j - j) % stages].weights;
     if (weights.size() < j + pi.size()) weights.resize(j + pi.size(), 0.0);
     for (std::size_t k = 0; k < pi.size(); ++k) weights[j + k] += work.effort[j] * pi[k];
   }
+  if (efforts[stage].impulse != 0) weights[0] += work.impulse * efforts[stage].impulse;
   return weights;
 }
 

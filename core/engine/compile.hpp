@@ -4,6 +4,7 @@
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/time_scheme.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/engine/stage_impulse.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 #include <string>
 #include <variant>
@@ -53,10 +54,14 @@ struct StageProgram {
   Combination measure;                ///< what the law reads
   Levels measure_levels;
   bool reads_contact = false;
-  bool driven = true;                  ///< whether b has any term; else z° = 0
-  int restores = 0;                    ///< k > 0: its efforts give back the work of contact in the stage k before
-  Combination motion;                  ///< of a stage whose work is given back: its test displacement; else empty
-  double measure_z = 0;                ///< η
+  bool driven = true;    ///< whether b has any term; else z° = 0
+  int restores = 0;      ///< k > 0: its efforts give back the work of contact in the stage k before
+  Combination motion;    ///< of a stage whose work is given back: its test displacement; else empty
+  double measure_z = 0;  ///< η
+  /// What an effort moves the measure and the rate by, over what the columns that the law is given say: η π₀ and η_u
+  /// π₀, where those are W = H S⁻¹Hᵀ.
+  double reach = 0, rate_reach = 0;
+  ImpulseProgram impulse;
   std::vector<double> effort = {1.0};  ///< π
   std::vector<double> work_effort;  ///< p̄ of the work form over p, p₋₁, …: its weights and those of the equations
   std::optional<VelocityGate> gate;

@@ -84,9 +84,14 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
   for (const Combination& c : plan.update) {
     const std::vector<double> row = with_z(c);
     state->update.insert(state->update.end(), row.begin(), row.end());
+    state->update_w.push_back(c.w);
   }
   if (!program_.contact || !stage.reads_contact) return state;
   state->delassus = std::make_unique<StageDelassus>(*stage.op, model.measured(), model.rows());
+  if (stage.impulse.op) {
+    state->impulse = std::make_unique<StageImpulse>(stage.impulse, *stage.op, model);
+    state->w = Block(model.rows(), T);
+  }
   state->effort.emplace_back(points, T);
   state->free = Block(points, T);
   if (stage.effort.size() > 1 || stage.effort[0] != 1.0) state->weighted = Block(points, T);
@@ -116,7 +121,7 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
   }
   if (stage.restores > 0) state->restoring.prepare(points);
   if (program_.eager_delassus)
-    for (int j = 0; j < points; ++j) state->delassus->column(j);
+    for (int j = 0; j < points; ++j) state->impulse ? state->impulse->column(j) : state->delassus->column(j);
   return state;
 }
 
@@ -189,15 +194,17 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     elastic_.fill(0.0);
   }
   if (observer) show(program, plan, state, index, z, *observer);
+  // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());
   const StageProgram& following = program_.stages[last ? 0 : static_cast<std::size_t>(index) + 1];
-  if (following.op && following.driven && following.op->keeps_combination() && &program >= program_.stages.data() &&
-      &program < program_.stages.data() + program_.stages.size())
+  if (!state.jumped && following.op && following.driven && following.op->keeps_combination() &&
+      &program >= program_.stages.data() && &program < program_.stages.data() + program_.stages.size())
     next = &following;
   kernels_.update(static_cast<long>(combination_.size()), slot_count(), slots_.data(), z, state.update.data(),
                   next ? next->folded.stiffness_history.data() : nullptr, combination_.data());
   combined_for_ = next;
+  if (state.jumped) add_jump(state);
   // The unknown of a lane that froze during this stage was whatever stopped it.
   for (; frozen_now_ != 0; frozen_now_ &= frozen_now_ - 1) clear_lane(std::countr_zero(frozen_now_));
 }
@@ -216,6 +223,7 @@ void Marcher::show(const StageProgram& program, const Stage& plan, const StageSt
   view.to = view.time + program.facts.to * program_.h;
   view.slots = slot_pointers_.data();
   view.z = z;
+  view.w = state.jumped ? state.w.data() : nullptr;
   if (state.delassus) {
     view.effort = state.effort_pointers.data();
     view.efforts = static_cast<int>(state.effort_pointers.size());

@@ -102,6 +102,8 @@ class Marcher {
   void contact(StageProgram& program, StageState& state, double* z);
   void remember_efforts(const StageProgram& program, StageState& state, double* z);
   void correct(StageState& state, const double* effort, double* z);
+  void jump(StageState& state, double* z);
+  void add_jump(StageState& state);
   void choose_touched(StageState& state, std::uint32_t mask);
   void solve_law(const StageProgram& program, StageState& state);
   void restore_work(const StageProgram& program, StageState& state);

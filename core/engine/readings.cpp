@@ -77,7 +77,10 @@ double Marcher::penetration(int lane) const {
 int Marcher::delassus_columns() const {
   int columns = 0;
   for (const auto& state : stage_states_)
-    if (state->delassus) columns += state->delassus->computed();
+    if (state->impulse)
+      columns += state->impulse->computed();
+    else if (state->delassus)
+      columns += state->delassus->computed();
   return columns;
 }
 

@@ -15,8 +15,11 @@ bool finite_in(const Block& block, int lane) {
 
 }  // namespace
 
-// z° becomes z = z° + S⁻¹Hᵀ Σ_k π_k p₋ₖ: first with the efforts that are known, then with the one that the law finds.
+// z° becomes z = z° + S⁻¹Hᵀ Σ_k π_k p₋ₖ: first with the efforts that are known, then with the one that the law finds,
+// which may move w too.
 void Marcher::contact(StageProgram& program, StageState& state, double* z) {
+  if (state.jumped) state.w.fill(0.0);
+  state.jumped = false;
   remember_efforts(program, state, z);
   state.touched_lanes = 0;
   const std::uint32_t mask = measure_contact(program, state, z) | state.contact_lanes;
@@ -28,7 +31,9 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
     solve_law(program, state);
   keep_contact(state);
   if (program_.tangents > 0) tangent_contact(program, state);
-  if (program.effort[0] == 1.0) {
+  if (state.impulse) {
+    if (state.contact_lanes != 0) jump(state, z);
+  } else if (program.effort[0] == 1.0) {
     if (state.contact_lanes != 0) correct(state, state.effort[0].data(), z);
   } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
     const auto size = state.effort[0].size();
@@ -45,6 +50,28 @@ void Marcher::correct(StageState& state, const double* effort, double* z) {
     const double* p = effort + static_cast<std::size_t>(j) * static_cast<std::size_t>(T);
     if (std::any_of(p, p + T, [](double x) { return x != 0; }))
       kernels_.add_column(rows, state.delassus->response(j), p, z);
+  }
+}
+
+// z and w of the effort that was found.
+void Marcher::jump(StageState& state, double* z) {
+  const int rows = program_.model->rows(), T = program_.width;
+  for (int j = 0; j < lower_.rows(); ++j) {
+    const double* p = state.effort[0].row(j);
+    if (std::none_of(p, p + T, [](double x) { return x != 0; })) continue;
+    kernels_.add_column(rows, state.impulse->unknown(j), p, z);
+    kernels_.add_column(rows, state.impulse->jump(j), p, state.w.data());
+  }
+  state.jumped = true;
+}
+
+// x_j += u_jw w, after the update of the slots.
+void Marcher::add_jump(StageState& state) {
+  for (std::size_t j = 0; j < state.update_w.size(); ++j) {
+    if (state.update_w[j] == 0) continue;
+    const double* terms[] = {slots_[j], state.w.data()};
+    const double weights[] = {1.0, state.update_w[j]};
+    kernels_.combine(static_cast<long>(state.w.size()), 2, terms, weights, slots_[j]);
   }
 }
 
@@ -80,11 +107,12 @@ void Marcher::solve_law(const StageProgram& program, StageState& state) {
   problem.points = lower_.rows();
   problem.lanes = program_.width;
   problem.delassus = state.delassus.get();
-  problem.reach = program.measure_z * program.effort[0];
+  if (state.impulse) problem.delassus = state.impulse.get();
+  problem.reach = program.reach;
   problem.free = state.free.data();
   problem.lower = program.gate ? state.gate_lower.data() : lower_.data();
   problem.upper = program.gate ? state.gate_upper.data() : upper_.data();
-  problem.rate_reach = program.compliance ? program.compliance->rate.z * program.effort[0] : 0.0;
+  problem.rate_reach = program.rate_reach;
   problem.rate_free = state.rate.rows() > 0 ? state.rate.data() : nullptr;
   problem.before = state.before.rows() > 0 ? state.before.data() : nullptr;
   problem.memory = memory_.rows() > 0 ? memory_.data() : nullptr;

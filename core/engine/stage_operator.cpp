@@ -292,10 +292,15 @@ bool FoldedStage::driven() const {
   return any(mass_history) || any(stiffness_history);
 }
 
-FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
+FoldedStage fold(const OperatorWeights& weights, const Damping& damping) {
   FoldedStage folded;
-  folded.mass = stage.matrix.M + damping.mass * stage.matrix.C;
-  folded.stiffness = stage.matrix.K + damping.stiffness * stage.matrix.C;
+  folded.mass = weights.M + damping.mass * weights.C;
+  folded.stiffness = weights.K + damping.stiffness * weights.C;
+  return folded;
+}
+
+FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
+  FoldedStage folded = fold(stage.matrix, damping);
   folded.mass_history.assign(static_cast<std::size_t>(slots), 0.0);
   folded.stiffness_history.assign(static_cast<std::size_t>(slots), 0.0);
   for (std::size_t j = 0; j < stage.history.size(); ++j) {

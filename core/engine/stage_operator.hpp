@@ -24,6 +24,8 @@ struct FoldedStage {
   bool solves() const { return mass != 0 || stiffness != 0; }
 };
 FoldedStage fold(const Stage& stage, const Damping& damping, int slots);
+/// The same of a single operator, which has no history.
+FoldedStage fold(const OperatorWeights& weights, const Damping& damping);
 
 /// What the marcher hands over for a free step. All blocks have the width that the operator was made for.
 struct FreeStepInput {

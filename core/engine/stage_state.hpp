@@ -5,6 +5,7 @@
 #include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/engine/active_system.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
+#include <ricochet/engine/stage_impulse.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -15,12 +16,16 @@ struct StageState {
   std::vector<Block> effort;  ///< p of this stage, then of 1, 2, … steps ago as far as anyone weights it
   /// p, p₋₁, p₋₂, …: this stage, the one before it, …; null: no contact there
   std::vector<const double*> effort_pointers;
+  std::unique_ptr<StageImpulse> impulse;  ///< null: no effort moves a second unknown
+  Block w;                                ///< that unknown, rows × T; zero where nothing jumped
+  bool jumped = false;                    ///< whether something did, in some lane
   Block free, weighted, rate, before, gap, gate_lower, gate_upper, approach;
   Block fastest;                    ///< largest speed seen at a closed point, per lane
   std::uint32_t contact_lanes = 0;  ///< lanes with a non-zero effort
   std::uint32_t closed_lanes = 0;   ///< lanes with a closed gate
   std::uint32_t touched_lanes = 0;  ///< lanes that the law looked at in this stage
   std::vector<double> update;       ///< slots × (slots + 1)
+  std::vector<double> update_w;     ///< of each slot, the weight of w
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected

@@ -16,6 +16,7 @@ struct StageView {
   double from = 0, to = 0;                ///< when the position stands before and after the stage, s
   const double* const* slots = nullptr;   ///< before the stage
   const double* z = nullptr;              ///< the stage's unknown, efforts included
+  const double* w = nullptr;              ///< its second one; null: nothing jumped
   const double* const* effort = nullptr;  ///< p, p₋₁, … as far as the plan weights them; null: no contact
   int efforts = 0;                        ///< how many; each may be null: a stage that reads no contact
   const LaneOutcome* outcome = nullptr;   ///< per lane, of the law; of lanes that were looked at

@@ -62,9 +62,9 @@ void Marcher::tangent_targets(const StageProgram& program, StageState& state, in
 // where base is η, or η_u where the effort moves the rate alone; where it moves neither, δp = −(…), and κ is 1.
 void Marcher::tangent_contact(StageProgram& program, StageState& state) {
   ActiveSystem& system = state.tangents;
-  const double reach = program.measure_z * program.effort[0];
-  const double rate_reach =
-      program.compliance && state.rate.rows() > 0 ? program.compliance->rate.z * program.effort[0] : 0.0;
+  const double reach = program.reach, rate_reach = state.rate.rows() > 0 ? program.rate_reach : 0.0;
+  DelassusColumns* columns = state.delassus.get();
+  if (state.impulse) columns = state.impulse.get();
   for (const int lane : touched_) {
     const bool active = (state.contact_lanes >> lane) & 1u;
     for (int k = 0; k < program_.tangents; ++k)
@@ -84,7 +84,7 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     const double base = reach != 0 || !program.compliance ? reach : rate_reach;
     for (std::size_t a = 0; a < system.points.size(); ++a) {
       double compliance = 0;
-      const double* column = base != 0 ? state.delassus->column(system.points[a]) : nullptr;
+      const double* column = base != 0 ? columns->column(system.points[a]) : nullptr;
       if (program.compliance) {
         const double mobility = column ? base * column[system.points[a]] : 0.0;
         const ContactSlopes slopes = program_.law->slopes(system.points[a], lane);

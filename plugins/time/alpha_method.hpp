@@ -17,6 +17,17 @@ struct AlphaMethod {
   double beta = 0.25, gamma = 0.5;
   bool weighted_contact = false;
 
+  /// Chung and Hulbert's, which keep ρ of the highest frequencies.
+  static AlphaMethod chung_hulbert(double rho) {
+    AlphaMethod method;
+    method.mass = (2 * rho - 1) / (rho + 1);
+    method.force = rho / (rho + 1);
+    const double shift = method.force - method.mass;
+    method.gamma = 0.5 + shift;
+    method.beta = 0.25 * (1 + shift) * (1 + shift);
+    return method;
+  }
+
   double now() const { return 1 - force; }
   double lag(double h) const { return (1 - gamma) * h; }
   double curve(double h) const { return (0.5 - beta) * h * h; }
@@ -69,18 +80,29 @@ struct AlphaMethod {
     return stage;
   }
 
-  /// One more slot, kept by the start rule, changed by the step.
+  /// The same with velocities that jump by w and positions by (h/2)w, R w = Hᵀp; q_{n+1} and v_{n+1} in the equation of
+  /// z are those after the jump.
+  Stage jumping_step(double h, const OperatorWeights& R) const {
+    Stage stage = step(h);
+    stage.impulse = {.R = R, .feed = {0, -now(), -now() * h / 2}};
+    stage.update[0].w = h / 2;
+    stage.update[1].w = 1;
+    return stage;
+  }
+
+  /// One more slot, kept by the start rule and by later stages, changed by the first stage.
   static void add_slot(StepPlan& plan, const char* name, std::array<double, 2> initial, const Combination& update) {
     plan.slots.emplace_back(name);
     plan.initial.push_back(initial);
     Combination kept;
     kept.slots.assign(plan.slots.size(), 0);
     kept.slots.back() = 1;
-    plan.start[0].update.push_back(kept);
-    plan.stages[0].update.push_back(update);
+    for (Stage& stage : plan.start) stage.update.push_back(kept);
+    for (Stage& stage : plan.stages) stage.update.push_back(&stage == &plan.stages[0] ? update : kept);
   }
 
-  /// With ε = α_f − α_m > 0, γ = ½ + ε, β = ¼(1+ε)² and σ ← (ε Δq − α_m σ)/(1−α_m) in slot `at`, the energy
+  /// With ε = α_f − α_m > 0, γ = ½ + ε, β = ¼(1+ε)² and σ ← (ε Δq − α_m σ)/(1−α_m) in a slot of its own, a in the last
+  /// one before it, Δq of the first stage:
   ///
   ///     E = ½|v|²_M + ½|q|²_K + ⅛ε²h²|a|²_M + ((½−α_f)/2ε)|σ|²_K
   ///     −ΔE = ¼ε³h²|Δa|²_M + ((½−α_f)(½−α_m)/ε)|Δσ|²_K
@@ -89,13 +111,19 @@ struct AlphaMethod {
   void add_filtered_energy(StepPlan& plan, double h) const {
     const double shift = force - mass;
     if (shift == 0) return;
-    Combination filtered = increment(h);
+    const std::size_t slots = plan.slots.size();
+    Combination filtered = plan.stages[0].update[0];
+    filtered.slots.resize(slots);
+    filtered.slots[0] -= 1;
     for (double& slot : filtered.slots) slot *= shift / (1 - mass);
     filtered.z *= shift / (1 - mass);
+    filtered.w *= shift / (1 - mass);
     filtered.slots.push_back(0 - mass / (1 - mass));
     add_slot(plan, "s", {0, 0}, filtered);
-    plan.energy.push_back({EnergyMatrix::M, 0.125 * shift * shift * h * h, {0, 0, 1}});
-    if (force != 0.5) plan.energy.push_back({EnergyMatrix::K, (0.5 - force) / (2 * shift), {0, 0, 0, 1}});
+    std::vector<double> a(slots, 0.0), sigma(slots + 1, 0.0);
+    a.back() = sigma.back() = 1;
+    plan.energy.push_back({EnergyMatrix::M, 0.125 * shift * shift * h * h, a});
+    if (force != 0.5) plan.energy.push_back({EnergyMatrix::K, (0.5 - force) / (2 * shift), sigma});
   }
 };
 

@@ -13,12 +13,7 @@ using namespace ricochet;
 /// balance is known.
 class GeneralisedAlpha final : public TimeScheme {
  public:
-  GeneralisedAlpha(double rho, bool weighted) {
-    method_.mass = (2 * rho - 1) / (rho + 1);
-    method_.force = rho / (rho + 1);
-    const double shift = method_.force - method_.mass;
-    method_.gamma = 0.5 + shift;
-    method_.beta = 0.25 * (1 + shift) * (1 + shift);
+  GeneralisedAlpha(double rho, bool weighted) : method_(AlphaMethod::chung_hulbert(rho)) {
     method_.weighted_contact = weighted;
   }
 

@@ -1,33 +1,40 @@
-#include <fmt/format.h>
-
+#include <cmath>
 #include <ricochet/contract/plugin.hpp>
+
+#include "alpha_method.hpp"
+#include "mean_force_step.hpp"
 
 namespace {
 
 using namespace ricochet;
 
-/// Kane, Repetto, Ortiz and Marsden's Newmark, contact implicit whatever β and γ; here β = γ/2. With k = (1−γ)h,
-/// c = (½−β)h², q* = q + h v + c a:
+/// Kane, Repetto, Ortiz and Marsden's Newmark, contact implicit whatever β and γ: velocities jump by w, positions by
+/// (h/2)w, p is the mean force of the step, z = a_{n+1} the acceleration of the structure alone. With k = (1−γ)h and
+/// c = (½−β)h²,
+///
+///     (M + γhC + βh²K) z = F(t+h) − C(v + k a) − K(q + h v + c a) − (C + (h/2)K) w,     R w = Hᵀp
+///     q ← q + h v + c a + βh² z + (h/2)w,   v ← v + k a + γh z + w,   a ← z,   y = H q_{n+1}
+///
+/// Energy (free): E = ½|v|²_M + ½|q|²_K + ½εh²|a|²_M, ε = β − γ/2; a step takes (γ−½)(|Δq|²_K + εh²|Δa|²_M). Contact
+/// gives p(bound − H q_n) ≤ 0 with R = (M + εh²K)/h (`energy`), since M Δa + K Δq = ΔF − C Δv, and besides εh w·(CΔv −
+/// ΔF), for which no work form is declared. R = M/h gives −εh²Δa·Hᵀp more, of either sign (`mass`). At β = γ/2 both are
+/// the same, the balance is whole and no second unknown is needed: with q* = q + h v + c a
 ///
 ///     stage 1, z = q_{n+1} − q*:   (2/h² M + 2γ/h C + γK) z = γ(F(t+h) − C(v + k a) − K q*) + Hᵀp,   y = H q_{n+1}
 ///                                  q ← q* + z,   v ← v + k a + (2/h) z
 ///     stage 2, z = a_{n+1}:        M z = F(t+h) − C v − K q,   a ← z
 ///
-/// p is the mean force of the step, of which the stored acceleration knows nothing. At (¼, ½) the acceleration is not
-/// needed: one stage, z = v_{n+1} − v_n, (M/h + ½C + h/4 K) z = ½F(t) + ½F(t+h) − C v − K(q + h/2 v) + Hᵀp.
-/// Energy (undamped, free): ½|v|²_M + ½|q|²_K, of which a step takes (γ−½)|Δq|²_K; test displacement Δq = q_{n+1} − q_n
-/// with the equations of both ends, γ and 1−γ. Contact gives p(bound − H q_n) ≤ 0.
+/// and at (¼, ½) no acceleration: z = v_{n+1} − v_n, (M/h + ½C + h/4 K) z = ½F(t) + ½F(t+h) − C v − K(q + h/2 v) + Hᵀp.
 class Kane final : public TimeScheme {
  public:
-  Kane(double beta, double gamma) : beta_(beta), gamma_(gamma) {}
+  Kane(double beta, double gamma, bool energy) : energy_(energy) {
+    newmark_.beta = beta;
+    newmark_.gamma = gamma;
+  }
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (beta_ != gamma_ / 2)
-      return Refusal{
-          fmt::format("beta = {:g} is not gamma/2 = {:g}: the effort then enters position and velocity by "
-                      "two solves of one equation, which no plan of one unknown says; use beta = gamma/2",
-                      beta_, gamma_ / 2)};
-    if (gamma_ != 0.5 && facts.mass_kernel_dimension > 0)
+    const bool jumps = shift() != 0, damps = newmark_.gamma != 0.5;
+    if ((jumps || damps) && facts.mass_kernel_dimension > 0)
       return Refusal{
           "the acceleration at the end of the step needs the inverse of the mass, which is singular here: "
           "use beta = 0.25 with gamma = 0.5, or a regular mass"};
@@ -36,39 +43,39 @@ class Kane final : public TimeScheme {
     plan.initial = {{1, 0}, {0, 1}};
     plan.velocity = {.slots = {0, 1}};
     plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
-    plan.facts.order = gamma_ == 0.5 ? 2 : 1;
+    plan.facts.order = damps ? 1 : 2;
     plan.facts.contact_never_gains = true;
-    if (gamma_ == 0.5) {
+    if (!damps && !jumps) {
       plan.stages = {mean_step(h)};
       return plan;
     }
     plan.slots.emplace_back("a");
     plan.initial.push_back({0, 0});
-    plan.start = {acceleration(0)};
-    plan.stages = {step(h), acceleration(1)};
+    plan.start = {structure_acceleration(0, 3)};
     plan.facts.needs_regular_mass = true;
+    if (!jumps) {
+      plan.stages = {step(h), structure_acceleration(1, 3)};
+      return plan;
+    }
+    plan.stages = {jumping_step(h)};
+    plan.energy.push_back({EnergyMatrix::M, 0.5 * shift() * h * h, {0, 0, 1}});
+    plan.facts.contact_never_gains = energy_ && known_balance() && !facts.damped;
+    if (shift() < 0) plan.facts.stability_limit = 1 / std::sqrt(-shift());
     return plan;
   }
 
  private:
-  // What both forms have in common: the end of the step, its middle, and the way between.
+  double shift() const { return newmark_.beta - newmark_.gamma / 2; }
+  // With β < γ/2 what γ > ½ takes is no sum of squares.
+  bool known_balance() const { return newmark_.gamma == 0.5 || shift() >= 0; }
+
+  // What all forms have in common: the end of the step, its middle, and the way between.
   static void measure(Stage& stage, const Combination& end, const Combination& end_rate, const Combination& known) {
-    const auto halfway = [](Combination to, std::size_t from) {
-      for (double& slot : to.slots) slot /= 2;
-      to.slots[from] += 0.5;
-      to.z /= 2;
-      return to;
-    };
-    const Combination mean = halfway(end, 0), mean_rate = halfway(end_rate, 1);
+    const Combination mean_rate = halfway(end_rate, 1);
     stage.impact = {.value = end, .bound = {{1, 1}}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0, 0.5}, {1, 0.5}}, {1}};
-    stage.at(Evaluation::explicit_start) = {known, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.at(Evaluation::conserving) = {
-        end, {{1, 1}}, mean_rate, {{0, 0.5}, {1, 0.5}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
-    Combination way = end;
-    way.slots[0] -= 1;
-    stage.work = {.displacement = way, .rate = mean_rate, .load = {{0, 0.5}, {1, 0.5}}, .support = {{1, 1}, {0, -1}}};
+    read_mean_force(stage, end, end_rate, mean_rate, known);
+    conserve_mean_force(stage, end, mean_rate);
+    balance_mean_force(stage, end, mean_rate);
   }
 
   static Stage mean_step(double h) {
@@ -83,30 +90,36 @@ class Kane final : public TimeScheme {
   }
 
   Stage step(double h) const {
-    const double lag = (1 - gamma_) * h, curve = (0.5 - beta_) * h * h;
+    const double gamma = newmark_.gamma, lag = newmark_.lag(h), curve = newmark_.curve(h);
     Stage stage;
-    stage.matrix = {2 / (h * h), 2 * gamma_ / h, gamma_};
-    stage.history = {{0, 0, -gamma_}, {0, -gamma_, -gamma_ * h}, {0, -gamma_ * lag, -gamma_ * curve}};
-    stage.load = {{1, gamma_}};
+    stage.matrix = {2 / (h * h), 2 * gamma / h, gamma};
+    stage.history = {{0, 0, -gamma}, {0, -gamma, -gamma * h}, {0, -gamma * lag, -gamma * curve}};
+    stage.load = {{1, gamma}};
     const Combination end{.slots = {1, h, curve}, .z = 1}, end_rate{.slots = {0, 1, lag}, .z = 2 / h};
     measure(stage, end, end_rate, {.slots = {1, h / 2}});
-    stage.work->rate = {.slots = {0, 1, gamma_ * lag}, .z = 2 * gamma_ / h};
-    stage.work->load = {{0, 1 - gamma_}, {1, gamma_}};
-    stage.loss = {{EnergyMatrix::K, gamma_ - 0.5, stage.work->displacement}};
+    stage.work->rate = {.slots = {0, 1, gamma * lag}, .z = 2 * gamma / h};
+    stage.work->load = {{0, 1 - gamma}, {1, gamma}};
+    stage.loss = {{EnergyMatrix::K, gamma - 0.5, stage.work->displacement}};
     stage.update = {end, end_rate, {.slots = {0, 0, 1}}};
     return stage;
   }
 
-  static Stage acceleration(double at) {
-    Stage stage;
-    stage.matrix = {1, 0, 0};
-    stage.history = {{0, 0, -1}, {0, -1, 0}};
-    stage.load = {{at, 1}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+  Stage jumping_step(double h) const {
+    Stage stage = newmark_.jumping_step(h, {1 / h, 0, energy_ ? shift() * h : 0.0});
+    const Combination end = stage.update[0];
+    // Laws that damp read Δq/h, which an effort moves as it moves Δq.
+    const Combination rate{.slots = {0, 1, newmark_.curve(h) / h}, .z = newmark_.beta * h, .w = 0.5};
+    stage.impact = {.value = end, .bound = {{1, 1}}, .effort = {0}};
+    read_mean_force(stage, end, rate, rate, {.slots = {1, h / 2}});
+    stage.at(Evaluation::implicit_end)->rate_bound = {{0, 0.5}, {1, 0.5}};
+    if (known_balance()) conserve_mean_force(stage, end, rate);
+    for (auto& compliance : stage.compliance)
+      if (compliance) compliance->effort = {0};
     return stage;
   }
 
-  double beta_, gamma_;
+  AlphaMethod newmark_;
+  bool energy_;
 };
 
 void register_all(Registry& registry) {
@@ -115,17 +128,20 @@ void register_all(Registry& registry) {
        .summary = "Newmark whose contact is implicit in position and left out of the acceleration",
        .text =
            "Newmark's updates; the contact force is a mean over the step that keeps q_{n+1} between the stops, and the "
-           "acceleration that the next step starts from is that of the structure alone. Contact never gives energy, "
-           "for β = γ/2 and γ ≥ ½; a massed point keeps between none and all of its speed, one half on average. With "
-           "(¼, ½) it is the mid-point rule with loads of both ends, of second order; above γ = ½ it damps, at first "
-           "order, and solves twice per step.",
-       .source =
-           "Kane, Repetto, Ortiz and Marsden (1999), Finite element analysis of nonsmooth contact; Kane, Marsden, "
-           "Ortiz and West (2000), Variational integrators and the Newmark algorithm",
+           "acceleration that the next step starts from is that of the structure alone. A massed point keeps between "
+           "none and all of its speed, one half on average. Contact never gives energy for β = γ/2, nor, undamped and "
+           "with impulse energy, for γ = ½ or β > γ/2. With (¼, ½) it is the mid-point rule with loads of both ends; "
+           "γ = ½ is of second order whatever β, above it damps, at first order; β < γ/2 limits the step.",
+       .source = "Kane, Repetto, Ortiz and Marsden (1999), Finite element analysis of nonsmooth contact; Kane, "
+                 "Marsden, Ortiz and West (2000), Variational integrators and the Newmark algorithm",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),
-                      real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1},
-                                     "γ; above ½ it damps, at first order")}},
-      [](const Parameters& p) { return std::make_unique<Kane>(p.real("beta"), p.real("gamma")); });
+                      real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1}, "γ; above ½ it damps, at first order"),
+                      word_parameter("impulse", {"energy", "mass"}, "energy",
+                                     "where β ≠ γ/2, R of the jump R w = Hᵀp: energy, (M + (β−γ/2)h²K)/h, so that "
+                                     "contact never gives energy; mass, M/h")}},
+      [](const Parameters& p) {
+        return std::make_unique<Kane>(p.real("beta"), p.real("gamma"), p.word("impulse") == "energy");
+      });
 }
 
 }  // namespace

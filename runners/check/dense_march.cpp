@@ -35,8 +35,8 @@ DenseMarch::DenseMarch(const Marcher& marcher)
   }
 }
 
-Eigen::VectorXd DenseMarch::combined(const Lane& lane, const Combination& c, const Eigen::VectorXd& z) const {
-  Eigen::VectorXd sum = c.z * z;
+Eigen::VectorXd DenseMarch::combined(const Lane& lane, const Combination& c, const Found& found) const {
+  Eigen::VectorXd sum = c.z * found.z + c.w * found.w;
   for (std::size_t j = 0; j < c.slots.size(); ++j) sum += c.slots[j] * lane.slots[j];
   return sum;
 }
@@ -78,26 +78,37 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
       if (!plan_.start.empty()) lane.past.front() = lane.last_start;
     }
     const std::vector<double>* weights = nullptr;
-    if (!absent_ && reads_ && stage.at(*reads_)) weights = &stage.at(*reads_)->effort;
-    if (!absent_ && !reads_ && stage.impact) weights = &stage.impact->effort;
-    Eigen::VectorXd p = Eigen::VectorXd::Zero(points);
+    double impulse = 0;
+    const auto reads = [&](const auto& measure) {
+      if (absent_ || !measure) return;
+      weights = &measure->effort;
+      impulse = measure->impulse;
+    };
+    if (reads_)
+      reads(stage.at(*reads_));
+    else
+      reads(stage.impact);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(M_.rows());
+    Found found{none, none, Eigen::VectorXd::Zero(points)};
+    Eigen::VectorXd &z = found.z, &w = found.w, &p = found.p;
     if (weights && view.effort)
       for (Eigen::Index i = 0; i < points; ++i)
         p[i] = view.effort[0][i * marcher.width() + static_cast<Eigen::Index>(l)];
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(M_.rows());
+    const auto dense = [&](const OperatorWeights& o) { return (o.M * M_ + o.C * C_ + o.K * K_).eval(); };
     const OperatorWeights& s = stage.matrix;
     if (s.M != 0 || s.C != 0 || s.K != 0) {
       Eigen::VectorXd b = load(lane, view.time, stage.load);
-      for (std::size_t j = 0; j < stage.history.size(); ++j) {
-        const OperatorWeights& w = stage.history[j];
-        b += (w.M * M_ + w.C * C_ + w.K * K_) * lane.slots[j];
+      for (std::size_t j = 0; j < stage.history.size(); ++j) b += dense(stage.history[j]) * lane.slots[j];
+      if (weights && stage.impulse && impulse != 0) {
+        w = dense(stage.impulse->R).partialPivLu().solve(impulse * (H_.transpose() * p));
+        b += dense(stage.impulse->feed) * w;
       }
       if (weights) {
         b += weights->front() * (H_.transpose() * p);
         if (!view.starting)
           for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
       }
-      z = (s.M * M_ + s.C * C_ + s.K * K_).eval().partialPivLu().solve(b);
+      z = dense(s).partialPivLu().solve(b);
     }
     if (view.stage == 0) {
       lane.efforts.clear();
@@ -106,15 +117,15 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
     lane.efforts.push_back(p);
     lane.ways.push_back(Eigen::VectorXd::Zero(points));
     if (stage.work)
-      lane.ways.back() = (H_ * combined(lane, stage.work->displacement, z)).array() +
+      lane.ways.back() = (H_ * combined(lane, stage.work->displacement, found)).array() +
                          support(lane, view.time, stage.work->support, false);
     const std::size_t restores = weights && !reads_ ? static_cast<std::size_t>(stage.impact->restores) : 0;
     if (restores > 0)
       look_at_work(lane, lane.ways.size() - 1, lane.ways.size() - 1 - restores);
     else if (weights)
-      look_at_contact(stage, lane, z, p, view.time);
+      look_at_contact(stage, lane, found, view.time);
     std::vector<Eigen::VectorXd> next;
-    for (const Combination& row : stage.update) next.push_back(combined(lane, row, z));
+    for (const Combination& row : stage.update) next.push_back(combined(lane, row, found));
     lane.slots = std::move(next);
     if (view.starting) {
       lane.last_start = p;
@@ -125,12 +136,12 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
   }
 }
 
-void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Eigen::VectorXd& z,
-                                 const Eigen::VectorXd& p, double t) {
+void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Found& found, double t) {
+  const Eigen::VectorXd& p = found.p;
   const Combination& value = reads_ ? stage.at(*reads_)->displacement : stage.impact->value;
   const Levels& bound = reads_ ? stage.at(*reads_)->bound : stage.impact->bound;
   const bool gated = !reads_ && stage.impact->gate;
-  const Eigen::VectorXd y = (H_ * combined(lane, value, z)).array() + support(lane, t, bound, gated);
+  const Eigen::VectorXd y = (H_ * combined(lane, value, found)).array() + support(lane, t, bound, gated);
   if (gated) {
     look_at_gate(*stage.impact, lane, y, p, t);
     return;
@@ -169,7 +180,8 @@ void DenseMarch::look_at_work(const Lane& lane, std::size_t k, std::size_t sourc
 void DenseMarch::look_at_gate(const ImpactMeasure& impact, const Lane& lane, const Eigen::VectorXd& y,
                               const Eigen::VectorXd& p, double t) {
   const VelocityGate& gate = *impact.gate;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(M_.rows());
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(M_.rows());
+  const Found none{rest, rest, p};
   const Eigen::VectorXd gap =
       (H_ * combined(lane, gate.predictor, none)).array() + support(lane, t, gate.predictor_bound, false);
   const Eigen::VectorXd speed =

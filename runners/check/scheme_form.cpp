@@ -26,6 +26,7 @@ std::string facts_text(const ProblemFacts& facts) {
 void append(std::vector<double>& numbers, const Combination& c) {
   numbers.insert(numbers.end(), c.slots.begin(), c.slots.end());
   numbers.push_back(c.z);
+  numbers.push_back(c.w);
 }
 void append(std::vector<double>& numbers, const Levels& levels) {
   for (const Level& level : levels) {
@@ -44,11 +45,16 @@ std::vector<double> numbers_of(const StepPlan& plan) {
     append(all, stage.matrix);
     for (const OperatorWeights& w : stage.history) append(all, w);
     append(all, stage.load);
+    if (stage.impulse) {
+      append(all, stage.impulse->R);
+      append(all, stage.impulse->feed);
+    }
     if (stage.impact) {
       append(all, stage.impact->value);
       append(all, stage.impact->bound);
       all.insert(all.end(), stage.impact->effort.begin(), stage.impact->effort.end());
       all.push_back(stage.impact->restores);
+      all.push_back(stage.impact->impulse);
       if (const auto& gate = stage.impact->gate) {
         append(all, gate->predictor);
         append(all, gate->approach);
@@ -60,6 +66,7 @@ std::vector<double> numbers_of(const StepPlan& plan) {
       append(all, compliance->displacement);
       append(all, compliance->rate);
       all.insert(all.end(), compliance->effort.begin(), compliance->effort.end());
+      all.push_back(compliance->impulse);
     }
     for (const Combination& c : stage.update) append(all, c);
     if (stage.work) {

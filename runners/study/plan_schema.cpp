@@ -48,6 +48,7 @@ Json compliance() {
                            {"rate", described(combination(), "u, for laws with damping.")},
                            {"rate_bound", described(named(number()), "Levels of the stop's rate.")},
                            {"effort", described(list(number()), "π₀, π₁, …")},
+                           {"impulse", described(number(), "ι of R w = ι Hᵀp; 1 when left out.")},
                            {"before", described(combination(), "g⁻, the displacement one step before.")},
                            {"before_bound", described(named(number()), "Levels of the stop in g⁻.")}},
                           {"displacement"});
@@ -68,7 +69,8 @@ Json impact() {
                  {"bound", described(named(number()), "Levels of the stop in y; derived when left out.")},
                  {"gate", described(gate, "For a measure at velocity level.")},
                  {"effort", described(list(number()), "π₀, π₁, …")},
-                 {"restores", described(number(), "How many stages before lies the one whose work is given back.")}},
+                 {"restores", described(number(), "How many stages before lies the one whose work is given back.")},
+                 {"impulse", described(number(), "ι of R w = ι Hᵀp; 1 when left out.")}},
                 {"value"});
 }
 
@@ -84,11 +86,16 @@ Json stage() {
                             {"rate", described(combination(), "r; none where nothing is damped.")},
                             {"load", described(named(number()), "F̄.")},
                             {"effort", described(list(number()), "p̄.")},
+                            {"impulse", described(number(), "Weight of ι p in p̄, besides; 0 when left out.")},
                             {"support", described(named(number()), "What the stops move by; derived when left out.")}},
                            {"displacement"});
+  const Json impulse = closed({{"R", described(matrices(), "R of R w = ι Hᵀp.")},
+                               {"feed", described(matrices(), "What of w enters the equation of z.")}},
+                              {"R"});
   return closed({{"matrix", described(matrices(), "S; none: no solve.")},
                  {"history", described(named(matrices()), "Rows of b by slot.")},
                  {"load", described(named(number()), "Weights of F by level.")},
+                 {"impulse", described(impulse, "A second unknown w, of the effort alone.")},
                  {"impact", described(impact(), "For rigid laws.")},
                  {"compliance", described(compliance(), "For compliant laws, by how they read.")},
                  {"update", described(named(combination()), "What becomes of the slots; others stay.")},
@@ -98,14 +105,14 @@ Json stage() {
 }
 
 Json plan() {
-  const Json parameter =
-      closed({{"default", described({{"type", Json::array({"number", "boolean"})}}, "None: required.")},
-              {"range", described({{"type", Json::array({"array", "string"})}}, "[0, 1], \"]0, 1[\".")},
-              {"unit", described(text(), "SI; \"1\" without one.")},
-              {"text", described(text(), "One sentence.")},
-              {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")},
-              {"role", described({{"enum", {"restitution", "stiffness"}}}, "What it stands for, where others need to know.")}},
-             {});
+  const Json parameter = closed(
+      {{"default", described({{"type", Json::array({"number", "boolean"})}}, "None: required.")},
+       {"range", described({{"type", Json::array({"array", "string"})}}, "[0, 1], \"]0, 1[\".")},
+       {"unit", described(text(), "SI; \"1\" without one.")},
+       {"text", described(text(), "One sentence.")},
+       {"type", described({{"enum", {"number", "integer", "boolean"}}}, "What it is.")},
+       {"role", described({{"enum", {"restitution", "stiffness"}}}, "What it stands for, where others need to know.")}},
+      {});
   const Json refusal = closed({{"when", described(truth(), "The formula that decides.")},
                                {"because", described(text(), "Why, and what to do.")}},
                               {"when", "because"});

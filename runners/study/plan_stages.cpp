@@ -35,11 +35,12 @@ class StageReader {
 
  private:
   Stage stage(const JsonPlace& place) {
-    place.close({"matrix", "history", "load", "impact", "compliance", "update", "work", "loss"});
+    place.close({"matrix", "history", "load", "impulse", "impact", "compliance", "update", "work", "loss"});
     Stage stage;
     if (place.has("matrix")) stage.matrix = values_.matrices(place.at("matrix"));
     if (place.has("history")) stage.history = history(place.at("history"));
     if (place.has("load")) stage.load = levels(place.at("load"));
+    if (place.has("impulse")) stage.impulse = impulse(place.at("impulse"));
     if (place.has("impact")) stage.impact = impact(place.at("impact"));
     if (place.has("compliance")) compliances(place.at("compliance"), stage);
     stage.update = update(place.at("update", "a stage says what becomes of the slots: {\"q\": \"q + h*v\"}"));
@@ -76,6 +77,18 @@ class StageReader {
     return rows;
   }
 
+  Impulse impulse(const JsonPlace& place) {
+    place.close({"R", "feed"});
+    Impulse impulse;
+    impulse.R = values_.matrices(place.at("R", "what an impulse moves: \"M/h\""));
+    if (place.has("feed")) impulse.feed = values_.matrices(place.at("feed"));
+    return impulse;
+  }
+
+  double weight_of_impulse(const JsonPlace& place, double absent) {
+    return place.has("impulse") ? values_.number(place.at("impulse")) : absent;
+  }
+
   std::vector<double> effort(const JsonPlace& place) {
     if (!place.has("effort")) return {1.0};
     std::vector<double> weights;
@@ -97,12 +110,13 @@ class StageReader {
   }
 
   ImpactMeasure impact(const JsonPlace& place) {
-    place.close({"value", "bound", "gate", "effort", "restores"});
+    place.close({"value", "bound", "gate", "effort", "restores", "impulse"});
     ImpactMeasure measure;
     measure.value = combination(place.at("value", "a combination of slots and z between the stops"));
     measure.bound = levels_in(place, "bound");
     measure.effort = effort(place);
     if (place.has("restores")) measure.restores = stages_before(place.at("restores"));
+    measure.impulse = weight_of_impulse(place, measure.impulse);
     if (!place.has("gate")) return measure;
     const JsonPlace gate = place.at("gate");
     gate.close({"predictor", "predictor_bound", "approach", "approach_bound", "restitution"});
@@ -123,25 +137,27 @@ class StageReader {
   }
 
   ComplianceMeasure compliance(const JsonPlace& place) {
-    place.close({"displacement", "bound", "rate", "rate_bound", "effort", "before", "before_bound"});
+    place.close({"displacement", "bound", "rate", "rate_bound", "effort", "impulse", "before", "before_bound"});
     ComplianceMeasure measure;
     measure.displacement = combination(place.at("displacement", "where the law sees the contact point"));
     measure.bound = levels_in(place, "bound");
     if (place.has("rate")) measure.rate = combination(place.at("rate"));
     measure.rate_bound = levels_in(place, "rate_bound");
     measure.effort = effort(place);
+    measure.impulse = weight_of_impulse(place, measure.impulse);
     if (place.has("before")) measure.before = combination(place.at("before"));
     measure.before_bound = levels_in(place, "before_bound");
     return measure;
   }
 
   WorkForm work(const JsonPlace& place) {
-    place.close({"displacement", "rate", "load", "effort", "support"});
+    place.close({"displacement", "rate", "load", "effort", "impulse", "support"});
     WorkForm work;
     work.displacement = combination(place.at("displacement", "the test displacement of the balance"));
     if (place.has("rate")) work.rate = combination(place.at("rate"));
     work.load = levels_in(place, "load");
     work.effort = effort(place);
+    work.impulse = weight_of_impulse(place, work.impulse);
     work.support = levels_in(place, "support");
     return work;
   }
@@ -157,7 +173,9 @@ class StageReader {
 
 std::vector<double> without_z(const JsonPlace& place, PlanValues& values) {
   const Combination found = values.combination(place);
-  if (found.z != 0) throw InputError(place.pointer(), "expected a combination of slots: after the step there is no z");
+  if (found.z != 0 || found.w != 0)
+    throw InputError(place.pointer(), fmt::format("expected a combination of slots: after the step there is no {}",
+                                                  found.z != 0 ? "z" : "w"));
   return found.slots;
 }
 

@@ -39,6 +39,15 @@ std::vector<std::string> with(std::vector<std::string> names, const char* last) 
   return names;
 }
 
+// Whether w is a name of the plan: some stage of it has an impulse.
+bool has_impulse(const JsonPlace& plan) {
+  for (const char* key : {"start", "stages"})
+    if (plan.has(key) && plan.at(key).value().is_array())
+      for (const Json& stage : plan.at(key).value())
+        if (stage.is_object() && stage.contains("impulse")) return true;
+  return false;
+}
+
 std::string none_or(double value) {
   return std::isnan(value) ? "no number (NaN)" : "an infinite value";
 }
@@ -107,20 +116,21 @@ const std::vector<std::string>& PlanValues::reserved() {
 
 PlanValues::PlanValues(const JsonPlace& plan, double h, const ProblemFacts& facts, const Parameters& parameters,
                        Finite finite)
-    : slots_(slot_names(plan)), finite_(finite) {
+    : slots_(slot_names(plan)), jumps_(has_impulse(plan)), finite_(finite) {
   optionals_.set("none", none);
   set("h", h);
   set("massless", facts.mass_kernel_dimension > 0 ? 1 : 0);
   set("damped", facts.damped ? 1 : 0);
   set("contact", facts.contact ? 1 : 0);
   where_ = fmt::format("h = {:g}", h);
+  if (jumps_) taken_.emplace_back("w", "the unknown of an impulse");
   for (const auto& [key, value] : parameters.values()) {
     name(key, plan.pointer_of("parameters") + "/" + key, "a parameter");
     set(key, as_number(value));
     where_ += fmt::format(", {} = {:g}", key, as_number(value));
   }
   for (const std::string& slot : slots_) name(slot, pointer_to(plan.pointer_of("slots"), slot), "a slot");
-  combinations_.span(with(slots_, "z"));
+  combinations_.span(jumps_ ? with(with(slots_, "z"), "w") : with(slots_, "z"));
   matrices_.span({"M", "C", "K"});
   if (!plan.has("let")) return;
   for (const auto& [key, place] : plan.at("let").members("an object of named formulas, {\"lag\": \"(1-gamma)*h\"}")) {
@@ -217,6 +227,10 @@ Combination PlanValues::combination(const JsonPlace& place) {
                                     "a combination of slots and z: a formula such as \"q + h*v\", or an object of "
                                     "weights such as {\"q\": 1, \"v\": \"h\"}");
   Combination result;
+  if (jumps_) {
+    result.w = all.back();
+    all.pop_back();
+  }
   result.z = all.back();
   all.pop_back();
   while (!all.empty() && all.back() == 0) all.pop_back();

@@ -54,7 +54,7 @@ class PlanValues {
   bool truth(const JsonPlace& place);
   /// null, or a formula in which the name none may stand.
   std::optional<double> optional_number(const JsonPlace& place);
-  /// A linear formula in slots and z, or an object of their weights.
+  /// A linear formula in slots, z and, in a plan some stage of which has an impulse, w; or an object of their weights.
   Combination combination(const JsonPlace& place);
   /// A linear formula in M, C and K, or an object of their weights.
   OperatorWeights matrices(const JsonPlace& place);
@@ -69,6 +69,7 @@ class PlanValues {
   std::vector<double> weights(LinearFormulas& formulas, const JsonPlace& place, const std::string& expected);
 
   std::vector<std::string> slots_;
+  bool jumps_;         // whether w is a name
   std::string where_;  // "h = 0.001, beta = 0.25": the values, for messages
   Finite finite_;
   NamedFormulas numbers_, optionals_;

@@ -48,6 +48,11 @@ void EnergyAudit::combine(const double* const* slots, const double* z, const Com
   for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
 }
 
+void EnergyAudit::combine(const StageView& view, const Combination& c, int lane, std::vector<double>& out) const {
+  combine(view.slots, view.z, c, lane, out);
+  if (view.w) accumulate(c.w, view.w, static_cast<std::size_t>(T_), static_cast<std::size_t>(lane), out);
+}
+
 double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
   double energy = 0;
   for (const QuadraticTerm& term : marcher.program().plan.energy) {
@@ -116,13 +121,13 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
       std::fill(state.increment.begin(), state.increment.end(), 0.0);
       if (moves) state.duration = (facts.to - facts.from) * h_;
     }
-    combine(view.slots, view.z, facts.increment, lane, first_);
+    combine(view, facts.increment, lane, first_);
     for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
     if (view.effort) count_contact(view, lane);
     if (view.plan->work) work(marcher, view, lane);
     for (const LossTerm& term : view.plan->loss) {
       if (term.coefficient == 0 || !balanced) continue;
-      combine(view.slots, view.z, term.value, lane, first_);
+      combine(view, term.value, lane, first_);
       state.step_scheme +=
           term.coefficient * (term.matrix == EnergyMatrix::M ? mass_(first_.data()) : stiffness_(first_.data()));
     }
@@ -139,9 +144,9 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
   const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
   if (!loads && !contact && !damped) return;
   std::vector<double>& s = first_;
-  combine(view.slots, view.z, work.displacement, lane, s);
+  combine(view, work.displacement, lane, s);
   if (damped) {
-    combine(view.slots, view.z, work.rate, lane, second_);
+    combine(view, work.rate, lane, second_);
     if (damping_.stiffness != 0) state.step_damping += damping_.stiffness * stiffness_(s.data(), second_.data());
     if (damping_.mass != 0) state.step_damping += damping_.mass * mass_(s.data(), second_.data());
   }

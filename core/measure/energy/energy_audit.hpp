@@ -87,6 +87,8 @@ class EnergyAudit final : public StepObserver {
   double scheme_energy(const Marcher& marcher, int lane);
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
                std::vector<double>& out) const;
+  /// Of what a stage has found, w included.
+  void combine(const StageView& view, const Combination& c, int lane, std::vector<double>& out) const;
   void count_contact(const StageView& view, int lane);
   void close_instant(const StageView& view, Lane& state);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/unit_mass.hpp>
 #include <ricochet/measure/energy/momentum_ledger.hpp>
 
 namespace ricochet {
@@ -23,6 +24,11 @@ MomentumLedger::Stage MomentumLedger::describe(const ricochet::Stage& plan, cons
     stage.push[j] = row.z / S;
   }
   if (!program.reads_contact) return stage;
+  if (const double w = UnitMass::jump(plan, program.impulse.weight); w != 0) {
+    stage.jumps = true;
+    const double fed = S != 0 ? plan.impulse->feed.M * w / S : 0.0;
+    for (std::size_t j = 0; j < slot_count_; ++j) stage.jump[j] = plan.update[j].z * fed + plan.update[j].w * w;
+  }
   stage.efforts = program.effort.size();
   std::copy(program.effort.begin(), program.effort.end(), stage.weights.begin());
   return stage;
@@ -51,6 +57,7 @@ void MomentumLedger::stage(bool starting, std::size_t k, double force) {
   std::array<double, most_slots> next{};
   for (std::size_t j = 0; j < slot_count_; ++j) {
     double sum = stage.push[j] * effort;
+    if (stage.jumps) sum += stage.jump[j] * force;
     for (std::size_t i = 0; i < slot_count_; ++i) sum += stage.slots[j][i] * state_[i];
     next[j] = sum;
   }

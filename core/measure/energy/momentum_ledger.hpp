@@ -23,6 +23,8 @@ class MomentumLedger {
   struct Stage {
     std::array<std::array<double, most_slots>, most_slots> slots{};  // x ← A x + b e
     std::array<double, most_slots> push{};
+    std::array<double, most_slots> jump{};  // of the effort that is found now, through w
+    bool jumps = false;
     std::array<double, most_efforts> weights{};
     std::size_t efforts = 0;
   };

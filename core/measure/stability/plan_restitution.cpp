@@ -24,8 +24,10 @@ class BouncingMass {
       if (stage.impact)
         for (std::size_t k = 1; k < stage.impact->effort.size(); ++k) effort += stage.impact->effort[k] * past_[k - 1];
       double z = mass_.unknown(stage, 0, effort);
-      const double weight = stage.impact ? stage.impact->effort[0] : 0.0;
-      const double reach = stage.impact && S != 0 ? stage.impact->value.z * weight / S : 0.0;
+      double w = stage.impact ? UnitMass::jump(stage, stage.impact->impulse) : 0.0;
+      const double weight = (stage.impact ? stage.impact->effort[0] : 0.0) + (w != 0 ? stage.impulse->feed.M * w : 0.0);
+      double reach = stage.impact && S != 0 ? stage.impact->value.z * weight / S : 0.0;
+      if (w != 0) reach += stage.impact->value.w * w;
       if (reach > 0) {
         measured = true;
         const int restores = stage.impact->restores;
@@ -34,10 +36,11 @@ class BouncingMass {
                              : push(*stage.impact, z) / reach;
         z += weight * found / S;
       }
-      if (stage.work) works[n] = found * combined(stage.work->displacement, mass_.slots, z);
+      w *= found;
+      if (stage.work) works[n] = found * combined(stage.work->displacement, mass_.slots, z, w);
       std::rotate(past_.begin(), past_.end() - 1, past_.end());
       past_[0] = found;
-      mass_.update(stage, z);
+      mass_.update(stage, z, w);
     }
     return measured;
   }

@@ -22,16 +22,18 @@ struct Measure {
   const Combination* value = nullptr;
   std::vector<double> effort = {1.0};
   const Combination* before = nullptr;  // a conserving evaluation takes the mean of both
+  double impulse = 0;                   // ι, where the stage has a second unknown
 };
 
 std::optional<Measure> measure_of(const Stage& stage, const ClosedContact& law) {
   if (!law.evaluation) {
     if (!stage.impact) return std::nullopt;
-    return Measure{&stage.impact->value, stage.impact->effort};
+    return Measure{&stage.impact->value, stage.impact->effort, nullptr, stage.impulse ? stage.impact->impulse : 0.0};
   }
   const auto& compliance = stage.at(*law.evaluation);
   if (!compliance) return std::nullopt;
-  return Measure{&compliance->displacement, compliance->effort, compliance->before ? &*compliance->before : nullptr};
+  return Measure{&compliance->displacement, compliance->effort, compliance->before ? &*compliance->before : nullptr,
+                 stage.impulse ? compliance->impulse : 0.0};
 }
 
 // The last efforts of all stages in the state, newest first: p₋₁ of the stage to come, p₋₂, …
@@ -61,11 +63,20 @@ class StageRows {
     const MatrixXd& H = problem_.contact;
     const Index points = H.rows();
     if (!solves(stage_)) return Refusal{"the scheme measures contact in a stage that solves nothing"};
-    const MatrixXd response = lu_.solve(H.transpose());
-    const MatrixXd delassus = H * response;
+    MatrixXd response = lu_.solve(H.transpose()), jumped;
+    MatrixXd delassus = H * response;
     for (Index k = 1; k < static_cast<Index>(measure.effort.size()); ++k)
       unknown_.middleCols(past.at + (k - 1) * points, points) += measure.effort[static_cast<std::size_t>(k)] * response;
-    const double z = measure.value->z, weight = measure.effort.front();
+    double z = measure.value->z, weight = measure.effort.front();
+    // What the effort moves z and w by, and the measure with them.
+    if (measure.impulse != 0) {
+      jumped = DenseLu(weighted(problem_, stage_.impulse->R)).solve(measure.impulse * H.transpose());
+      if (!jumped.allFinite()) return Refusal{"the matrix R of the step's impulse is singular"};
+      response = weight * response + lu_.solve(weighted(problem_, stage_.impulse->feed) * jumped);
+      delassus = H * (z * response + measure.value->w * jumped);
+      z = z != 0 || measure.value->w != 0 ? 1 : 0;
+      weight = 1;
+    }
     MatrixXd free = H * combine(*measure.value);
     if (law.evaluation) {
       const double stiffness = measure.before ? 0.5 * law.stiffness : law.stiffness;
@@ -78,6 +89,7 @@ class StageRows {
       effort_ = -least_norm_solve(z * weight * delassus, free);
     }
     unknown_ += weight * response * effort_;
+    if (jumped.size() > 0) jump_ = jumped * effort_;
     if (!unknown_.allFinite()) return Refusal{"the closed contact has no finite step"};
     return std::nullopt;
   }
@@ -85,6 +97,7 @@ class StageRows {
   // Σ w_j x_j + w_z z, over the state before the stage.
   MatrixXd combine(const Combination& c) const {
     MatrixXd rows = c.z * unknown_;
+    if (jump_.size() > 0) rows += c.w * jump_;
     for (std::size_t j = 0; j < c.slots.size(); ++j)
       rows.middleCols(static_cast<Index>(j) * n_, n_).diagonal().array() += c.slots[j];
     return rows;
@@ -111,7 +124,7 @@ class StageRows {
   const Stage& stage_;
   Index n_, total_;
   DenseLu lu_;
-  MatrixXd unknown_, effort_;
+  MatrixXd unknown_, jump_, effort_;  // z, w and p over the state
 };
 
 // D⁻¹ A D with D of powers of two, rows and columns of about the same size; returns D.
@@ -163,8 +176,8 @@ StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, co
 
 std::optional<MatrixXd> held_point_map(const StepPlan& plan) {
   if (plan.stages.size() != 1 || !plan.stages[0].impact || plan.stages[0].impact->value.z == 0) return std::nullopt;
-  // Weighted past efforts are a state of their own.
-  if (plan.stages[0].impact->effort.size() != 1) return std::nullopt;
+  // Weighted past efforts are a state of their own; with w, H z does not follow from H x.
+  if (plan.stages[0].impact->effort.size() != 1 || plan.stages[0].impulse) return std::nullopt;
   const Stage& stage = plan.stages[0];
   const Combination& held = stage.impact->value;
   const auto slots = static_cast<Index>(plan.slots.size());

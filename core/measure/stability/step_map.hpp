@@ -17,7 +17,9 @@
 ///     compliant:  p = −κ H(Σ_j g_j x_j + g_z z)                                the spring, pulling as well as pushing
 ///     conserving: p = −½κ H(Σ_j (g_j + g⁻_j) x_j + g_z z)                      its discrete gradient
 ///
-/// and x_j ← Σ_i u_ji x_i + u_jz z. Loads and bounds move the fixed point and not the eigenvalues: they are left out.
+/// where a stage with an impulse has π₀R + S⁻¹(feed)R_w, R_w = R⁻¹ιHᵀ, in place of π₀R, and weighs w = R_w p beside z;
+/// and x_j ← Σ_i u_ji x_i + u_jz z + u_jw w. Loads and bounds move the fixed point and not the eigenvalues: they are
+/// left out.
 namespace ricochet {
 
 /// M, C, K (n × n) and the rows of H of the closed points (m × n; m = 0: open), in any coordinates.

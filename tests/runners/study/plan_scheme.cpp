@@ -171,6 +171,40 @@ TEST_CASE("a plan that gives work back, its levels derived, has the bits of its 
   require_twins("laursen-love.json", "laursen-love-as-plan", "laursen-love", {{}});
 }
 
+TEST_CASE("a plan whose stage has an impulse has the bits of its plugin", "[plan-file]") {
+  require_twins("kane.json", "kane-as-plan", "kane",
+                {{{"beta", 0.3}}, {{"beta", 0.0}}, {{"beta", 0.4}, {"gamma", 0.6}}});
+}
+
+TEST_CASE("w is a name where some stage has an impulse, and free where none has", "[plan-file]") {
+  const std::string text = read_plan_file(plans / "kane.json").text;
+  const auto said = [](std::string plan) -> std::string {
+    PlanSource source;
+    source.plan = parse_json(plan);
+    try {
+      check_plan_source(source);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto with = [&](const std::string& what, const std::string& instead) {
+    std::string plan = text;
+    const auto at = plan.find(what);
+    REQUIRE(at != std::string::npos);
+    return said(plan.replace(at, what.size(), instead));
+  };
+  CHECK(said(text) == "");
+  CHECK_THAT(with("\"let\": {", "\"let\": {\"w\": 2, "), Catch::Contains("the name \"w\" is that of"));
+  CHECK_THAT(with("\"R\"", "\"Q\""), Catch::Contains("Q"));
+  CHECK_THAT(with("\"of\": \"a\"", "\"of\": \"a + w\""), Catch::Contains("after the step there is no w"));
+  const std::string free = read_plan_file(plans / "moreau-jean.json").text;
+  std::string named = free;
+  const auto at = named.find("\"let\": {");
+  REQUIRE(at != std::string::npos);
+  CHECK(said(named.replace(at, 8, "\"let\": {\"w\": 2, ")) == "");
+}
+
 TEST_CASE("Bathe's two sub-steps as a plan have the bits of the same sums in C++", "[plan-file]") {
   const Registry stated = registered(plans / "bathe.json");
   for (const auto& [rho, split] : {std::pair(0.0, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {0.3, 0.25}})

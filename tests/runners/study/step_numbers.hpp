@@ -35,7 +35,7 @@ class StepNumbers {
     std::vector<double> padded = c.slots;
     padded.resize(slots_, 0.0);
     add(padded);
-    add({c.z});
+    add({c.z, c.w});
   }
   void levels(const Levels& levels) {
     add({static_cast<double>(levels.size())});
@@ -47,6 +47,7 @@ class StepNumbers {
     combination(measure.rate);
     levels(measure.rate_bound);
     list(measure.effort);
+    add({measure.impulse});
     add({measure.before ? 1.0 : 0.0});
     if (measure.before) combination(*measure.before);
     levels(measure.before_bound);
@@ -59,12 +60,16 @@ class StepNumbers {
       rows.resize(slots_);
       for (const OperatorWeights& row : rows) add({row.M, row.C, row.K});
       levels(stage.load);
+      add({stage.impulse ? 1.0 : 0.0});
+      if (stage.impulse)
+        for (const OperatorWeights& w : {stage.impulse->R, stage.impulse->feed}) add({w.M, w.C, w.K});
       add({stage.impact ? 1.0 : 0.0});
       if (stage.impact) {
         combination(stage.impact->value);
         levels(stage.impact->bound);
         list(stage.impact->effort);
         add({stage.impact->gate ? 1.0 : 0.0, static_cast<double>(stage.impact->restores)});
+        add({stage.impact->impulse});
         if (const auto& gate = stage.impact->gate) {
           combination(gate->predictor);
           levels(gate->predictor_bound);
@@ -84,6 +89,7 @@ class StepNumbers {
         combination(stage.work->rate);
         levels(stage.work->load);
         list(stage.work->effort);
+        add({stage.work->impulse});
         levels(stage.work->support);
       }
       for (const LossTerm& term : stage.loss) {

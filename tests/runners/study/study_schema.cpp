@@ -108,7 +108,7 @@ TEST_CASE("The schema and the reader agree on what is a study") {
 
 TEST_CASE("The schema accepts plans, by file and as they are written") {
   Validator validator(stand_ins());
-  for (const char* name : {"newmark.json", "bathe.json", "moreau-jean.json"}) {
+  for (const char* name : {"newmark.json", "bathe.json", "moreau-jean.json", "kane.json"}) {
     INFO(name);
     std::ifstream stream(std::string(RICOCHET_SOURCE_DIR "/tests/plugins/plan_files/") + name);
     Json plan = Json::parse(stream);
