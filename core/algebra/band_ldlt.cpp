@@ -37,7 +37,7 @@ SparseMatrix QuasiDefinite::assemble(std::vector<int>& order) const {
       double& so_far = largest[static_cast<std::size_t>(it.row())];
       if (std::abs(it.value()) <= so_far) continue;
       so_far = std::abs(it.value());
-      place[static_cast<std::size_t>(n + it.row())] = j + 0.5;
+      place[static_cast<std::size_t>(n + it.row())] = border_first ? j - 0.5 : j + 0.5;
     }
   order.resize(static_cast<std::size_t>(n + border));
   std::iota(order.begin(), order.end(), 0);

@@ -21,10 +21,12 @@ std::vector<double> band_storage(const SparseMatrix& matrix, int half_width, boo
 ///     [ G   −C_v ] [r] = [g]        so that  (A + Gᵀ C_v⁻¹ G) z = b + Gᵀ C_v⁻¹ g                                 (1)
 ///
 /// with A SPD and C_v SPD: L D Lᵀ exists without pivoting in any symmetric ordering (Vanderbei 1995, quasi-definite
-/// matrices). The r unknowns are interleaved among the z unknowns by the mean column of their row of G, which keeps the
-/// band narrow.
+/// matrices). The r unknowns are interleaved among the z unknowns by the largest column of their row of G, which keeps
+/// the band narrow: after it, or before it where `border_first`. With G diagonal and regular, border first, A need only
+/// be semidefinite: every pivot of z then holds what its own r has brought.
 struct QuasiDefinite {
   SparseMatrix A, G, Cv;  ///< G and Cv may be 0 × 0
+  bool border_first = false;
   /// The whole matrix of (1), permuted; order[i] is the unknown of row i: dof, or n + j for r_j.
   SparseMatrix assemble(std::vector<int>& order) const;
 };

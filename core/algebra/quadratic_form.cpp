@@ -54,7 +54,9 @@ QuadraticForm::QuadraticForm(const SparseMatrix& coupling, const SparseMatrix& v
 }
 
 QuadraticForm QuadraticForm::of(const Inertia& inertia) {
-  return inertia.factored() ? QuadraticForm(inertia.coupling, inertia.velocity_mass) : QuadraticForm(inertia.mass);
+  if (inertia.assembled()) return QuadraticForm(inertia.mass);
+  const MassFactors factors = mass_factors(inertia);
+  return {factors.coupling, factors.velocity_mass};
 }
 
 void QuadraticForm::reduce(const double* x, std::vector<double>& out) const {

@@ -5,7 +5,8 @@
 
 namespace ricochet {
 
-/// xᵀA y for a symmetric positive semidefinite A that is banded, or M = Bᵀ C_v⁻¹ B given by its factors (never formed).
+/// xᵀA y for a symmetric positive semidefinite A that is banded, or M = Bᵀ C_v⁻¹ B given by its factors (never formed;
+/// B = I and C_v = M⁻¹ where the inverse is given).
 /// One lane, x and y contiguous. No allocation after construction.
 class QuadraticForm {
  public:

@@ -80,7 +80,14 @@ Eigen::Index rank(const SparseMatrix& matrix) {
 }
 
 Wrong check_sizes(const Inertia& inertia, int n) {
-  const SparseMatrix &M = inertia.mass, &B = inertia.coupling, &C = inertia.velocity_mass;
+  const SparseMatrix &M = inertia.mass, &B = inertia.coupling, &C = inertia.velocity_mass, &R = inertia.inverse;
+  if ((M.rows() > 0) + inertia.factored() + inertia.inverted() > 1)
+    return "gives its mass in several forms; expected one: the matrix, its factors or its inverse";
+  if (inertia.inverted()) {
+    if (R.rows() != n || R.cols() != n)
+      return fmt::format("its inverse is {} × {}; expected {} × {}, the dofs of the space", R.rows(), R.cols(), n, n);
+    return std::nullopt;
+  }
   if (!inertia.factored()) {
     if (M.rows() != n || M.cols() != n)
       return fmt::format("its mass is {} × {}; expected {} × {}, the dofs of the space", M.rows(), M.cols(), n, n);
@@ -94,22 +101,29 @@ Wrong check_sizes(const Inertia& inertia, int n) {
 }
 
 Wrong check_values(const Inertia& inertia) {
-  const SparseMatrix& matrix = inertia.factored() ? inertia.velocity_mass : inertia.mass;
-  const char* name = inertia.factored() ? "C_v" : "the mass";
+  const SparseMatrix& matrix = inertia.factored()   ? inertia.velocity_mass
+                               : inertia.inverted() ? inertia.inverse
+                                                    : inertia.mass;
+  const char* name = inertia.factored() ? "C_v" : inertia.inverted() ? "the inverse" : "the mass";
   if (inertia.factored())
     if (auto wrong = check_finite(inertia.coupling, "B")) return wrong;
   if (auto wrong = check_finite(matrix, name)) return wrong;
   if (auto wrong = check_diagonal(matrix, name)) return wrong;
   if (auto wrong = check_symmetric(matrix, name)) return wrong;
   constexpr double round_off = 1e-11, regular = 1e-12;
-  if (!positive(scaled(matrix), inertia.factored() ? -regular : round_off))
-    return inertia.factored() ? "C_v is not positive definite" : "the mass has a negative eigenvalue";
+  if (!positive(scaled(matrix), inertia.assembled() ? round_off : -regular))
+    return inertia.assembled() ? std::string("the mass has a negative eigenvalue")
+                               : std::string(name) + " is not positive definite";
   return std::nullopt;
 }
 
 Wrong check_kernel(const Inertia& inertia, int n) {
   if (inertia.kernel_dimension < 0 || inertia.kernel_dimension > n)
     return fmt::format("declares a kernel of dimension {}; the mass has {} dofs", inertia.kernel_dimension, n);
+  if (inertia.inverted()) {
+    if (inertia.kernel_dimension == 0) return std::nullopt;
+    return fmt::format("declares a kernel of dimension {}, a mass that has an inverse has 0", inertia.kernel_dimension);
+  }
   constexpr double regular = 1e-12;
   // A regular mass needs no rank, only a Cholesky factorisation that succeeds.
   if (!inertia.factored() && inertia.kernel_dimension == 0 && positive(scaled(inertia.mass), -regular))

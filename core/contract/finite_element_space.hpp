@@ -27,6 +27,10 @@ struct FiniteElementSpace {
   std::vector<Element> elements;  ///< ordered in x
   std::vector<PointMass> point_masses;
   bool left_fixed = false, right_fixed = false;  ///< displacement imposed at the ends: velocities vanish there too
+  /// Where a stop may push: the dofs of the columns of H that are not zero, in order, each once (of a contact point on
+  /// a node, its displacement; of one inside an element, all dofs of that element). Empty where no stop stands. For
+  /// strategies that leave such dofs without inertia; whether a contact law acts there is not known here.
+  std::vector<int> contact_dofs;
 
   int functions() const { return basis == Basis::hermite ? 4 : 2; }
 };

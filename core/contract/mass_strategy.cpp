@@ -2,6 +2,13 @@
 
 namespace ricochet {
 
+MassFactors mass_factors(const Inertia& inertia) {
+  if (!inertia.inverted()) return {inertia.coupling, inertia.velocity_mass};
+  SparseMatrix identity(inertia.inverse.rows(), inertia.inverse.rows());
+  identity.setIdentity();
+  return {identity, inertia.inverse};
+}
+
 SparseMatrix consistent_mass(const FiniteElementSpace& space) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(16 * space.elements.size() + space.point_masses.size());

@@ -164,6 +164,8 @@ void say_what_is_left_out(Program& program) {
   if (!mass_products) say("products with M", "the scheme's right-hand side has none");
   if (problem.inertia.factored() && program.kind != OperatorKind::modal)
     say("the mass matrix itself", "M = Bᵀ C_v⁻¹ B acts through its factors");
+  if (problem.inertia.inverted() && program.kind != OperatorKind::modal)
+    say("the mass matrix itself", "M⁻¹ is known: without K a stage is a product with it, with K it is a border");
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
@@ -273,16 +275,18 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.eager_delassus = options.eager_delassus;
 
   const int slots = static_cast<int>(program.plan.slots.size());
-  const int solves =
-      static_cast<int>(std::count_if(program.plan.stages.begin(), program.plan.stages.end(), [&](const Stage& stage) {
-        return fold(stage, problem->damping, slots).solves();
-      }));
+  StepWork work{slots, 0, true};
+  for (const Stage& stage : program.plan.stages) {
+    const FoldedStage folded = fold(stage, problem->damping, slots);
+    work.solves += folded.solves() ? 1 : 0;
+    work.without_stiffness = work.without_stiffness && folded.stiffness == 0;
+  }
   program.kind = options.kind;
   if (program.kind == OperatorKind::automatic)
-    program.kind = cheapest_kind(*problem, slots, solves, program.width, options.expected_steps);
+    program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
   else if (!kind_applies(program.kind, *problem))
     return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
-  const Cost cost = predict_cost(program.kind, *problem, slots, solves, program.width);
+  const Cost cost = predict_cost(program.kind, *problem, work, program.width);
   program.predicted_step_seconds = cost.step_seconds;
   program.predicted_setup_seconds = cost.setup_seconds;
   program.model = std::make_shared<MarchModel>(problem, program.kind == OperatorKind::modal);
@@ -310,7 +314,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   }
   connect_works(program);
   add_contact_facts(program);
-  if (program.kind == OperatorKind::band && mass_only && !problem->inertia.factored()) {
+  if (program.kind == OperatorKind::band && mass_only && problem->inertia.assembled()) {
     bool diagonal = true;
     const SparseMatrix& mass = problem->inertia.mass;
     for (int j = 0; j < mass.outerSize(); ++j)

@@ -36,11 +36,12 @@ bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   return true;
 }
 
-Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int solves, int width) {
-  const double n = problem.dofs(), lanes = width;
+Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width) {
+  const double n = problem.dofs(), lanes = width, slots = work.slots;
   const Rates rate = rates(width);
-  const double border = problem.inertia.factored() ? static_cast<double>(problem.inertia.coupling.rows()) : 0;
-  const double nano = 1e-9, stages = std::max(1, solves);
+  const Inertia& inertia = problem.inertia;
+  const double border = inertia.factored() ? static_cast<double>(inertia.coupling.rows()) : 0;
+  const double nano = 1e-9, stages = std::max(1, work.solves);
   Cost cost;
   const double entries = kind == OperatorKind::modal ? static_cast<double>(problem.points()) * n
                                                      : static_cast<double>(problem.measured().nonZeros());
@@ -53,7 +54,13 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int
     const double w = half_bandwidth(problem.stiffness);
     const double v = border > 0 ? w + 2 : w;
     nanoseconds += n * (2 * w + 1) * rate.product;
-    nanoseconds += (n + border) * (2 * v + 1) * (kind == OperatorKind::sparse ? sparse_rate : rate.substitution);
+    const double solve = kind == OperatorKind::sparse ? sparse_rate : rate.substitution;
+    if (inertia.inverted()) {
+      const double r = half_bandwidth(inertia.inverse);
+      nanoseconds += work.without_stiffness ? n * (2 * r + 1) * rate.product : 2 * n * (4 * std::max(w, r) + 1) * solve;
+    } else {
+      nanoseconds += (n + border) * (2 * v + 1) * solve;
+    }
     cost.setup_seconds = stages * n * 200 * nano;
   }
   const double fixed = per_stage + (problem.points() > 0 ? per_contact + per_contact_lane * lanes : 0);
@@ -61,12 +68,12 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int
   return cost;
 }
 
-OperatorKind cheapest_kind(const SemiDiscrete& problem, int slots, int solves, int width, long long steps) {
+OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps) {
   OperatorKind best = OperatorKind::band;
   double best_cost = 0;
   for (const OperatorKind kind : {OperatorKind::band, OperatorKind::modal, OperatorKind::sparse}) {
     if (!kind_applies(kind, problem)) continue;
-    const Cost cost = predict_cost(kind, problem, slots, solves, width);
+    const Cost cost = predict_cost(kind, problem, work, width);
     const double total = cost.setup_seconds + static_cast<double>(steps) * cost.step_seconds;
     if (best_cost == 0 || total < best_cost) {
       best = kind;

@@ -10,11 +10,18 @@ struct Cost {
   double setup_seconds = 0;
 };
 
-/// `slots`: of the plan; `solves`: stages of a step that solve, each of which measures and updates as well; `width`: T.
-Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, int slots, int solves, int width);
+/// What a step of a plan asks for.
+struct StepWork {
+  int slots = 1;
+  int solves = 1;                  ///< stages that solve, each of which measures and updates as well
+  bool without_stiffness = false;  ///< S = s_M M in all of them: a product where M⁻¹ is known
+};
+
+/// `width`: T.
+Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width);
 
 /// The cheapest kind that applies for `steps` steps. Modal needs K SPD and few enough dofs for a dense eigenproblem.
-OperatorKind cheapest_kind(const SemiDiscrete& problem, int slots, int solves, int width, long long steps);
+OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps);
 
 /// Whether the kind can represent the problem at all.
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem);

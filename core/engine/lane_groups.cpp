@@ -26,7 +26,8 @@ bool same_load(const SemiDiscrete& a, const SemiDiscrete& b) {
 bool same_problem(const SemiDiscrete& a, const SemiDiscrete& b) {
   return a.dofs() == b.dofs() && a.points() == b.points() && same_matrix(a.stiffness, b.stiffness) &&
          same_matrix(a.inertia.mass, b.inertia.mass) && same_matrix(a.inertia.coupling, b.inertia.coupling) &&
-         same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) && a.damping.stiffness == b.damping.stiffness &&
+         same_matrix(a.inertia.velocity_mass, b.inertia.velocity_mass) &&
+         same_matrix(a.inertia.inverse, b.inertia.inverse) && a.damping.stiffness == b.damping.stiffness &&
          a.damping.mass == b.damping.mass && a.support.pulsation == b.support.pulsation && a.contact_x == b.contact_x &&
          same_load(a, b);
 }

@@ -11,23 +11,25 @@ bool any(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
 }
 
-// S as (1) of band_ldlt.hpp: the factored mass enters through its border, scaled so that both blocks have the same
-// units.
+// S as (1) of band_ldlt.hpp: a mass that is not assembled enters through its border, scaled so that both blocks have
+// the same units.
 QuasiDefinite system(const MarchModel& model, const FoldedStage& stage) {
   QuasiDefinite matrix;
   matrix.A = stage.stiffness * model.stiffness();
   const Inertia& inertia = model.inertia();
-  if (!inertia.factored())
+  if (inertia.assembled()) {
     matrix.A += stage.mass * inertia.mass;
-  else if (stage.mass != 0) {
-    matrix.G = std::sqrt(stage.mass) * inertia.coupling;
-    matrix.Cv = inertia.velocity_mass;
+  } else if (stage.mass != 0) {
+    const MassFactors factors = mass_factors(inertia);
+    matrix.G = std::sqrt(stage.mass) * factors.coupling;
+    matrix.Cv = factors.velocity_mass;
+    matrix.border_first = inertia.inverted();
   }
   return matrix;
 }
 
-// What band and sparse operators share: the right-hand side by band products, and M x of a factored mass through the
-// border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
+// What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled
+// through the border: with g = B m / √s_M the solution of the quasi-definite system is S⁻¹(b + M m).
 class Assembly {
  public:
   Assembly(const MarchModel& model, const FoldedStage& stage, int lanes)
@@ -39,15 +41,16 @@ class Assembly {
     const Inertia& inertia = model.inertia();
     const bool by_diagonals = lanes == 1;
     width_ = half_bandwidth(model.stiffness());
-    border_ = inertia.factored() && stage.mass != 0 ? static_cast<int>(inertia.coupling.rows()) : 0;
-    if (!inertia.factored()) width_ = std::max(width_, half_bandwidth(inertia.mass));
+    const MassFactors factors = inertia.assembled() ? MassFactors{} : mass_factors(inertia);
+    border_ = stage.mass != 0 ? static_cast<int>(factors.coupling.rows()) : 0;
+    if (inertia.assembled()) width_ = std::max(width_, half_bandwidth(inertia.mass));
     if (any(stage.stiffness_history)) K_ = band_storage(model.stiffness(), width_, by_diagonals);
     if (any(stage.mass_history)) {
       m_ = Block(rows_, lanes, width_);
-      if (!inertia.factored()) {
+      if (inertia.assembled()) {
         M_ = band_storage(inertia.mass, width_, by_diagonals);
       } else {
-        coupling_ = RowMatrix::from(inertia.coupling);
+        coupling_ = RowMatrix::from(factors.coupling);
         for (double& value : coupling_.value) value /= std::sqrt(stage.mass);
       }
     }
@@ -155,6 +158,72 @@ class BandOperator final : public StageOperator {
   BandLdlt ldlt_;
   std::vector<int> from_, place_, column_from_;
   Block solution_, unknown_, column_;
+};
+
+/// S = s_M M with M⁻¹ known: z = (M⁻¹ (Σ β^K_j K x_j + …) + Σ β^M_j x_j) / s_M, products in place of a solve.
+class InverseOperator final : public StageOperator {
+ public:
+  InverseOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : kernels_(lane_kernels(lanes)),
+        rows_(model.rows()),
+        slots_(static_cast<int>(stage.mass_history.size())),
+        stiffness_width_(half_bandwidth(model.stiffness())),
+        inverse_width_(half_bandwidth(model.inertia().inverse)),
+        shape_(model.support_shape().data()) {
+    const SparseMatrix inverse = model.inertia().inverse / stage.mass;
+    const bool by_diagonals = lanes == 1;
+    inverse_ = band_storage(inverse, inverse_width_, by_diagonals);
+    columns_ = RowMatrix::from(inverse);
+    if (any(stage.stiffness_history)) K_ = band_storage(model.stiffness(), stiffness_width_, by_diagonals);
+    if (stage.uses_mass()) {
+      for (const double weight : stage.mass_history) mass_weights_.push_back(weight / stage.mass);
+      history_ = Block(rows_, lanes);
+    }
+    force_ = Block(rows_, lanes, inverse_width_);
+    unknown_ = Block(rows_, lanes);
+  }
+
+  bool keeps_combination() const override { return !K_.empty(); }
+
+  void free_step(const FreeStepInput& input) override {
+    BandStep force;
+    force.rows = rows_;
+    force.product_width = stiffness_width_;
+    force.K = K_.empty() ? nullptr : K_.data();
+    force.k = input.k;
+    force.shape = input.scale ? shape_ : nullptr;
+    force.scale = input.scale;
+    force.load = input.load;
+    force.b = force_.data();
+    kernels_.band_step(force);
+    BandStep product;
+    product.rows = rows_;
+    product.product_width = inverse_width_;
+    product.K = inverse_.data();
+    product.k = force_.data();
+    product.b = unknown_.data();
+    kernels_.band_step(product);
+    if (mass_weights_.empty()) return;
+    const auto size = static_cast<long>(unknown_.size());
+    kernels_.combine(size, slots_, input.slots, mass_weights_.data(), history_.data());
+    const double* parts[2] = {unknown_.data(), history_.data()};
+    const double both[2] = {1, 1};
+    kernels_.combine(size, 2, parts, both, unknown_.data());
+  }
+
+  double* unknown() override { return unknown_.data(); }
+
+  void solve_column(const double* rhs, double* x) override {
+    for (int i = 0; i < rows_; ++i) x[i] = columns_.times(i, rhs);
+  }
+
+ private:
+  const LaneKernels& kernels_;
+  int rows_, slots_, stiffness_width_, inverse_width_;
+  const double* shape_;
+  std::vector<double> K_, inverse_, mass_weights_;
+  RowMatrix columns_;
+  Block force_, history_, unknown_;
 };
 
 /// CHOLMOD's simplicial L D Lᵀ, one lane at a time (so that lanes stay independent of their number).
@@ -316,7 +385,13 @@ OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, cons
     if (const auto wrong = modal->check()) return Refusal{*wrong};
     return std::unique_ptr<StageOperator>(std::move(modal));
   }
-  if (model.inertia().factored() && stage.mass < 0) return Refusal{"the step weights a factored mass negatively"};
+  const Inertia& inertia = model.inertia();
+  if (inertia.inverted() && stage.stiffness == 0) return std::make_unique<InverseOperator>(model, stage, lanes);
+  if (!inertia.assembled() && stage.mass < 0)
+    return Refusal{"the step weights a mass negatively that is not assembled: use the mass consistent or lumped"};
+  if (!inertia.assembled() && stage.mass == 0 && stage.uses_mass())
+    return Refusal{
+        "a stage without inertia multiplies by a mass that is not assembled: use the mass consistent or lumped"};
   const QuasiDefinite matrix = system(model, stage);
   if (kind == OperatorKind::sparse) return factorised(std::make_unique<SparseOperator>(model, stage, lanes), matrix);
   return factorised(std::make_unique<BandOperator>(model, stage, lanes), matrix);

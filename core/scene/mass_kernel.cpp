@@ -44,15 +44,17 @@ Eigen::MatrixXd mass_kernel(const Inertia& inertia) {
 }
 
 Eigen::MatrixXd dense_mass(const Inertia& inertia) {
-  if (!inertia.factored()) return Eigen::MatrixXd(inertia.mass);
-  const Eigen::MatrixXd B(inertia.coupling), Cv(inertia.velocity_mass);
+  if (inertia.assembled()) return Eigen::MatrixXd(inertia.mass);
+  const MassFactors factors = mass_factors(inertia);
+  const Eigen::MatrixXd B(factors.coupling), Cv(factors.velocity_mass);
   return B.transpose() * Cv.ldlt().solve(B);
 }
 
 Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x) {
-  if (!inertia.factored()) return inertia.mass * x;
-  const Eigen::SimplicialLLT<SparseMatrix> velocity_mass(inertia.velocity_mass);
-  return inertia.coupling.transpose() * velocity_mass.solve(inertia.coupling * x);
+  if (inertia.assembled()) return inertia.mass * x;
+  const MassFactors factors = mass_factors(inertia);
+  const Eigen::SimplicialLLT<SparseMatrix> velocity_mass(factors.velocity_mass);
+  return factors.coupling.transpose() * velocity_mass.solve(factors.coupling * x);
 }
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/contract/contact_law.hpp>
@@ -62,6 +63,17 @@ std::optional<Refusal> change_by(ContactLaw& law, SemiDiscrete& problem) {
   return std::nullopt;
 }
 
+// The columns of H that are not zero.
+std::vector<int> touched_dofs(const SparseRows& contact) {
+  std::vector<int> dofs;
+  for (int i = 0; i < contact.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(contact, i); it; ++it)
+      if (it.value() != 0) dofs.push_back(static_cast<int>(it.col()));
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  return dofs;
+}
+
 void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what) {
   const double support = support_at_start(problem.support).position;
   const Eigen::VectorXd absolute = (problem.contact * problem.position).array() + support;
@@ -76,6 +88,9 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
 
   SemiDiscrete problem;
   problem.space = make_space(scene.structure, elements);
+  problem.contact_x = contact_positions(scene, elements);
+  problem.contact = displacement_rows(problem.space, problem.contact_x);
+  problem.space.contact_dofs = touched_dofs(problem.contact);
   auto built = mass.build(problem.space);
   if (auto* refusal = std::get_if<Refusal>(&built)) return *refusal;
   problem.inertia = std::get<Inertia>(std::move(built));
@@ -85,8 +100,6 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.support_shape = rigid_motion_load(problem.space);
   problem.load = std::make_shared<const DistributedLoad>(whole_load(scene), problem.space);
 
-  problem.contact_x = contact_positions(scene, elements);
-  problem.contact = displacement_rows(problem.space, problem.contact_x);
   problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
   problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
   problem.tip = displacement_rows(problem.space, {tip_position(scene)});

@@ -68,7 +68,7 @@ struct SemiDiscrete {
 
 using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
 
-/// The displacement space of the structure on a uniform mesh of `elements` elements.
+/// The displacement space of the structure on a uniform mesh of `elements` elements, without contact dofs.
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
@@ -89,10 +89,10 @@ void check_scene(const SceneSpec& scene, int elements);
 /// Orthonormal-in-nothing basis Z (n × N) of Ker M (only for kernel_dimension > 0).
 Eigen::MatrixXd mass_kernel(const Inertia& inertia);
 
-/// M as a dense matrix, BᵀCv⁻¹B where it is kept in factors. For set-up.
+/// M as a dense matrix, BᵀCv⁻¹B where it is kept in factors, solved for where its inverse is given. For set-up.
 Eigen::MatrixXd dense_mass(const Inertia& inertia);
 
-/// M x, through the factors where M is not formed. For set-up, not for the marching loop.
+/// M x, through the factors or the inverse where M is not formed. For set-up, not for the marching loop.
 Eigen::VectorXd apply_mass(const Inertia& inertia, const Eigen::VectorXd& x);
 
 }  // namespace ricochet

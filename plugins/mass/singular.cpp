@@ -1,5 +1,4 @@
-#include <Eigen/SparseQR>
-#include <ricochet/contract/plugin.hpp>
+#include "coupling_rank.hpp"
 
 namespace {
 
@@ -10,23 +9,6 @@ SparseMatrix assemble(int rows, int columns, const Triplets& entries) {
   SparseMatrix matrix(rows, columns);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
-}
-
-/// Rank of B, its rows and columns scaled to length 1 first so that the threshold has no unit.
-int rank(const SparseMatrix& coupling) {
-  SparseMatrix scaled = coupling.transpose();
-  for (int side = 0; side < 2; ++side) {
-    for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
-      const double norm = scaled.col(j).norm();
-      if (norm > 0) scaled.col(j) /= norm;
-    }
-    scaled = SparseMatrix(scaled.transpose());
-  }
-  scaled.makeCompressed();
-  Eigen::SparseQR<SparseMatrix, Eigen::COLAMDOrdering<int>> qr;
-  qr.setPivotThreshold(1e-9);
-  qr.compute(scaled);
-  return static_cast<int>(qr.rank());
 }
 
 /// Velocities in a poorer space than displacements: M = Bᵀ C_v⁻¹ B, B_ij = ∫ρS ψ_i φ_j, C_v = ∫ρS ψψ.
@@ -81,7 +63,7 @@ class Singular : public MassStrategy {
     Inertia inertia;
     inertia.coupling = assemble(velocities + points, space.dofs, coupling);
     inertia.velocity_mass = assemble(velocities + points, velocities + points, velocity_mass);
-    inertia.kernel_dimension = space.dofs - rank(inertia.coupling);
+    inertia.kernel_dimension = space.dofs - coupling_rank(inertia.coupling);
     return inertia;
   }
 
@@ -111,7 +93,7 @@ class Singular : public MassStrategy {
     }
     Inertia inertia;
     inertia.mass = assemble(space.dofs, space.dofs, mass);
-    inertia.kernel_dimension = space.dofs - rank(assemble(row, space.dofs, coupling));
+    inertia.kernel_dimension = space.dofs - coupling_rank(assemble(row, space.dofs, coupling));
     return inertia;
   }
 

@@ -32,6 +32,12 @@ FiniteElementSpace unit_space(const SpaceBench& bench) {
     }
     space.elements.push_back(element);
   }
+  for (int node = 0; node <= bench.elements; ++node) {
+    const int dof = first[static_cast<std::size_t>(node)];
+    const bool end = node == 0 || node == bench.elements;
+    if (dof >= 0 && (bench.stops == SpaceBench::Stops::nodes || (bench.stops == SpaceBench::Stops::ends && end)))
+      space.contact_dofs.push_back(dof);
+  }
   if (bench.point_mass) space.point_masses = {{first[static_cast<std::size_t>(bench.elements / 2)], 0.3}};
   return space;
 }
@@ -41,7 +47,10 @@ std::string space_text(const SpaceBench& bench) {
                      : bench.left_fixed                    ? "fixed at its left end"
                      : bench.right_fixed                   ? "fixed at its right end"
                                                            : "free at both ends";
-  return fmt::format("a {} of {} elements, {}{}", bench.beam ? "beam" : "bar", bench.elements, ends,
+  const char* stops = bench.stops == SpaceBench::Stops::ends    ? ", with stops at its free ends"
+                      : bench.stops == SpaceBench::Stops::nodes ? ", with stops at all nodes"
+                                                                : "";
+  return fmt::format("a {} of {} elements, {}{}{}", bench.beam ? "beam" : "bar", bench.elements, ends, stops,
                      bench.point_mass ? ", with a point mass" : "");
 }
 
@@ -69,6 +78,17 @@ Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space) {
   const auto demand = [](bool holds, const std::string& sentence) {
     if (!holds) throw std::runtime_error(sentence);
   };
+  if (inertia.inverted()) {
+    const Eigen::MatrixXd R = inertia.inverse;
+    demand(R.rows() == space.dofs && R.cols() == space.dofs,
+           fmt::format("the inverse is {} × {}, the space has {} dofs", R.rows(), R.cols(), space.dofs));
+    demand(R.allFinite(), "the inverse has an entry that is not finite");
+    demand((R - R.transpose()).norm() <= 1e-13 * R.norm(), "the inverse is not symmetric");
+    const Eigen::LLT<Eigen::MatrixXd> factor(R);
+    demand(factor.info() == Eigen::Success, "the inverse is not positive definite");
+    const Eigen::MatrixXd M = factor.solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
+    return 0.5 * (M + M.transpose());
+  }
   if (!inertia.factored()) {
     demand(inertia.mass.rows() == space.dofs && inertia.mass.cols() == space.dofs,
            fmt::format("the matrix is {} × {}, the space has {} dofs", inertia.mass.rows(), inertia.mass.cols(),
@@ -93,14 +113,21 @@ Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space) {
                                                                            : axial_stiffness(space, 1));
 }
 
+std::vector<SpaceBench::Stops> stops_of(bool no_free_end) {
+  using Stops = SpaceBench::Stops;
+  if (no_free_end) return {Stops::none, Stops::nodes};
+  return {Stops::none, Stops::ends, Stops::nodes};
+}
+
 std::vector<SpaceBench> accepted(const Mass& mass, int elements) {
   std::vector<SpaceBench> all;
   for (const bool beam : {false, true})
     for (const bool left : {true, false})
-      for (const bool right : {false, true}) {
-        const SpaceBench bench{beam, elements, left, right, false};
-        if (std::holds_alternative<Inertia>(ask_mass(mass, unit_space(bench)))) all.push_back(bench);
-      }
+      for (const bool right : {false, true})
+        for (const auto stops : stops_of(left && right)) {
+          const SpaceBench bench{beam, elements, left, right, false, stops};
+          if (std::holds_alternative<Inertia>(ask_mass(mass, unit_space(bench)))) all.push_back(bench);
+        }
   return all;
 }
 

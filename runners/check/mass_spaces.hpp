@@ -6,17 +6,21 @@
 
 /// \file
 /// Displacement spaces on which masses are checked: a beam or a bar of unit length and density, fixed or free at each
-/// end.
+/// end, with stops nowhere, at its free ends or at all nodes.
 namespace ricochet::checking {
 
 using Mass = Subject<MassStrategy>;
 
 struct SpaceBench {
+  enum class Stops { none, ends, nodes };
   bool beam = false;
   int elements = 6;
   bool left_fixed = false, right_fixed = false;
   bool point_mass = false;  ///< 0.3 kg in the middle
+  Stops stops = Stops::none;
 };
+/// Where stops may stand.
+std::vector<SpaceBench::Stops> stops_of(bool no_free_end);
 FiniteElementSpace unit_space(const SpaceBench& bench);
 /// "a beam of 6 elements, fixed at its left end".
 std::string space_text(const SpaceBench& bench);
@@ -30,7 +34,7 @@ InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space);
 Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space);
 /// K of EI = 1 or EA = 1.
 Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space);
-/// The spaces (of beams, bars, an oscillator) that the strategy does not refuse.
+/// The spaces (of beams and bars, with any stops) that the strategy does not refuse.
 std::vector<SpaceBench> accepted(const Mass& mass, int elements);
 
 }  // namespace ricochet::checking

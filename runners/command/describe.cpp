@@ -148,7 +148,8 @@ std::string facts_of(const PluginManual& manual, const MassStrategy& mass) {
     text += fmt::format("  {}: {} dofs, kernel of dimension {}, {}\n", space.structure, space.dofs,
                         inertia.kernel_dimension,
                         inertia.factored() ? fmt::format("M = Bᵀ C_v⁻¹ B with {} velocities", inertia.coupling.rows())
-                                           : std::string("a sparse matrix"));
+                        : inertia.inverted() ? std::string("M⁻¹ as a sparse matrix")
+                                             : std::string("a sparse matrix"));
   }
   return text;
 }

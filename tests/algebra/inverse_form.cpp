@@ -26,3 +26,23 @@ TEST_CASE("the inverse form is that of the dense matrix, bordered or not") {
   plain.A = Eigen::SparseMatrix<double>(n, n);
   CHECK_FALSE(InverseForm(plain)(b));
 }
+
+TEST_CASE("with its border first, a quasi-definite matrix needs no stiffness") {
+  const int n = 6;
+  Eigen::MatrixXd C = 3 * Eigen::MatrixXd::Identity(n, n);
+  for (int i = 1; i < n; ++i) C(i, i - 1) = C(i - 1, i) = 0.7;
+  const Eigen::MatrixXd G = 1.5 * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for (const double stiffness : {0.0, 1e-9, 40.0}) {
+    INFO("stiffness " << stiffness);
+    for (int i = 0; i + 1 < n; ++i) K.block(i, i, 2, 2) += stiffness * (Eigen::Matrix2d() << 1, -1, -1, 1).finished();
+    QuasiDefinite matrix{K.sparseView(), G.sparseView(), C.sparseView(), true};
+    const Eigen::MatrixXd whole = K + G.transpose() * C.inverse() * G;
+    const auto found = InverseForm(matrix)(b);
+    REQUIRE(found);
+    CHECK(*found == Approx(b.dot(whole.ldlt().solve(b))).epsilon(1e-13));
+    matrix.border_first = false;
+    if (stiffness == 0) CHECK_FALSE(InverseForm(matrix)(b));
+  }
+}

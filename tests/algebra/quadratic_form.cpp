@@ -21,7 +21,8 @@ double dense(const Eigen::MatrixXd& A, const std::vector<double>& x, const std::
 }  // namespace
 
 TEST_CASE("a quadratic form equals its dense matrix, for stiffness and every mass") {
-  const auto name = GENERATE(std::string("consistent"), std::string("lumped"), std::string("P1"), std::string("P0"));
+  const auto name = GENERATE(std::string("consistent"), std::string("lumped"), std::string("P1"), std::string("P0"),
+                             std::string("reciprocal"));
   const bool singular = name[0] == 'P';
   const auto strategy = singular ? mass("singular", {{"velocity", name}}) : mass(name);
   const SemiDiscrete problem = discretised(working_set(), 7, *strategy);

@@ -1,4 +1,6 @@
 // Masses with one thing wrong, each caught by the check that looks at it.
+#include <Eigen/LU>
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "runners/check/mass_checks.hpp"
@@ -13,6 +15,7 @@ using checking::Finding;
 namespace {
 
 using Change = std::function<void(SparseMatrix& mass, Inertia& inertia)>;
+using ContactChange = std::function<void(const FiniteElementSpace& space, Inertia& inertia)>;
 
 class ChangedMass final : public MassStrategy {
  public:
@@ -35,12 +38,36 @@ Entry<MassStrategy> mass_entry(Change change) {
   return entry;
 }
 
-void caught(Change change, const std::string& check, const std::string& words) {
-  const CheckResult result = one_check(checking::mass_checks(), mass_entry(std::move(change)), check);
+// Wrong where stops stand, right elsewhere.
+class WrongAtContact final : public MassStrategy {
+ public:
+  explicit WrongAtContact(ContactChange change) : change_(std::move(change)) {}
+  InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (space.elements.empty()) return Refusal{"an oscillator has no elements: use another mass"};
+    Inertia inertia;
+    inertia.mass = consistent_mass(space);
+    change_(space, inertia);
+    return inertia;
+  }
+
+ private:
+  ContactChange change_;
+};
+
+void caught(Entry<MassStrategy> entry, const std::string& check, const std::string& words) {
+  const CheckResult result = one_check(checking::mass_checks(), std::move(entry), check);
   INFO(text_of({result}));
   CHECK(result.finding == Finding::fails);
   REQUIRE_FALSE(result.sentences.empty());
   CHECK_THAT(result.sentences.front(), Contains(words));
+}
+void caught(Change change, const std::string& check, const std::string& words) {
+  caught(mass_entry(std::move(change)), check, words);
+}
+void caught_at_contact(ContactChange change, const std::string& check, const std::string& words) {
+  Entry<MassStrategy> entry{full_manual("made-here"), {}, ""};
+  entry.make = [change](const Parameters&) { return std::make_unique<WrongAtContact>(change); };
+  caught(std::move(entry), check, words);
 }
 
 }  // namespace
@@ -81,4 +108,52 @@ TEST_CASE("check: too much mass, mass on one side alone and modes that do not co
         mass.coeffRef(last, last) -= 0.001;
       },
       "both ends alike", "its mirror image");
+}
+
+TEST_CASE("check: what a mass does wrong only where stops stand is caught") {
+  const auto emptied = [](const FiniteElementSpace& space, Inertia& inertia) {
+    inertia.mass.prune([&](Eigen::Index row, Eigen::Index column, double) {
+      const auto touched = [&](Eigen::Index dof) {
+        return std::count(space.contact_dofs.begin(), space.contact_dofs.end(), static_cast<int>(dof)) > 0;
+      };
+      return !touched(row) && !touched(column);
+    });
+  };
+  caught_at_contact(emptied, "kernel", "with stops at its free ends: declares a kernel of dimension 0");
+  caught_at_contact(
+      [&](const FiniteElementSpace& space, Inertia& inertia) {
+        if (space.contact_dofs.size() < 3) emptied(space, inertia);
+      },
+      "total mass", "with stops at its free ends: a translation moves");
+  caught_at_contact(
+      [](const FiniteElementSpace& space, Inertia& inertia) {
+        if (!space.contact_dofs.empty()) inertia.mass *= 1.02;
+      },
+      "frequencies", "with a stop at its free end does not converge");
+  caught_at_contact(
+      [](const FiniteElementSpace& space, Inertia& inertia) {
+        if (space.contact_dofs.size() > 2) inertia.mass.coeffRef(0, 0) *= -1;
+      },
+      "semidefinite", "with stops at all nodes");
+}
+
+TEST_CASE("check: a mass given by its inverse passes, and its faults are caught") {
+  const auto entry = [](const std::function<void(Eigen::MatrixXd&)>& change) {
+    Entry<MassStrategy> made = mass_entry([change](SparseMatrix& mass, Inertia& inertia) {
+      Eigen::MatrixXd inverse = Eigen::MatrixXd(mass).inverse();
+      inverse = (0.5 * (inverse + inverse.transpose())).eval();
+      change(inverse);
+      inertia.inverse = inverse.sparseView();
+      mass = SparseMatrix();
+    });
+    return made;
+  };
+  const auto sound = entry([](Eigen::MatrixXd&) {});
+  for (const auto& check : checking::mass_checks()) {
+    const CheckResult result = one_check(checking::mass_checks(), sound, check.name);
+    INFO(text_of({result}));
+    CHECK(result.finding == Finding::ok);
+  }
+  caught(entry([](Eigen::MatrixXd& inverse) { inverse /= 1.02; }), "total mass", "of 1 kg");
+  caught(entry([](Eigen::MatrixXd& inverse) { inverse(0, 0) = -1; }), "semidefinite", "not positive definite");
 }

@@ -31,6 +31,13 @@ Inertia factored(const Eigen::MatrixXd& B, const Eigen::MatrixXd& C, int kernel)
   return inertia;
 }
 
+Inertia inverted(const Eigen::MatrixXd& inverse, int kernel = 0) {
+  Inertia inertia;
+  inertia.inverse = inverse.sparseView();
+  inertia.kernel_dimension = kernel;
+  return inertia;
+}
+
 std::string wrong(const Inertia& inertia) {
   return check_inertia(inertia, three_dofs()).value_or("nothing");
 }
@@ -104,6 +111,19 @@ TEST_CASE("a declared kernel is the real one") {
   CHECK_THAT(wrong(assembled(Eigen::Matrix3d::Identity(), -1)), Contains("-1"));
 }
 
+TEST_CASE("an inverse is symmetric, positive definite, of all dofs, and has no kernel") {
+  CHECK(wrong(inverted(Eigen::Vector3d(2, 1e-9, 3).asDiagonal())) == "nothing");
+  CHECK(wrong(inverted(Eigen::Matrix2d::Identity())) == "its inverse is 2 × 2; expected 3 × 3, the dofs of the space");
+  CHECK(wrong(inverted(with(not_a_number, 1, 2))) == "the inverse holds nan at (1, 2)");
+  CHECK_THAT(wrong(inverted(with(0.1, 0, 2))), StartsWith("the inverse is not symmetric"));
+  CHECK(wrong(inverted(Eigen::Matrix3d::Ones())) == "the inverse is not positive definite");
+  CHECK(wrong(inverted(Eigen::Matrix3d::Identity(), 1)) ==
+        "declares a kernel of dimension 1, a mass that has an inverse has 0");
+  Inertia both = inverted(Eigen::Matrix3d::Identity());
+  both.mass = both.inverse;
+  CHECK_THAT(wrong(both), StartsWith("gives its mass in several forms"));
+}
+
 TEST_CASE("the masses of this tree pass on meshes coarse and fine") {
   const int elements = GENERATE(1, 2, 3, 50, 500);
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
@@ -118,6 +138,9 @@ TEST_CASE("the masses of this tree pass on meshes coarse and fine") {
       const auto* entry = registry.mass(name);
       std::vector<Parameters> choices(1);
       for (const ParameterSpec& spec : entry->manual.parameters) {
+        if (spec.words.empty() && spec.fallback)
+          for (Parameters& choice : choices) choice.set(spec.key, *spec.fallback);
+        if (spec.words.empty()) continue;
         std::vector<Parameters> more;
         for (const Parameters& choice : choices)
           for (const std::string& word : spec.words) (more.emplace_back(choice), more.back().set(spec.key, word));

@@ -48,9 +48,9 @@ TEST_CASE("the operator follows the number of contact points") {
   scene.stops.place = StopsSpec::Place::nodes;
   const auto nodes = problem_of(scene, 50, {"consistent"});
   for (const int solves : {1, 2, 6}) {
-    CHECK(cheapest_kind(*tip, 2, solves, 1, 100000000) == OperatorKind::modal);
-    CHECK(cheapest_kind(*nodes, 2, solves, 1, 100000000) == OperatorKind::band);
+    CHECK(cheapest_kind(*tip, {2, solves, false}, 1, 100000000) == OperatorKind::modal);
+    CHECK(cheapest_kind(*nodes, {2, solves, false}, 1, 100000000) == OperatorKind::band);
     // Not for a few steps: a dense eigenproblem is to be paid back.
-    CHECK(cheapest_kind(*tip, 2, solves, 1, 10) == OperatorKind::band);
+    CHECK(cheapest_kind(*tip, {2, solves, false}, 1, 10) == OperatorKind::band);
   }
 }

@@ -13,7 +13,7 @@ TEST_CASE("marching allocates nothing, observed or not") {
   scene.stops.place = StopsSpec::Place::nodes;
   scene.support.amplitude = 0.02;
   scene.load = Formula("0.1*x*sin(3*t)", "/scene/load");
-  const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular"});
+  const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular"}, Choice{"reciprocal"});
   const auto contact = GENERATE(Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e5}}},
                                 Choice{"augmented-lagrangian", {{"augmentation", 1e5}}});
   const auto time =

@@ -27,6 +27,41 @@ Eigen::VectorXd kernel_part(const SemiDiscrete& p, const Eigen::VectorXd& force)
 
 }  // namespace
 
+TEST_CASE("a mass strategy sees the dofs at which stops stand") {
+  class Seen final : public MassStrategy {
+   public:
+    mutable std::vector<int> dofs;
+    InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+      dofs = space.contact_dofs;
+      Inertia inertia;
+      inertia.mass = consistent_mass(space);
+      return inertia;
+    }
+  } strategy;
+  SceneSpec scene = working_set();
+  const auto seen = [&] {
+    const SemiDiscrete p = discretised(scene, 3, strategy);
+    // The columns of H that are not zero.
+    std::vector<int> columns;
+    const Eigen::MatrixXd H = Eigen::MatrixXd(p.contact).cwiseAbs();
+    for (int j = 0; j < p.dofs(); ++j)
+      if (H.rows() > 0 && H.col(j).maxCoeff() > 0) columns.push_back(j);
+    CHECK(strategy.dofs == columns);
+    CHECK(p.space.contact_dofs == columns);
+    return columns;
+  };
+  CHECK(seen() == std::vector<int>{4});
+  scene.stops.place = StopsSpec::Place::nodes;
+  CHECK(seen() == std::vector<int>{0, 2, 4});
+  scene.stops.place = StopsSpec::Place::positions;
+  scene.stops.positions = {0.7, 1.501};  // inside the second element, and at its neighbour's end
+  CHECK(seen() == std::vector<int>{0, 1, 2, 3, 4});
+  scene.stops.lower.reset();
+  scene.stops.upper.reset();
+  CHECK(seen().empty());
+  CHECK(make_space(scene.structure, 3).contact_dofs.empty());
+}
+
 TEST_CASE("stops at nodes, at the tip, at positions, on one side, nowhere") {
   SceneSpec scene = working_set();
   const auto strategy = mass("consistent");

@@ -29,11 +29,13 @@ std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
   const auto given_way = [&](double time) {
     QuasiDefinite matrix;
     matrix.A = time * time * problem.stiffness;
-    if (problem.inertia.factored()) {
-      matrix.G = problem.inertia.coupling;
-      matrix.Cv = problem.inertia.velocity_mass;
-    } else {
+    if (problem.inertia.assembled()) {
       matrix.A += problem.inertia.mass;
+    } else {
+      const MassFactors factors = mass_factors(problem.inertia);
+      matrix.G = factors.coupling;
+      matrix.Cv = factors.velocity_mass;
+      matrix.border_first = problem.inertia.inverted();
     }
     return InverseForm(matrix);
   };
@@ -87,9 +89,10 @@ struct ImpactJump::Inverse {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass;
   Eigen::SparseMatrix<double> stiffness;
   Damping damping;
-  Eigen::SparseMatrix<double> inertia;
+  Eigen::SparseMatrix<double> inertia, inverse;  // one of both
   // The acceleration of a free motion (q, v).
   Eigen::VectorXd of(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+    if (inverse.rows() > 0) return -(inverse * (stiffness * (q + damping.stiffness * v))) - damping.mass * v;
     const Eigen::VectorXd force = stiffness * (q + damping.stiffness * v) + damping.mass * (inertia * v);
     return -mass.solve(force);
   }
@@ -116,8 +119,10 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   if (inertia.factored() || inertia.kernel_dimension > 0) return;
   inverse_mass_ = std::make_unique<Inverse>();
   inverse_mass_->inertia = inertia.mass;
+  inverse_mass_->inverse = inertia.inverse;
   inverse_mass_->stiffness = program.model->stiffness();
   inverse_mass_->damping = program.problem->damping;
+  if (inertia.inverted()) return;
   inverse_mass_->mass.compute(inverse_mass_->inertia);
   if (inverse_mass_->mass.info() != Eigen::Success) inverse_mass_.reset();
 }

@@ -15,7 +15,7 @@ struct Shape {
 
 std::vector<Shape> slow_shapes(const SemiDiscrete& problem, int count) {
   if (problem.dofs() == 1) {
-    const double m = problem.inertia.factored() ? 1 : problem.inertia.mass.coeff(0, 0);
+    const double m = problem.inertia.factored() ? 1 : dense_mass(problem.inertia)(0, 0);
     const double k = problem.stiffness.coeff(0, 0);
     return {{Eigen::VectorXd::Ones(1), k > 0 && m > 0 ? std::sqrt(k / m) : problem.support.pulsation}};
   }

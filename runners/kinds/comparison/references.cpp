@@ -56,8 +56,9 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
 DiscreteProblem dense(const SemiDiscrete& problem, const SampleGrid& grid) {
   DiscreteProblem discrete;
   const Eigen::Index n = problem.dofs();
-  if (problem.inertia.factored()) {
-    const Eigen::MatrixXd B = problem.inertia.coupling, C = problem.inertia.velocity_mass;
+  if (!problem.inertia.assembled()) {
+    const MassFactors factors = mass_factors(problem.inertia);
+    const Eigen::MatrixXd B = factors.coupling, C = factors.velocity_mass;
     discrete.mass = B.transpose() * C.llt().solve(B);
   } else {
     discrete.mass = problem.inertia.mass;

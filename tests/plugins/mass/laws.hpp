@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <ricochet/scene/assembly.hpp>
 
 #include "tests/scene/working_set.hpp"
 
@@ -20,7 +21,7 @@ inline void check_inertia(const MassStrategy& strategy, int elements, int kernel
     CHECK((C - C.transpose()).cwiseAbs().maxCoeff() == 0);
     CHECK(C.llt().info() == Eigen::Success);
   } else {
-    const Eigen::MatrixXd M = inertia.mass;
+    const Eigen::MatrixXd M = inertia.inverted() ? inertia.inverse : inertia.mass;
     CHECK((M - M.transpose()).cwiseAbs().maxCoeff() == 0);
   }
   // Rotations in radians times ℓ, so that all entries of M are of the size of an element's mass.
@@ -57,6 +58,48 @@ inline double pulsation_order(const MassStrategy& strategy) {
 inline double largest_eigenvalue(const MassStrategy& strategy, int elements) {
   const auto p = discretised(unit_beam(), elements, strategy);
   return 1 / compliances(p.stiffness, p.inertia)[p.inertia.kernel_dimension] / std::pow(elements, 4);
+}
+
+/// EA = ρA = L = 1, fixed at x = 1, without stops or with one at its free end: pulsations (k − ½)π.
+inline SceneSpec unit_bar(bool stop = false) {
+  SceneSpec scene;
+  scene.structure = BarSpec{.length = 1, .EA = 1, .rhoA = 1, .fixed = BarSpec::Fixed::right, .damping = {}};
+  scene.stops.place = StopsSpec::Place::tip;
+  if (stop) scene.stops.lower = Formula(-1.0);
+  return scene;
+}
+
+/// Relative error of the first pulsation, with its sign.
+inline double pulsation_error(const MassStrategy& strategy, const SceneSpec& scene, int elements) {
+  const auto p = discretised(scene, elements, strategy);
+  const bool bar = std::holds_alternative<BarSpec>(scene.structure);
+  const double exact = bar ? 1.57079632679489661923 : 1.8751040687119611664 * 1.8751040687119611664;
+  return 1 / std::sqrt(compliances(p.stiffness, p.inertia).maxCoeff()) / exact - 1;
+}
+
+/// Its order in ℓ from one mesh to one of twice as many elements.
+inline double pulsation_order(const MassStrategy& strategy, const SceneSpec& scene, int elements) {
+  return std::log2(
+      std::abs(pulsation_error(strategy, scene, elements) / pulsation_error(strategy, scene, 2 * elements)));
+}
+
+/// The largest finite pulsation in units of c/ℓ (bar) or √(EI/ρS)/ℓ² (beam); explicit steps end at 2/ω.
+inline double largest_pulsation(const MassStrategy& strategy, const SceneSpec& scene, int elements) {
+  const auto p = discretised(scene, elements, strategy);
+  const bool bar = std::holds_alternative<BarSpec>(scene.structure);
+  const double slowest = compliances(p.stiffness, p.inertia)[p.inertia.kernel_dimension];
+  return 1 / std::sqrt(slowest) / std::pow(elements, bar ? 1 : 2);
+}
+
+/// Mass, first and second moment about the left end that the free dofs have: XᵀMX of the rigid motions.
+inline Eigen::Matrix2d rigid_mass(const Inertia& inertia, const FiniteElementSpace& space) {
+  const auto places = dof_places(space);
+  Eigen::MatrixXd X(space.dofs, 2);
+  for (int i = 0; i < space.dofs; ++i) {
+    const auto [x, slope] = places[static_cast<std::size_t>(i)];
+    X.row(i) << (slope ? 0.0 : 1.0), (slope ? 1.0 : x);
+  }
+  return X.transpose() * dense_mass(inertia) * X;
 }
 
 /// One point mass and no element: an oscillator.
