@@ -52,7 +52,7 @@ TEST_CASE("reciprocal: rigid motions have the mass of the structure, point masse
   Eigen::MatrixXd difference = dense_mass(loaded) - bare;
   difference(2, 2) -= 0.7;
   difference(3, 3) -= 1e3;
-  CHECK(difference.cwiseAbs().maxCoeff() <= 1e-11);  // 1e3 kg, by an inverse of an inverse
+  CHECK(difference.cwiseAbs().maxCoeff() <= 1e-9);  // 1e3 kg, as an inverse of an inverse
   CHECK(dense_mass(built(*reciprocal(0), oscillator_space(2)))(0, 0) == 2);
 }
 
@@ -99,10 +99,10 @@ TEST_CASE("reciprocal: marches as the matrix that it is the inverse of, explicit
   beam.support.amplitude = 0.01;
   beam.load = Formula("0.1*x*sin(3*t)", "/scene/load");
   const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"moreau-jean", {{"theta", 0.6}}},
-                             Choice{"cd-lagrange"}, Choice{"central-difference"});
+                             Choice{"cd-lagrange"}, Choice{"carpenter-taylor-katona"});
   INFO(time.name);
-  const bool undamped = time.name == "central-difference";
-  if (undamped) beam_of(beam).damping = {};
+  // Its S has C in it, and K with stiffness-proportional damping: undamped it is a product.
+  if (time.name == "carpenter-taylor-katona") beam_of(beam).damping = {};
   const Methods methods{{"reciprocal"}, {"signorini"}, time};
   const double h = 1e-5, duration = 0.055;
   const double formed = tip_after(std::make_shared<const SemiDiscrete>(discretised(beam, 6, Formed())), methods, h,
@@ -119,7 +119,7 @@ TEST_CASE("reciprocal: a bar without a clamp marches too, its stiffness is singu
   scene.stops.place = StopsSpec::Place::tip;
   scene.initial.displacement = Formula(0.01);
   scene.initial.velocity = Formula(-1.0);
-  for (const char* time : {"newmark-dumont-paoli", "central-difference"}) {
+  for (const char* time : {"newmark-dumont-paoli", "carpenter-taylor-katona"}) {
     const Methods methods{{"reciprocal"}, {"signorini"}, {time}};
     const double formed = tip_after(std::make_shared<const SemiDiscrete>(discretised(scene, 12, Formed())), methods,
                                     1e-5, 0.03, OperatorKind::band);
