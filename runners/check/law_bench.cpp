@@ -11,11 +11,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// A beam of ten elements with stops at so many nodes: the same elements for any number of points.
+void show_beam(ContactLaw& law, int points) {
+  constexpr int elements = 10;
+  SceneSpec scene = structure_scene({.beam = true, .stops = true});
+  scene.stops.place = StopsSpec::Place::positions;
+  for (int i = points; i-- > 0;) scene.stops.positions.push_back((elements - i) / static_cast<double>(elements));
+  discretised(scene, elements, *consistent_bench_mass(), &law);
+}
+
 }  // namespace
 
 LawBench::LawBench(const Law& law, int points, int lanes) : law_(law.make()), points_(points), lanes_(lanes) {
-  const StructureBench beam{.beam = true, .stops = true, .everywhere = true};
-  if (law_->changes_problem()) discretised(structure_scene(beam), points, *consistent_bench_mass(), law_.get());
+  if (law_->changes_problem()) show_beam(*law_, points);
   const std::vector<Parameters> parameters(static_cast<std::size_t>(lanes), law.set.values);
   law_->prepare(points, parameters);
   const auto size = static_cast<std::size_t>(points * lanes);

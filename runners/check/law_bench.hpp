@@ -32,7 +32,7 @@ struct LaneProblem {
 class LawBench {
  public:
   /// Makes and prepares the law for `points` points and `lanes` lanes; one that changes the problem for those of a beam
-  /// with stops at all nodes. Throws Refused.
+  /// with stops at so many nodes, ten at most. Throws Refused.
   LawBench(const Law& law, int points, int lanes);
   ContactLaw& law() { return *law_; }
   const ContactLaw& law() const { return *law_; }

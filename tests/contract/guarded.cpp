@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <limits>
+#include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/contract/registry.hpp>
 
 #include "tests/allocations.hpp"
@@ -32,6 +33,11 @@ struct Law : ContactLaw {
   bool absent() const override { return (act(), true); }
   std::optional<Evaluation> reads() const override { return (act(), Evaluation::averaged); }
   bool reads_rate() const override { return (act(), true); }
+  bool conserves_energy() const override { return (act(), true); }
+  bool changes_problem() const override { return (act(), true); }
+  std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
+    return (act(), structure.rigidity = 7, std::nullopt);
+  }
   void prepare(int, std::span<const Parameters>) override { act(); }
   void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
   double potential(double depth, int lane) const override { return (act(), depth + lane); }
@@ -105,11 +111,16 @@ TEST_CASE("every function of a law is guarded and forwarded") {
   std::function<void()> act = [] {};
   const auto law = law_of([&] { act(); });
   ReducedProblem problem;
+  const SparseRows rows(1, 2);
+  ContactStructure structure{.contact = &rows, .measured = rows, .stiffness = SparseMatrix(2, 2)};
   // Each says whether the answer came through.
   const std::vector<std::pair<std::string, std::function<bool()>>> calls = {
       {"absent", [&] { return law->absent(); }},
       {"reads", [&] { return law->reads() == Evaluation::averaged; }},
       {"reads_rate", [&] { return law->reads_rate(); }},
+      {"conserves_energy", [&] { return law->conserves_energy(); }},
+      {"changes_problem", [&] { return law->changes_problem(); }},
+      {"prepare_problem", [&] { return !law->prepare_problem(structure) && structure.rigidity == 7; }},
       {"prepare", [&] { return (law->prepare(1, {}), true); }},
       {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
       {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
@@ -137,6 +148,28 @@ TEST_CASE("a measure that does not exist is not read") {
   Registry registry;
   registry.add_contact(manual(), [](const Parameters&) { return std::make_unique<Wild>(); });
   CHECK_THROWS_WITH(registry.contact("mine")->make({})->reads(), Contains("names the measure 9"));
+}
+
+TEST_CASE("a problem that a law changes keeps its size, and its refusal has a sentence") {
+  struct Wild final : Law {
+    explicit Wild(bool says) : Law([] {}), refuses(says) {}
+    bool refuses;
+    std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
+      if (refuses) return Refusal{" "};
+      structure.measured = SparseRows(1, 3);
+      return std::nullopt;
+    }
+  };
+  const SparseRows rows(1, 2);
+  ContactStructure structure{.contact = &rows, .measured = rows, .stiffness = SparseMatrix(2, 2)};
+  const auto made = [](bool refuses) {
+    Registry registry;
+    registry.add_contact(manual(), [refuses](const Parameters&) { return std::make_unique<Wild>(refuses); });
+    return registry.contact("mine")->make({});
+  };
+  CHECK_THROWS_WITH(made(true)->prepare_problem(structure), Contains("refuses without a sentence"));
+  CHECK_THROWS_WITH(made(false)->prepare_problem(structure),
+                    Contains("1 × 3 rows and a stiffness of 2 × 2; 1 points of 2 dofs were given"));
 }
 
 TEST_CASE("asking a guarded law allocates nothing") {
