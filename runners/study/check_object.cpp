@@ -193,6 +193,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
     case Field::Form::places:
       return check_places(value, pointer);
     case Field::Form::object:
+      if (field.nullable && value.is_null()) return value;
       return check_object(field.nested.front(), value, pointer, axes);
     case Field::Form::objects:
       return check_objects(field, value, pointer, axes);

@@ -87,6 +87,7 @@ class SchemaWriter {
         return {{"anyOf", Json::array({{{"enum", {"nodes", "tip"}}},
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
       case Field::Form::object:
+        if (field.nullable) return {{"anyOf", Json::array({object(field.nested.front()), {{"type", "null"}}})}};
         return object(field.nested.front());
       case Field::Form::objects:
         return {{"type", "array"},

@@ -8,6 +8,7 @@
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 #include "runners/kinds/trajectory/curves_head.hpp"
+#include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -124,13 +125,14 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   EnergyAudit audit(marcher);
+  ForceWindow forces(study_case.settings, audit);
   Sampler sampler;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   bool spent = false;
   long long chunk = 16;
-  marcher.start(&audit);
+  marcher.start(&forces);
   if (marcher.step() > 0) sampler.take(marcher, audit);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
   for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
@@ -140,7 +142,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
       const double before = thread_seconds();
-      marcher.march(std::min(target - marcher.step(), chunk), &audit);
+      marcher.march(std::min(target - marcher.step(), chunk), &forces);
       const double now = thread_seconds();
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.
@@ -157,6 +159,10 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   else
     record_early_end(record, marcher, prepared.steps, budget);
   fill_measures(record, marcher, audit, *problem);
+  if (forces.told()) {
+    put_measure(record, "contact_force_mean", forces.mean());
+    put_measure(record, "contact_force_deviation", forces.deviation());
+  }
   if (marcher.delassus_columns() > 0)
     record.notes.push_back(
         fmt::format("Delassus columns computed: {} of {}", marcher.delassus_columns(), problem->points()));

@@ -64,6 +64,12 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
        "stage is "
        "worth follows from the scheme's plan."},
+      {"contact_force_mean", "N",
+       "Mean of the contact force over the study's window, summed over the points: times the window it is the impulse. "
+       "The instants of a step count by the momentum that an effort of each gives.",
+       Of::motion, true},
+      {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window.",
+       Of::motion, true},
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity).",
@@ -111,12 +117,36 @@ std::string energies_text(const CaseRecord& record) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+namespace {
+
+Field window_key() {
+  using namespace keys;
+  ObjectForm window;
+  window.fields = {single(real("from", "s", non_negative, std::nullopt, "Where the window begins.")),
+                   single(real("to", "s", positive, std::nullopt, "Where it ends."))};
+  return object("window", Json(nullptr), "The interval over which the contact force is measured; null: it is not.",
+                window);
+}
+
+void check_window(const Json& study) {
+  const auto window = study.find("window");
+  if (window == study.end() || window->is_null()) return;
+  const double from = (*window)["from"].get<double>(), to = (*window)["to"].get<double>();
+  if (to <= from || to > study["duration"].get<double>())
+    throw InputError("/window/to",
+                     fmt::format("a window from {} to {} s in a run of {} s; expected from < to ≤ duration", from, to,
+                                 study["duration"].get<double>()));
+}
+
+}  // namespace
+
 Kind trajectory_kind() {
   Kind kind;
   kind.format.name = "trajectory";
   kind.format.text = "Each case marches its scene once.";
-  kind.format.keys = {keys::step(), keys::duration(), keys::samples(), keys::budget()};
-  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"budget"}); };
+  kind.format.keys = {keys::step(), keys::duration(), keys::samples(), keys::optional(window_key()), keys::budget()};
+  kind.format.check = check_window;
+  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"window", "budget"}); };
   kind.plan = plan_case;
   kind.start = [](const RunContext& context) {
     CaseRunner runner;

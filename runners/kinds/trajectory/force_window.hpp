@@ -1,0 +1,34 @@
+#pragma once
+#include <ricochet/engine/marcher.hpp>
+
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// The contact force over an interval of time, as one lane marches. What the efforts of an instant of contact give a
+/// free mass, Σ ω p over its stages and points (N s), is a force F over the largest ω of its stages (s), which is also
+/// what the instant weighs:
+///     F̄ = Σ ω F / Σ ω,   s² = Σ ω (F − F̄)² / Σ ω   (N),
+/// so that F̄ times the interval is the impulse, whatever the stages of the scheme. An effort that gives no momentum, of
+/// a projection, is no force. Passes everything on to the observer behind it; allocates nothing.
+class ForceWindow final : public StepObserver {
+ public:
+  /// [from, to], s; `settings` are those of a trajectory, with or without a window.
+  ForceWindow(const Json& settings, StepObserver& behind);
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override;
+  void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
+
+  /// Whether any instant of contact fell into the window.
+  bool told() const { return weight_ > 0; }
+  double mean() const { return mean_; }
+  double deviation() const;
+
+ private:
+  StepObserver& behind_;
+  double from_ = 0, to_ = -1;
+  double given_ = 0, lasts_ = 0;  // by the instant under way
+  double weight_ = 0, mean_ = 0, squares_ = 0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,210 @@
+#include "runners/run/league.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+// The error that orders and costs are told by.
+constexpr const char* told_error = "tip-l2";
+constexpr double told_seconds = 1e-3;
+
+/// A scheme and its parameters, by column.
+using Scheme = std::vector<std::pair<std::string, std::string>>;
+
+Scheme scheme_of(const CaseRecord& record) {
+  Scheme out;
+  for (const auto& [column, value] : record.axes)
+    if (axis_role(column) == "time" && !value.is_null()) out.emplace_back(column, cell_of(value).text());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Takes a value of a case.
+using Add = std::function<void(const CaseRecord&, std::optional<double>)>;
+/// Calls with every row of a derived table and its case, where the study has both.
+using See = std::function<void(const CaseRecord&, const TableReader&, std::size_t row)>;
+
+void see_rows(const StudyResults& study, const char* name, const See& see) {
+  const Table* table = find_table(study.derived, name);
+  if (!table) return;
+  std::map<std::string, const CaseRecord*> cases;
+  for (const CaseRecord& record : study.cases) cases[record.id] = &record;
+  const TableReader rows(*table);
+  const std::size_t id = rows.column("case");
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (const auto found = cases.find(rows.text(row, id)); found != cases.end()) see(*found->second, rows, row);
+}
+
+bool touches(const CaseRecord& record) {
+  return measure(record, "impacts").value_or(0) > 0;
+}
+
+void add_orders(const StudyResults& study, bool contact, const Add& add) {
+  see_rows(study, "orders", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
+    if (rows.text(row, "refined") == "step" && rows.text(row, "error") == told_error && touches(record) == contact)
+      add(record, rows.number(row, "order"));
+  });
+}
+
+void add_gains(const StudyResults& study, const Add& add) {
+  see_rows(study, "energy_ends", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
+    if (touches(record)) add(record, rows.number(row, "step_gain"));
+  });
+}
+
+void add_restitution(const StudyResults& study, const char* column, const Add& add) {
+  see_rows(study, "restitution", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
+    add(record, rows.number(row, rows.column_if_any(column)));
+  });
+}
+
+void see_points(const StudyResults& study, const std::function<void(const CaseRecord&, double error, double s)>& see) {
+  see_rows(study, "work_precision", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
+    const auto error = rows.number(row, "value"), seconds = rows.number(row, "run_seconds");
+    if (rows.text(row, "error") == told_error && error && seconds) see(record, *error, *seconds);
+  });
+}
+
+void add_costs(const StudyResults& study, const Add& add) {
+  see_points(study, [&](const CaseRecord& record, double, double seconds) {
+    if (record.steps > 0) add(record, 1e6 * seconds / static_cast<double>(record.steps));
+  });
+}
+
+// The best that a method reaches within the time, over its steps.
+void add_reached(const StudyResults& study, const Add& add) {
+  std::vector<std::string> method = study.columns;
+  std::erase(method, "step");
+  std::map<std::string, std::pair<const CaseRecord*, double>> best;
+  see_points(study, [&](const CaseRecord& record, double error, double seconds) {
+    if (seconds > told_seconds) return;
+    const auto [at, fresh] = best.try_emplace(key_of(axes_of(record, method)), &record, error);
+    if (!fresh) at->second.second = std::min(at->second.second, error);
+  });
+  for (const auto& [key, reached] : best) add(*reached.first, reached.second);
+}
+
+struct Figure {
+  Column column;
+  std::function<void(const StudyResults&, const Add&)> find;
+  int decimals = 0;      ///< 0: two significant digits
+  bool largest = false;  ///< the largest value alone
+};
+
+const std::vector<Figure>& figures() {
+  using namespace std::placeholders;
+  static const std::vector<Figure> all = {
+      {{"order free", "1", "Order in the step without contact."}, std::bind(add_orders, _1, false, _2), 2},
+      {{"order through contact", "1", "Order in the step where a stop is touched."},
+       std::bind(add_orders, _1, true, _2),
+       2},
+      {{"largest step gain", "1", "Largest gain of energy in one step at contact, over the starting energy."},
+       add_gains,
+       0,
+       true},
+      {{"e least", "1", "Least restitution of a free mass over the phases of a step."},
+       std::bind(add_restitution, _1, "least", _2)},
+      {{"e mean", "1", "Mean of the same."}, std::bind(add_restitution, _1, "mean", _2)},
+      {{"e most", "1", "Largest of the same."}, std::bind(add_restitution, _1, "most", _2)},
+      {{"ρ∞", "1", "What a step leaves of the highest frequencies."}, std::bind(add_restitution, _1, "rho_inf", _2)},
+      {{"cost of a step", "µs", "Processor time of one step."}, add_costs},
+      {{"error at 1 ms", "m", "Smallest error of the tip, root mean square over time, within 1 ms of processor time."},
+       add_reached},
+  };
+  return all;
+}
+
+std::string said(const Figure& figure, double value) {
+  return figure.decimals > 0 ? fmt::format("{:.{}f}", value, figure.decimals) : fmt::format("{:.2g}", value);
+}
+
+/// "1.98 … 2.03 [free]".
+std::string said(const Figure& figure, const std::vector<double>& values, const std::string& study) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const std::string low = said(figure, figure.largest ? *most : *least), high = said(figure, *most);
+  return fmt::format("{}{} [{}]", low, low == high ? "" : " … " + high, study);
+}
+
+/// The name, and the parameters in which the schemes of this name differ.
+std::string label(const Scheme& scheme, const std::vector<std::pair<Scheme, Row>>& all) {
+  const auto value_of = [](const Scheme& one, const std::string& column) {
+    const auto found = std::find_if(one.begin(), one.end(), [&](const auto& field) { return field.first == column; });
+    return found == one.end() ? std::string() : found->second;
+  };
+  const std::string name = value_of(scheme, "time");
+  std::string out = name;
+  for (const auto& [column, value] : scheme) {
+    const bool differs = std::any_of(all.begin(), all.end(), [&, column = column, value = value](const auto& other) {
+      return value_of(other.first, "time") == name && value_of(other.first, column) != value;
+    });
+    if (differs && column != "time") out += fmt::format(", {} {}", column.substr(column.find('.') + 1), value);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string common_beginning(const std::vector<StudyResults>& studies) {
+  if (studies.size() < 2) return "";
+  std::string common = studies.front().name;
+  for (const StudyResults& study : studies)
+    common.erase(std::mismatch(common.begin(), common.end(), study.name.begin(), study.name.end()).first, common.end());
+  const std::size_t hyphen = common.rfind('-');
+  return hyphen == std::string::npos ? "" : common.substr(0, hyphen + 1);
+}
+
+Table league_table(const std::vector<StudyResults>& studies) {
+  Table out{"league", "One time scheme: what studies measured of it.", {{"scheme", "", "Name and parameters."}}, {}};
+  std::vector<std::pair<Scheme, Row>> rows;
+  const Row blank(figures().size());
+  for (const StudyResults& study : studies)
+    for (const CaseRecord& record : study.cases)
+      if (Row& row = in_order_met(rows, scheme_of(record)); row.empty()) row = blank;
+  const std::size_t beginning = common_beginning(studies).size();
+  for (std::size_t f = 0; f < figures().size(); ++f) {
+    const Figure& figure = figures()[f];
+    out.columns.push_back(figure.column);
+    for (const StudyResults& study : studies) {
+      std::map<Scheme, std::vector<double>> found;
+      figure.find(study, [&](const CaseRecord& record, std::optional<double> value) {
+        if (value) found[scheme_of(record)].push_back(*value);
+      });
+      for (auto& [scheme, row] : rows)
+        if (const auto values = found.find(scheme); values != found.end() && row[f].is_nothing())
+          row[f] = said(figure, values->second, study.name.substr(beginning));
+    }
+  }
+  for (const auto& [scheme, cells] : rows) {
+    if (std::all_of(cells.begin(), cells.end(), [](const Cell& cell) { return cell.is_nothing(); })) continue;
+    out.rows.push_back({label(scheme, rows)});
+    out.rows.back().insert(out.rows.back().end(), cells.begin(), cells.end());
+  }
+  return out;
+}
+
+std::string markdown(const Table& table) {
+  std::string head = "|", rule = "|", body;
+  for (const Column& column : table.columns) {
+    head += fmt::format(" {}{} |", column.name, column.unit.empty() || column.unit == "1" ? "" : ", " + column.unit);
+    rule += "---|";
+  }
+  for (const Row& row : table.rows) {
+    body += "|";
+    for (const Cell& cell : row) body += fmt::format(" {} |", cell.text());
+    body += "\n";
+  }
+  return head + "\n" + rule + "\n" + body;
+}
+
+}  // namespace ricochet
