@@ -14,12 +14,12 @@ using checking::Finding;
 
 namespace {
 
-using Change = std::function<void(SparseMatrix& mass, Inertia& inertia)>;
+using MassChange = std::function<void(SparseMatrix& mass, Inertia& inertia)>;
 using ContactChange = std::function<void(const FiniteElementSpace& space, Inertia& inertia)>;
 
 class ChangedMass final : public MassStrategy {
  public:
-  explicit ChangedMass(Change change) : change_(std::move(change)) {}
+  explicit ChangedMass(MassChange change) : change_(std::move(change)) {}
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
     if (space.elements.empty()) return Refusal{"an oscillator has no elements: use another mass"};
     Inertia inertia;
@@ -29,10 +29,10 @@ class ChangedMass final : public MassStrategy {
   }
 
  private:
-  Change change_;
+  MassChange change_;
 };
 
-Entry<MassStrategy> mass_entry(Change change) {
+Entry<MassStrategy> mass_entry(MassChange change) {
   Entry<MassStrategy> entry{full_manual("made-here"), {}, ""};
   entry.make = [change](const Parameters&) { return std::make_unique<ChangedMass>(change); };
   return entry;
@@ -61,7 +61,7 @@ void caught(Entry<MassStrategy> entry, const std::string& check, const std::stri
   REQUIRE_FALSE(result.sentences.empty());
   CHECK_THAT(result.sentences.front(), Contains(words));
 }
-void caught(Change change, const std::string& check, const std::string& words) {
+void caught(MassChange change, const std::string& check, const std::string& words) {
   caught(mass_entry(std::move(change)), check, words);
 }
 void caught_at_contact(ContactChange change, const std::string& check, const std::string& words) {
