@@ -116,11 +116,11 @@ TEST_CASE("schemes that are one another in exact arithmetic differ by round-off 
 }
 
 TEST_CASE("Chung–Hulbert at ρ∞ = 1 is Kane's scheme through contact as well") {
-  // Round-off grows with each of the contacts, by 10 or so.
+  // Round-off grows with each contact: 10⁻¹⁰ to 3·10⁻⁷ for initial displacements within a few per cent.
   CHECK(apart(busy_beam(), "signorini", scheme("generalised-alpha", {{"rho_inf", 1.0}}), scheme("kane")).relative() <
-        1e-6);
+        1e-4);
   // Newmark is another scheme there: its effort acts on three levels.
-  CHECK(apart(busy_beam(), "signorini", scheme("newmark"), scheme("kane")).relative() > 1e-4);
+  CHECK(apart(busy_beam(), "signorini", scheme("newmark"), scheme("kane")).relative() > 1e-2);
 }
 
 TEST_CASE("Bathe's scheme of two trapezia is Newmark (¼, ½) of half the step, through contact as well") {
