@@ -96,20 +96,20 @@ Entry<ContactLaw> law_entry(bool rigid, Wrong wrong) {
   return entry;
 }
 
-enum class Change { none, sound, indefinite, skew, changing, poor_refusal };
+enum class Softened { none, sound, indefinite, skew, changing, poor_refusal };
 
 /// Springs by a mean over the step, on a structure that they soften.
 class SofteningLaw final : public PointwiseContact {
  public:
-  SofteningLaw(StepForce force, bool says, Change change)
+  SofteningLaw(StepForce force, bool says, Softened change)
       : PointwiseContact({Evaluation::conserving, force}), says_(says), change_(change) {}
-  bool changes_problem() const override { return change_ != Change::none; }
+  bool changes_problem() const override { return change_ != Softened::none; }
   std::optional<Refusal> prepare_problem(ContactStructure& structure) override {
     static int calls = 0;
-    if (change_ == Change::poor_refusal) return Refusal{"this cannot be done at all"};
-    const double left = change_ == Change::indefinite ? -0.1 : change_ == Change::changing ? 0.9 / ++calls : 0.9;
+    if (change_ == Softened::poor_refusal) return Refusal{"this cannot be done at all"};
+    const double left = change_ == Softened::indefinite ? -0.1 : change_ == Softened::changing ? 0.9 / ++calls : 0.9;
     structure.stiffness *= left;
-    if (change_ == Change::skew && structure.stiffness.rows() > 1) structure.stiffness.coeffRef(0, 1) *= 1.5;
+    if (change_ == Softened::skew && structure.stiffness.rows() > 1) structure.stiffness.coeffRef(0, 1) *= 1.5;
     return std::nullopt;
   }
 
@@ -128,10 +128,10 @@ class SofteningLaw final : public PointwiseContact {
   double stored(double depth, int) const override { return 0.5 * kappa * depth * depth; }
 
   bool says_;
-  Change change_;
+  Softened change_;
 };
 
-CheckResult of_softening(StepForce force, bool says, Change change, const std::string& check) {
+CheckResult of_softening(StepForce force, bool says, Softened change, const std::string& check) {
   Entry<ContactLaw> entry{full_manual("made-here"), {}, ""};
   entry.make = [=](const Parameters&) { return std::make_unique<SofteningLaw>(force, says, change); };
   return one_check(checking::law_checks(), entry, check);
@@ -199,24 +199,26 @@ TEST_CASE("check: a solution that depends on where the search begins is caught")
 
 TEST_CASE("check: a law that conserves energy is measured, and one that only says so is caught") {
   const std::string check = "energy over a step";
-  CHECK(of_softening(StepForce::gradient, true, Change::none, check).finding == Finding::ok);
-  const CheckResult wrong = of_softening(StepForce::gradient, false, Change::none, check);
+  CHECK(of_softening(StepForce::gradient, true, Softened::none, check).finding == Finding::ok);
+  const CheckResult wrong = of_softening(StepForce::gradient, false, Softened::none, check);
   CHECK(wrong.finding == Finding::fails);
   CHECK_THAT(text_of({wrong}), Contains("declares that it conserves energy"));
   // Half of it is kept where a step leaves the stop: nothing was declared, and what is so is said.
-  const CheckResult hybrid = of_softening(StepForce::hybrid, true, Change::none, check);
+  const CheckResult hybrid = of_softening(StepForce::hybrid, true, Softened::none, check);
   CHECK(hybrid.finding == Finding::not_declared);
   CHECK_THAT(text_of({hybrid}), Contains("gives nothing") || Contains("keeps"));
 }
 
 TEST_CASE("check: a changed problem that is not symmetric, not positive or not the same twice is caught") {
-  const auto result = [](Change change) { return of_softening(StepForce::midpoint, true, change, "changed problem"); };
-  CHECK(result(Change::none).finding == Finding::not_declared);
-  CHECK(result(Change::sound).finding == Finding::ok);
-  for (const auto& [change, words] : {std::pair{Change::indefinite, "not positive"},
-                                      {Change::skew, "not symmetric"},
-                                      {Change::changing, "another contact law"},
-                                      {Change::poor_refusal, "no remedy"}}) {
+  const auto result = [](Softened change) {
+    return of_softening(StepForce::midpoint, true, change, "changed problem");
+  };
+  CHECK(result(Softened::none).finding == Finding::not_declared);
+  CHECK(result(Softened::sound).finding == Finding::ok);
+  for (const auto& [change, words] : {std::pair{Softened::indefinite, "not positive"},
+                                      {Softened::skew, "not symmetric"},
+                                      {Softened::changing, "another contact law"},
+                                      {Softened::poor_refusal, "no remedy"}}) {
     const CheckResult wrong = result(change);
     INFO(text_of({wrong}));
     CHECK(wrong.finding == Finding::fails);
