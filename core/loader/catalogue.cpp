@@ -36,7 +36,7 @@ std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symb
 
 using Methods = std::vector<std::pair<Role, std::string>>;
 
-// "time-central-difference.so" is meant to provide the time scheme central-difference.
+// "time-leapfrog.so" is meant to provide the time scheme leapfrog.
 Methods meant_by_name(const fs::path& file) {
   const std::string stem = file.stem().string();
   for (const Role role : all_roles) {

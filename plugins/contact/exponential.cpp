@@ -52,7 +52,7 @@ class Exponential final : public PointwiseContact {
 void register_all(Registry& registry) {
   ParameterSpec force = real_parameter("force", "N", std::nullopt, {.low = 0, .low_open = true},
                                        "F, force at the stop, but for the part cut off");
-  ParameterSpec length = real_parameter("length", "m", std::nullopt, {.low = 0, .high = 1, .low_open = true},
+  ParameterSpec length = real_parameter("length", "m", 1e-3, {.low = 0, .high = 1, .low_open = true},
                                         "l, distance over which the force grows e times");
   ParameterSpec reach = real_parameter("reach", "1", 10.0, {.low = 0, .high = 100},
                                        "r, where the force begins, in lengths before the stop");

@@ -49,7 +49,7 @@ std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& pro
   const std::string remedy =
       stable > 0 ? fmt::format(
                        "its largest stable step there is {:.5g} s: use a smaller step, a mass with lower highest "
-                       "frequencies (lumped, mass-scaling), or an implicit scheme",
+                       "frequencies, or an implicit scheme",
                        stable)
                  : std::string("no smaller step is stable either: use an implicit scheme");
   return fmt::format(

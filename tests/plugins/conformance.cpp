@@ -88,6 +88,14 @@ double translated(const Eigen::MatrixXd& M, const FiniteElementSpace& space) {
   return rigid.dot(M * rigid);
 }
 
+// Whether some stage has what the law reads.
+bool asks(const StepPlan& plan, const ContactLaw& law) {
+  if (law.absent()) return true;
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage& stage) {
+    return law.reads() ? stage.at(*law.reads()).has_value() : stage.impact.has_value();
+  });
+}
+
 double total_mass(const SceneSpec& scene) {
   if (const auto* bar = std::get_if<BarSpec>(&scene.structure)) return bar->rhoA * bar->length;
   return line_density(scene) * std::get<BeamSpec>(scene.structure).length;
@@ -229,12 +237,16 @@ TEST_CASE("conformance: any law, scheme and mass either run together or refuse i
       for (const Choice& time : all(Role::time)) {
         INFO(mass.name << " × " << contact.name << " × " << time.name);
         const auto problem = problem_of(scene_for(mass, 4), 4, mass, contact);
-        auto program = compiled(problem, {mass, contact, time}, 1e-5);
+        constexpr double h = 2e-5;  // below the limits of explicit schemes on these meshes
+        auto program = compiled(problem, {mass, contact, time}, h);
         const auto* refusal = std::get_if<Refusal>(&program);
-        // θ = ½ keeps the root −1 on a contact point without mass. As they come, all others run.
-        const bool absent = make(registry().contact(contact.name), contact)->absent();
-        REQUIRE((refusal != nullptr) ==
-                (time.name == "moreau-jean" && problem->inertia.kernel_dimension > 0 && !absent));
+        const auto law = make(registry().contact(contact.name), contact);
+        const auto plan = plan_of(time, h, problem_facts(*problem, *law));
+        // The scheme says so, or has nothing that such a law reads. As they come, all others run.
+        const bool refused = std::holds_alternative<Refusal>(plan) || !asks(std::get<StepPlan>(plan), *law);
+        REQUIRE((refusal != nullptr) == refused);
+        // No scheme refuses every mass.
+        if (problem->inertia.kernel_dimension == 0) REQUIRE(std::holds_alternative<StepPlan>(plan));
         if (refusal) {
           CHECK_THAT(refusal->sentence, names_cause_and_remedy());
           continue;

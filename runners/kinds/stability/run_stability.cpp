@@ -81,6 +81,8 @@ class StabilityRun {
     std::vector<Side> sides(touches_ ? 2 : 1);
     if (touches_) sides[1].closed = true;
     for (Side& side : sides) predict(side);
+    if (touches_ && !law->reads()) say_restitution();
+    say_highest_frequencies();
     record_.setup_seconds = thread_seconds() - begin_;
     const bool observe = case_.settings.value("observe", true);
     if (observe) {
@@ -91,8 +93,6 @@ class StabilityRun {
     record_.status = "done";
     tabulate(sides, observe);
     measure(sides);
-    if (touches_ && !law->reads()) say_restitution();
-    say_highest_frequencies();
     return std::move(record_);
   }
 
