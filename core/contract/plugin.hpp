@@ -9,7 +9,7 @@
 /// What a plugin file ends with:
 ///
 ///     static void register_all(ricochet::Registry& registry) { registry.add_time({...}, ...); }
-///     RICOCHET_PLUGIN(time, leapfrog, register_all)
+///     RICOCHET_PLUGIN(time, central_difference, register_all)
 ///
 /// The macro leaves three things in the library's symbol table, readable without running any of its code: the ABI tag
 /// (see abi.hpp), the sizes of the contract's types (see layout.hpp), and the role and name provided ('-' written '_'),
