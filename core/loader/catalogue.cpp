@@ -36,7 +36,7 @@ std::optional<std::pair<Role, std::string>> parse_provides(std::string_view symb
 
 using Methods = std::vector<std::pair<Role, std::string>>;
 
-// "time-leapfrog.so" is meant to provide the time scheme leapfrog.
+// "time-leap-frog.so" is meant to provide the time scheme leap-frog.
 Methods meant_by_name(const fs::path& file) {
   const std::string stem = file.stem().string();
   for (const Role role : all_roles) {

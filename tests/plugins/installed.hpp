@@ -68,7 +68,7 @@ class Installed : public Prefix {
  private:
   Installed() {
     fs::copy(std::string(RICOCHET_SOURCE_DIR) + "/tests/plugins/out_of_tree", here_ / "project");
-    fs::copy(example("time") / "leapfrog.cpp", here_ / "project/time-leapfrog.cpp");
+    fs::copy(example("time") / "leap-frog.cpp", here_ / "project/time-leap-frog.cpp");
     step("'" RICOCHET_CMAKE "' -S project -B build -G '" RICOCHET_GENERATOR
          "' -DCMAKE_BUILD_TYPE=Release"
          " -DCMAKE_CXX_COMPILER='" RICOCHET_CXX_COMPILER "' -DCMAKE_CXX_FLAGS='" RICOCHET_CXX_FLAGS

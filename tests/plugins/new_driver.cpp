@@ -99,7 +99,7 @@ TEST_CASE("what `ricochet new` makes is built, described and run by the commands
   const Prefix& installed = Prefix::once();
   const ScratchFolder here;
   // A digit first and a word of the language are names like any other.
-  const Made made = GENERATE(Made{"time", "4th-try", "leapfrog"}, Made{"contact", "new", "stiffening-spring"},
+  const Made made = GENERATE(Made{"time", "4th-try", "leap-frog"}, Made{"contact", "new", "stiffening-spring"},
                              Made{"mass", "my-mass", "blended-mass"}, Made{"reference", "known", "free-oscillator"});
   CAPTURE(made.role);
   const Outcome told = installed.run(here.path(), "new " + made.role + " " + made.name);

@@ -88,11 +88,11 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
   SECTION("one runs beside ours and agrees with the scheme that it is a case of") {
     fs::copy(installed.example("time") / "study.json", here / "study.json");
     fs::create_directory(here / "plugins");
-    fs::copy(installed.plugin("leapfrog"), here / "plugins");
+    fs::copy(installed.plugin("leap-frog"), here / "plugins");
     const std::string path = (here / "plugins").string();
-    const std::string option = " --plugin '" + installed.plugin("leapfrog").string() + "'";
+    const std::string option = " --plugin '" + installed.plugin("leap-frog").string() + "'";
 
-    const Outcome described = installed.run(here.path(), "describe leapfrog", path);
+    const Outcome described = installed.run(here.path(), "describe leap-frog", path);
     INFO(described.out << described.err);
     CHECK(described.code == 0);
     CHECK_THAT(described.out, Contains("order 2") && Contains("must be regular") && Contains("h·ω ≤ 2"));
@@ -119,16 +119,16 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
       REQUIRE(end.size() == 2);
       // The same equation: only the rounding of coefficients may differ, over 1000 steps of a motion below 0.2 m.
       constexpr double round_off = 1e-11;
-      CHECK(std::abs(end.at("leapfrog") - end.at("newmark-dumont-paoli")) <= round_off);
-      CHECK(std::abs(end.at("leapfrog")) > 1e-3);
+      CHECK(std::abs(end.at("leap-frog") - end.at("newmark-dumont-paoli")) <= round_off);
+      CHECK(std::abs(end.at("leap-frog")) > 1e-3);
     }
   }
 
   SECTION("a name that nobody provides is a fault of the study, and the nearest one is told") {
-    write_text(here / "study.json", study_with("leapfrgo"));
+    write_text(here / "study.json", study_with("leap-forg"));
     const Outcome run = installed.run(here.path(), "run study.json", installed.plugins().string());
     CHECK(run.code == 2);
-    CHECK_THAT(run.err, Contains("did you mean \"leapfrog\"?"));
+    CHECK_THAT(run.err, Contains("did you mean \"leap-frog\"?"));
   }
 
   SECTION("one that cannot serve ends a study that names it with 4, and is the only one blamed") {
@@ -155,13 +155,13 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
       const std::size_t at = doctor.out.find("time-" + name + ".so ");
       return at == std::string::npos ? "" : doctor.out.substr(at, doctor.out.find('\n', at) - at);
     };
-    CHECK_THAT(line_of("leapfrog"), Contains(" ok "));
+    CHECK_THAT(line_of("leap-frog"), Contains(" ok "));
     for (const auto& [name, reason] : broken) CHECK_THAT(line_of(name), Contains(" unusable ") && Contains(reason));
     CHECK_THAT(doctor.out, Contains(std::to_string(broken.size()) + " plugin file(s) cannot serve"));
   }
 
   SECTION("broken neighbours do not hinder a study that names none of them") {
-    write_text(here / "study.json", study_with("leapfrog"));
+    write_text(here / "study.json", study_with("leap-frog"));
     const Outcome run = installed.run(here.path(), "run study.json --out results", installed.plugins().string());
     INFO(run.out << run.err);
     CHECK(run.code == 0);
@@ -265,11 +265,11 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
   }
 
   SECTION("a stripped one still serves") {
-    const std::string file = installed.plugin("leapfrog").string();
-    const Outcome strip = shell(here.path(), "strip -o time-leapfrog.so '" + file + "'");
+    const std::string file = installed.plugin("leap-frog").string();
+    const Outcome strip = shell(here.path(), "strip -o time-leap-frog.so '" + file + "'");
     INFO(strip.err);
     REQUIRE(strip.code == 0);  // part of binutils, which every compiler needs
-    const Outcome described = installed.run(here.path(), "describe leapfrog", here.path().string());
+    const Outcome described = installed.run(here.path(), "describe leap-frog", here.path().string());
     INFO(described.out << described.err);
     CHECK(described.code == 0);
   }

@@ -97,7 +97,7 @@ class Scheme final : public TimeScheme {
 
 void register_all(Registry& registry) {
   registry.add_time(
-      {.name = "leapfrog",
+      {.name = "leap-frog",
        .summary = "explicit three-level scheme, stable up to hω = 2",
        .text =
            "Central differences: one solve with M (and C), none with K. Of second order, conditionally stable, for a "
@@ -115,4 +115,4 @@ void register_all(Registry& registry) {
 }  // namespace
 
 // Role, name ('-' written '_'), and the function above.
-RICOCHET_PLUGIN(time, leapfrog, register_all)
+RICOCHET_PLUGIN(time, leap_frog, register_all)
