@@ -21,9 +21,10 @@ using namespace ricochet;
 ///     stage 2, z = b_{n+1}:        M z = F(t+h) − C v − K q,   a ← (α_f b + f z − α_m a)/(1−α_m),   b ← z
 ///
 /// `projected` puts the positions of `beta` between the stops, M z = h²Hᵀp′, before its last stage. A side is closed
-/// where q + h v + ½h² a passes it, and rebounds by e. At ρ∞ = 1 `half` and `beta` are the same, with the energy
-/// ½|v|²_M + ½|q|²_K and the test displacement Δq: contact gives p·H Δq = (h/2) p(v⁻ + v⁺) ≤ 0. Below, the energy of
-/// the α-method falls in free motion; what a jump gives to its filter is in no balance.
+/// where q + h v + ½h² a passes it, and rebounds by e. With `half` a jump leaves Δq = h(v_n + v_{n+1})/2 + ¼ε²h²Δa as
+/// it is in free motion: the energy of the α-method falls as there, and contact gives (h/2) p·H(v_n + v_{n+1}) ≤ 0,
+/// whatever ρ∞. At ρ∞ = 1 `half` and `beta` are the same, and their balance (½|v|²_M + ½|q|²_K, test displacement Δq)
+/// is whole; below, what a load does to the filter is left out.
 class NonsmoothGeneralisedAlpha final : public TimeScheme {
  public:
   NonsmoothGeneralisedAlpha(double rho, double restitution, const std::string& position)
@@ -44,11 +45,11 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
     else
       jump_coupled(plan, h);
     method_.add_filtered_energy(plan, h);
-    const bool trapezium = method_.force == method_.mass && !projected_;
+    const bool trapezium = method_.gamma == 0.5 && !projected_;
     if (trapezium) balance(plan);
     plan.facts.restitution = Restitution::exact;
     plan.facts.needs_regular_mass = true;
-    plan.facts.contact_never_gains = trapezium;
+    plan.facts.contact_never_gains = half_ || trapezium;
     return plan;
   }
 
@@ -63,8 +64,8 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
     Stage step = method_.jumping_step(h, {1 / h, 0, 0});
     step.impact = impact(step.update[1], h, 0);
     // A spring is one of the forces, as in generalised-alpha: no w.
-    const double at = method_.now();
-    step.at(Evaluation::explicit_start) = {{.slots = {1, at * h}}, {{at, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    const Combination ahead{.slots = {1, method_.now() * h}};
+    step.at(Evaluation::explicit_start) = {ahead, {{method_.now(), 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
     for (auto& compliance : step.compliance)
       if (compliance) compliance->impulse = 0;
     plan.stages = {step};
@@ -104,12 +105,9 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
     const Combination rate = halfway(step.update[1], 1);
     conserve_mean_force(step, step.update[0], rate);
     balance_mean_force(step, step.update[0], rate);
-    if (half_) {
-      step.at(Evaluation::conserving)->effort = {0};
-      step.work->impulse = 1;
-    } else {
-      plan.stages.back().work = {{}, {.slots = {0, 1}}, {{1, 1}}};  // moves nothing
-    }
+    step.at(Evaluation::conserving)->effort = {half_ ? 0.0 : 1.0};
+    step.work->impulse = half_ ? 1 : 0;
+    if (!half_) plan.stages.back().work = {{}, {.slots = {0, 1}}, {{1, 1}}};  // moves nothing
   }
 
   AlphaMethod method_;
@@ -127,8 +125,9 @@ void register_all(Registry& registry) {
            "is an impulse of the step that jumps velocities, on which that damping does not act, and the restitution "
            "holds exactly for each point that the gap test q + h v + ½h² a finds closed and that does not leave. With "
            "`half` positions move by half of the jump, as the authors have it; with `beta` by β/γ of it, the same at "
-           "ρ∞ = 1; `projected` adds a projection of positions, so that no step ends beyond a stop. At ρ∞ = 1 contact "
-           "never gives energy; below it may, in a step, of the three `half` the least and `projected` the most.",
+           "ρ∞ = 1; `projected` adds a projection of positions, so that no step ends beyond a stop. Contact never "
+           "gives "
+           "energy with `half`, in the energy of the scheme, nor with `beta` at ρ∞ = 1; elsewhere it may.",
        .source = "Chen, Acary, Virlez and Brüls (2013), A nonsmooth generalized-α scheme for flexible multibody "
                  "systems with unilateral constraints; projected: after Brüls, Acary and Cardona (2014)",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},

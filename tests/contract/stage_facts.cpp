@@ -30,6 +30,7 @@ std::vector<Choice> of_second_order() {
           {"midpoint", {{"constraint", middle}}},
           {"hht-alpha"},
           {"hht-alpha", {{"alpha", -0.3}, {"contact", weighted}}},
+          {"nonsmooth-generalised-alpha"},
           {"bathe"},
           {"bathe", {{"rho_inf", 0.8}, {"split", 0.4}}}};
 }

@@ -172,12 +172,13 @@ TEST_CASE("a mass in factors has impulses too, where R is regular") {
       Marcher modal = impulsive(law, touching(1e-4), mass, with(OperatorKind::modal));
       for (Marcher* one : {&band, &modal}) {
         one->start();
-        one->march(150);
+        one->march(400);
       }
       INFO(velocity << " " << law.contact.name);
       CHECK(band.delassus_columns() > 0);
-      // Accelerations of stiff modes carry 1/h² of the round-off of positions: positions are compared.
-      CHECK((band.position(0) - modal.position(0)).norm() <= 1e-7 * modal.position(0).norm());
+      // Accelerations of stiff modes carry 1/h² of the round-off of positions, and impacts make it grow: positions are
+      // compared, 10¹⁰ times as wide as their round-off.
+      CHECK((band.position(0) - modal.position(0)).norm() <= 1e-6 * modal.position(0).norm());
     }
 }
 
@@ -194,18 +195,27 @@ TEST_CASE("tangents of a plan with an impulse are the derivative of its step") {
     Marcher block = impulsive(law, pressed, {"consistent"}, options, three);
     block.start();
     block.march(500);
-    LaneState base = block.lane_state(0), direction = base;
+    LaneState base = block.lane_state(0);
+    LaneSpec spec = block.program().lanes[0];
+    if (law.gated) {
+      // What rests flickers at velocity level: one impact instead, of points that come, beyond a stop that stands
+      // higher.
+      const std::size_t rows = base.slots.size() / 3;
+      for (std::size_t i = 0; i < rows; ++i) base.slots[rows + i] = 50 * base.slots[i];
+      spec.lower.array() += 0.02;
+    }
+    LaneState direction = base;
     std::fill(direction.efforts.begin(), direction.efforts.end(), 0.0);
     const auto moved = [&](double by) {
       LaneState state = base;
       for (std::size_t i = 0; i < state.slots.size(); ++i) state.slots[i] += by * direction.slots[i];
       return state;
     };
-    const LaneSpec spec = block.program().lanes[0];
+    block.set_lane(0, spec, base);
     block.set_tangent(0, 0, direction);
     block.set_lane(1, spec, moved(offset));
     block.set_lane(2, spec, moved(-offset));
-    block.march(8);
+    block.march(law.gated ? 1 : 8);
     const LaneState tangent = block.tangent(0, 0), ahead = block.lane_state(1), behind = block.lane_state(2);
     double wrong = 0, size = 0;
     for (std::size_t i = 0; i < tangent.slots.size(); ++i) {

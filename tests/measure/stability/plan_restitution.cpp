@@ -58,7 +58,8 @@ TEST_CASE("the restitution of a plan is what a marched mass shows") {
   const double h = GENERATE(1e-5, 1e-2);
   const auto time =
       GENERATE(Choice{"newmark"}, Choice{"newmark", {{"beta", 0.5}, {"gamma", 0.8}}},
-               Choice{"newmark-dumont-paoli", {{"restitution", 0.7}}}, Choice{"moreau-jean", {{"restitution", 0.7}}});
+               Choice{"newmark-dumont-paoli", {{"restitution", 0.7}}}, Choice{"moreau-jean", {{"restitution", 0.7}}},
+               Choice{"nonsmooth-generalised-alpha", {{"restitution", 0.7}}}, Choice{"kane", {{"beta", 0.4}}});
   INFO(time.name << ", h = " << h);
   const auto found = plan_restitution(plan_of(time, h), h);
   REQUIRE(found);
