@@ -30,12 +30,30 @@ Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k
   return whole;
 }
 
+namespace {
+
+// Slots that the position depends on, after however many steps: others, kept for an energy or for who reads them, have
+// roots of their own that are none of the motion.
+std::vector<Eigen::Index> moving_slots(const StepPlan& plan) {
+  const Eigen::MatrixXd step = amplification(plan, 1, 0.7, 1.3);  // any mode: what is zero is so by structure
+  std::vector<Eigen::Index> found = {0};
+  for (std::size_t k = 0; k < found.size(); ++k)
+    for (Eigen::Index j = 0; j < step.cols(); ++j)
+      if (step(found[k], j) != 0 && std::find(found.begin(), found.end(), j) == found.end()) found.push_back(j);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
 std::optional<double> root_at_infinity(const StepPlan& plan) {
   const double h = step_of(plan);
   const Eigen::MatrixXd step = amplification(plan, 0, 0, 1);
   // In like units: roots that coincide are lost in slots whose sizes differ by 1/h². Largest first; none where the step
   // is not finite.
-  const std::vector<Root> roots = step_roots(h > 0 ? in_metres(step, plan, h, 1) : step, false);
+  const Eigen::MatrixXd like = h > 0 ? in_metres(step, plan, h, 1) : step;
+  const std::vector<Eigen::Index> moving = moving_slots(plan);
+  const std::vector<Root> roots = step_roots(like(moving, moving), false);
   if (roots.empty()) return std::nullopt;
   // Zero may be a root of all slots that the spring has, four times in a chain: known to the fourth root of round-off.
   constexpr double nothing = 1e-3;

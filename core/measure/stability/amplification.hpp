@@ -11,8 +11,8 @@ namespace ricochet {
 Eigen::MatrixXd amplification(const StepPlan& plan, double m, double c, double k);
 
 /// ρ∞: what one step leaves of a mode whose frequency is far above 1/h, the largest |r| as hω → ∞, found on a spring
-/// without mass (m = c = 0, k = 1). Roots that coincide there are known by their mean. Nothing where S vanishes on it:
-/// an explicit step.
+/// without mass (m = c = 0, k = 1). Roots that coincide there are known by their mean; slots that the position never
+/// depends on do not count. Nothing where S vanishes on it: an explicit step.
 std::optional<double> root_at_infinity(const StepPlan& plan);
 
 }  // namespace ricochet

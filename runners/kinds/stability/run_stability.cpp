@@ -82,7 +82,6 @@ class StabilityRun {
     if (touches_) sides[1].closed = true;
     for (Side& side : sides) predict(side);
     if (touches_ && !law->reads()) say_restitution();
-    say_highest_frequencies();
     record_.setup_seconds = thread_seconds() - begin_;
     const bool observe = case_.settings.value("observe", true);
     if (observe) {
@@ -353,14 +352,8 @@ class StabilityRun {
     const auto range = step ? restitution_range(step->first, step->second) : std::nullopt;
     if (!range) return;
     Table table = restitution_head();
-    table.rows.push_back({step->second, range->least, range->mean, range->most});
+    table.rows.push_back({step->second, range->least, range->mean, range->most, Cell(root_at_infinity(step->first))});
     record_.tables.push_back(std::move(table));
-  }
-
-  void say_highest_frequencies() {
-    const auto step = some_plan();
-    if (const auto root = step ? root_at_infinity(step->first) : std::nullopt)
-      put_measure(record_, "rho_infinity", *root);
   }
 
   const StudyCase& case_;

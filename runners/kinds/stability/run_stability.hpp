@@ -20,10 +20,11 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry);
 /// Table `stability_observed` where cells were marched: step, closed, behaviour, growth, gain, impacts,
 /// changes_per_impact, fast_share, chatter, first_bad_step, steps, cause (see ObservedCell).
 ///
-/// Table `restitution` for a rigid law at a stop, one row: step, least, mean, most (see restitution_range()).
+/// Table `restitution` for a rigid law at a stop, one row: step, least, mean, most (see
+/// restitution_range()), rho_inf (see root_at_infinity()).
 ///
 /// Measures: limit_predicted and limit_observed (s, the smaller of open and closed), largest_radius, agreement
-/// (observed over expected limit, of the open structure where both have one, else of the scene), rho_infinity (see root_at_infinity()).
+/// (observed over expected limit, of the open structure where both have one, else of the scene).
 CaseRecord run_stability(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop);
 
 }  // namespace ricochet

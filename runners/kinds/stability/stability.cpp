@@ -77,7 +77,6 @@ std::vector<MeasureInfo> stability_measures() {
       {"limit_observed", "s", "Largest stable step of the range, found by marching and bisection."},
       {"largest_radius", "1", "Largest spectral radius of the step over the range."},
       {"agreement", "1", "Observed over predicted step limit."},
-      {"rho_infinity", "1", "What a step leaves of the highest frequencies, from the plan alone."},
       {"contradictions", "1",
        "Steps of the range at which spectrum and march disagree without contact: an error of the method.",
        Of::computation},

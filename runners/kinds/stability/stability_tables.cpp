@@ -48,7 +48,8 @@ Table restitution_head() {
           {{"step", "s", "Step of the plan that was asked: the smallest of the range that has one."},
            {"least", "1", "Smallest −v⁺/v⁻ over 64 phases of the impact within the step."},
            {"mean", "1", "Their mean."},
-           {"most", "1", "The largest; beyond 1 the scheme throws a mass back faster than it came."}},
+           {"most", "1", "The largest; beyond 1 the scheme throws a mass back faster than it came."},
+           {"rho_inf", "1", "What a step leaves of the highest frequencies, ρ∞; nothing for an explicit step."}},
           {}};
 }
 

@@ -93,6 +93,12 @@ TEST_CASE("the root at infinity is the one that each scheme is known by") {
   }
   for (const double a : {0.0, 0.1, 0.2, 0.3})
     CHECK(root({"hht-alpha", {{"alpha", -a}}}) == Approx((1 - a) / (1 + a)).margin(accuracy));
+  // Whatever root the slot has that only their energy reads, beyond ρ∞ below 1/3. Three roots coincide.
+  for (const char* scheme : {"generalised-alpha", "wbz-alpha"})
+    for (const double rho : {0.0, 0.1, 0.2, 0.3, 0.8}) {
+      INFO(scheme);
+      CHECK(root({scheme, {{"rho_inf", rho}}}) == Approx(rho).margin(1e-4));
+    }
   CHECK(root({"newmark"}) == Approx(1).margin(accuracy));
   CHECK(root({"midpoint"}) == Approx(1).margin(accuracy));
   for (const double theta : {0.5, 0.7, 1.0})

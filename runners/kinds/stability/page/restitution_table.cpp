@@ -2,7 +2,6 @@
 
 #include "runners/kinds/stability/page/page.hpp"
 #include "runners/report/html_table.hpp"
-#include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -23,12 +22,10 @@ std::string restitution_html(const CaseView& view) {
     const CaseRecord* record = view.find(rows.text(row, "case"));
     if (!record || !said.insert(view.label(*record, columns)).second) continue;
     table.row(view.name(*record, columns));
-    for (const char* column : {"least", "mean", "most"}) {
-      const auto e = rows.number(row, column);
-      table.number(e ? number_text(*e, 3) : "–");
+    for (const char* column : {"least", "mean", "most", "rho_inf"}) {
+      const auto value = rows.number(row, column);
+      table.number(value ? number_text(*value, 3) : "–");
     }
-    const auto root = measure(*record, "rho_infinity");
-    table.number(root ? number_text(*root, 3) : "–");
   }
   return table.size() > 0 ? table.html() : "";
 }
