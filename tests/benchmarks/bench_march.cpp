@@ -137,6 +137,10 @@ void add_schemes(const Registry& registry, std::vector<Case>& cases) {
     CompileOptions options;
     options.kind = OperatorKind::band;
     auto program = compile(problem, std::get<StepPlan>(plan), h, std::move(law), {lane}, options);
+    if (const auto* refusal = std::get_if<Refusal>(&program)) {
+      fmt::print("{}: refused: {}\n", name, refusal->sentence);
+      continue;
+    }
     Case one{name, StopsSpec::Place::nodes, "lumped", "", options.kind, 1, {}, nullptr, nullptr, nullptr, 0};
     one.marcher = std::make_unique<Marcher>(std::move(std::get<Program>(program)));
     one.marcher->start();
