@@ -18,6 +18,8 @@ namespace {
 // The error that orders and costs are told by.
 constexpr const char* told_error = "tip-l2";
 constexpr double told_seconds = 1e-3;
+// An order whose 95 % interval is wider is none that could be told.
+constexpr double widest_interval = 0.5;
 
 /// A scheme and its parameters, by column.
 using Scheme = std::vector<std::pair<std::string, std::string>>;
@@ -30,7 +32,7 @@ Scheme scheme_of(const CaseRecord& record) {
   return out;
 }
 
-/// Takes a value of a case.
+/// Takes a value of a case; nothing: it was looked for, and could not be told.
 using Add = std::function<void(const CaseRecord&, std::optional<double>)>;
 /// Calls with every row of a derived table and its case, where the study has both.
 using See = std::function<void(const CaseRecord&, const TableReader&, std::size_t row)>;
@@ -52,20 +54,18 @@ bool touches(const CaseRecord& record) {
 
 void add_orders(const StudyResults& study, bool contact, const Add& add) {
   see_rows(study, "orders", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    if (rows.text(row, "refined") == "step" && rows.text(row, "error") == told_error && touches(record) == contact)
-      add(record, rows.number(row, "order"));
+    if (rows.text(row, "refined") != "step" || rows.text(row, "error") != told_error || touches(record) != contact)
+      return;
+    const auto order = rows.number(row, "order"), low = rows.number(row, "low"), high = rows.number(row, "high");
+    add(record, order && low && high && *high - *low <= widest_interval ? order : std::nullopt);
   });
 }
 
-void add_gains(const StudyResults& study, const Add& add) {
-  see_rows(study, "energy_ends", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    if (touches(record)) add(record, rows.number(row, "step_gain"));
-  });
-}
-
-void add_restitution(const StudyResults& study, const char* column, const Add& add) {
-  see_rows(study, "restitution", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    add(record, rows.number(row, rows.column_if_any(column)));
+// A column of a table where the case has it.
+void add_column(const StudyResults& study, const char* table, const char* column, bool contact, const Add& add) {
+  see_rows(study, table, [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
+    const auto value = rows.number(row, rows.column_if_any(column));
+    if (value && (!contact || touches(record))) add(record, value);
   });
 }
 
@@ -110,14 +110,15 @@ const std::vector<Figure>& figures() {
        std::bind(add_orders, _1, true, _2),
        2},
       {{"largest step gain", "1", "Largest gain of energy in one step at contact, over the starting energy."},
-       add_gains,
+       std::bind(add_column, _1, "energy_ends", "step_gain", true, _2),
        0,
        true},
       {{"e least", "1", "Least restitution of a free mass over the phases of a step."},
-       std::bind(add_restitution, _1, "least", _2)},
-      {{"e mean", "1", "Mean of the same."}, std::bind(add_restitution, _1, "mean", _2)},
-      {{"e most", "1", "Largest of the same."}, std::bind(add_restitution, _1, "most", _2)},
-      {{"ρ∞", "1", "What a step leaves of the highest frequencies."}, std::bind(add_restitution, _1, "rho_inf", _2)},
+       std::bind(add_column, _1, "restitution", "least", false, _2)},
+      {{"e mean", "1", "Mean of the same."}, std::bind(add_column, _1, "restitution", "mean", false, _2)},
+      {{"e most", "1", "Largest of the same."}, std::bind(add_column, _1, "restitution", "most", false, _2)},
+      {{"ρ∞", "1", "What a step leaves of the highest frequencies."},
+       std::bind(add_column, _1, "restitution", "rho_inf", false, _2)},
       {{"cost of a step", "µs", "Processor time of one step."}, add_costs},
       {{"error at 1 ms", "m", "Smallest error of the tip, root mean square over time, within 1 ms of processor time."},
        add_reached},
@@ -129,11 +130,20 @@ std::string said(const Figure& figure, double value) {
   return figure.decimals > 0 ? fmt::format("{:.{}f}", value, figure.decimals) : fmt::format("{:.2g}", value);
 }
 
-/// "1.98 … 2.03 [free]".
-std::string said(const Figure& figure, const std::vector<double>& values, const std::string& study) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+/// The values that a study told of a scheme, and how many it looked for.
+struct Told {
+  std::vector<double> values;
+  std::size_t sought = 0;
+};
+
+/// "1.98 … 2.03 [free]"; with "(2 of 6)" where not all could be told.
+std::string said(const Figure& figure, const Told& told, const std::string& study) {
+  if (told.values.empty()) return fmt::format("not told [{}]", study);
+  const auto [least, most] = std::minmax_element(told.values.begin(), told.values.end());
   const std::string low = said(figure, figure.largest ? *most : *least), high = said(figure, *most);
-  return fmt::format("{}{} [{}]", low, low == high ? "" : " … " + high, study);
+  std::string out = low == high ? low : low + " … " + high;
+  if (told.values.size() < told.sought) out += fmt::format(" ({} of {})", told.values.size(), told.sought);
+  return out + " [" + study + "]";
 }
 
 /// The name, and the parameters in which the schemes of this name differ.
@@ -176,13 +186,15 @@ Table league_table(const std::vector<StudyResults>& studies) {
     const Figure& figure = figures()[f];
     out.columns.push_back(figure.column);
     for (const StudyResults& study : studies) {
-      std::map<Scheme, std::vector<double>> found;
+      std::map<Scheme, Told> found;
       figure.find(study, [&](const CaseRecord& record, std::optional<double> value) {
-        if (value) found[scheme_of(record)].push_back(*value);
+        Told& told = found[scheme_of(record)];
+        ++told.sought;
+        if (value) told.values.push_back(*value);
       });
       for (auto& [scheme, row] : rows)
-        if (const auto values = found.find(scheme); values != found.end() && row[f].is_nothing())
-          row[f] = said(figure, values->second, study.name.substr(beginning));
+        if (const auto told = found.find(scheme); told != found.end() && row[f].is_nothing())
+          row[f] = said(figure, told->second, study.name.substr(beginning));
     }
   }
   for (const auto& [scheme, cells] : rows) {

@@ -66,10 +66,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        "worth follows from the scheme's plan."},
       {"contact_force_mean", "N",
        "Mean of the contact force over the study's window, summed over the points: times the window it is the impulse. "
-       "The instants of a step count by the momentum that an effort of each gives.",
-       Of::motion, true},
-      {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window.",
-       Of::motion, true},
+       "The instants of a step count by the momentum that an effort of each gives."},
+      {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window."},
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity).",

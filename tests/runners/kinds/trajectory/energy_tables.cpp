@@ -51,3 +51,25 @@ TEST_CASE("the energies of a study stand in tables before any sentence says them
   for (const Table* table : {&ends, &masses, &trends, &worth})
     for (const Row& row : table->rows) CHECK(row.size() == table->columns.size());
 }
+
+TEST_CASE("a scheme that declares no work leaves the others to tell whether a scene keeps its energy") {
+  StudyResults results;
+  results.columns = {"time", "support.amplitude", "step"};
+  const auto add = [&](const char* scheme, double amplitude, std::optional<double> loads) {
+    CaseRecord& record = results.cases.emplace_back();
+    record.status = "done";
+    record.axes = {{"time", scheme}, {"support.amplitude", amplitude}, {"step", 1e-3}};
+    if (loads) record.measures = {{"work_of_damping", 0.0}, {"work_of_loads", *loads}};
+  };
+  add("silent", 0, std::nullopt);
+  CHECK_FALSE(energy_is_kept(results));
+  add("audited", 0, 0.0);
+  CHECK(energy_is_kept(results));
+  // Of another scene nothing is known yet, and then that it is driven.
+  add("silent", 0.1, std::nullopt);
+  CHECK_FALSE(energy_is_kept(results));
+  add("audited", 0.1, 0.0);
+  CHECK(energy_is_kept(results));
+  results.cases.back().measures.back().second = 1e-3;
+  CHECK_FALSE(energy_is_kept(results));
+}
