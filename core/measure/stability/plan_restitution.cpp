@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/contract/unit_mass.hpp>
@@ -81,11 +82,14 @@ std::optional<double> plan_restitution(const StepPlan& plan, double h) {
 
 std::optional<RestitutionRange> restitution_range(const StepPlan& plan, double h) {
   constexpr int phases = 64;
+  // Of positions of a few steps, over one of them.
+  constexpr double round_off = 1e-12;
   RestitutionRange range;
   for (int k = 0; k < phases; ++k) {
     // Mid-points: at 0 and 1 the mass meets its stop exactly at a step.
-    const auto e = rebound(plan, h, (k + 0.5) / phases);
+    auto e = rebound(plan, h, (k + 0.5) / phases);
     if (!e) return std::nullopt;
+    if (std::abs(*e) < round_off) *e = 0;
     range.least = k == 0 ? *e : std::min(range.least, *e);
     range.most = k == 0 ? *e : std::max(range.most, *e);
     range.mean += *e / phases;
