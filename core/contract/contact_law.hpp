@@ -48,7 +48,7 @@ struct ReducedProblem {
   /// first.
   double* memory = nullptr;
   double* effort = nullptr;        ///< in: what this stage found last; out: p. Lanes not in `touched` are left alone
-  std::span<const int> touched;    ///< lanes where a free measure passes a bound, or that were in contact
+  std::span<const int> touched;    ///< lanes whose measure, free or before, passes a bound, or that were in contact
   LaneOutcome* outcome = nullptr;  ///< per lane
 };
 

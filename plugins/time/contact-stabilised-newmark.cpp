@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include "mean_force_step.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -23,13 +25,10 @@ class ContactStabilisedNewmark final : public TimeScheme {
       return Refusal{
           "the projection of the predictor is made in the metric of the mass, which is singular here: use a regular "
           "mass, or midpoint"};
-    StepPlan plan;
-    plan.slots = {"q", "v", "d"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
+    StepPlan plan = mean_step_plan();
+    plan.slots.emplace_back("d");
+    plan.initial.push_back({0, 0});
     plan.stages = {projection(h), step(h)};
-    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
-    plan.facts.order = 2;
     plan.facts.needs_regular_mass = true;
     plan.facts.contact_never_gains = !facts.damped;  // the projection moves positions past the dashpots
     return plan;
@@ -49,15 +48,12 @@ class ContactStabilisedNewmark final : public TimeScheme {
     Stage stage;
     stage.matrix = {1 / h, 0.5, h / 4};
     stage.history = {{0, 0, -1}, {0, -1, -h / 2}, {0, -0.5 * pushed, -0.5}};
-    stage.load = {{0, 0.5}, {1, 0.5}};
+    stage.load = both_ends();
     const Combination end{.slots = {1, h, 1}, .z = h / 2}, end_rate{.slots = {0, 1, pushed}, .z = 1};
-    const Combination mean{.slots = {1, h / 2, 0.5}, .z = h / 4};
-    const Combination mean_rate{.slots = {0, 1, 0.5 * pushed}, .z = 0.5};
+    const Combination mean_rate = halfway(end_rate, 1);
     stage.impact = {.value = end, .bound = {{1, 1}}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.at(Evaluation::conserving) = {end, {{1, 1}}, mean_rate, {{0.5, 1}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
+    read_mean_force(stage, end, end_rate, mean_rate, {.slots = {1, h / 2}}, middle());
+    conserve_mean_force(stage, end, mean_rate, middle());
     stage.update = {end, end_rate, {}};
     return stage;
   }

@@ -38,15 +38,11 @@ class Kane final : public TimeScheme {
       return Refusal{
           "the acceleration at the end of the step needs the inverse of the mass, which is singular here: "
           "use beta = 0.25 with gamma = 0.5, or a regular mass"};
-    StepPlan plan;
-    plan.slots = {"q", "v"};
-    plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = {.slots = {0, 1}};
-    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
-    plan.facts.order = damps ? 1 : 2;
+    StepPlan plan = mean_step_plan();
+    if (damps) plan.facts.order = 1;
     plan.facts.contact_never_gains = true;
     if (!damps && !jumps) {
-      plan.stages = {mean_step(h)};
+      plan.stages = {mean_step(h, both_ends())};
       return plan;
     }
     plan.slots.emplace_back("a");
@@ -69,26 +65,6 @@ class Kane final : public TimeScheme {
   // With β < γ/2 what γ > ½ takes is no sum of squares.
   bool known_balance() const { return newmark_.gamma == 0.5 || shift() >= 0; }
 
-  // What all forms have in common: the end of the step, its middle, and the way between.
-  static void measure(Stage& stage, const Combination& end, const Combination& end_rate, const Combination& known) {
-    const Combination mean_rate = halfway(end_rate, 1);
-    stage.impact = {.value = end, .bound = {{1, 1}}};
-    read_mean_force(stage, end, end_rate, mean_rate, known);
-    conserve_mean_force(stage, end, mean_rate);
-    balance_mean_force(stage, end, mean_rate);
-  }
-
-  static Stage mean_step(double h) {
-    Stage stage;
-    stage.matrix = {1 / h, 0.5, h / 4};
-    stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
-    stage.load = {{0, 0.5}, {1, 0.5}};
-    const Combination end{.slots = {1, h}, .z = h / 2}, end_rate{.slots = {0, 1}, .z = 1};
-    measure(stage, end, end_rate, {.slots = {1, h / 2}});
-    stage.update = {end, end_rate};
-    return stage;
-  }
-
   Stage step(double h) const {
     const double gamma = newmark_.gamma, lag = newmark_.lag(h), curve = newmark_.curve(h);
     Stage stage;
@@ -96,7 +72,10 @@ class Kane final : public TimeScheme {
     stage.history = {{0, 0, -gamma}, {0, -gamma, -gamma * h}, {0, -gamma * lag, -gamma * curve}};
     stage.load = {{1, gamma}};
     const Combination end{.slots = {1, h, curve}, .z = 1}, end_rate{.slots = {0, 1, lag}, .z = 2 / h};
-    measure(stage, end, end_rate, {.slots = {1, h / 2}});
+    stage.impact = {.value = end, .bound = {{1, 1}}};
+    read_mean_force(stage, end, end_rate, halfway(end_rate, 1), {.slots = {1, h / 2}});
+    conserve_mean_force(stage, end, halfway(end_rate, 1));
+    balance_mean_force(stage, end, halfway(end_rate, 1));
     stage.work->rate = {.slots = {0, 1, gamma * lag}, .z = 2 * gamma / h};
     stage.work->load = {{0, 1 - gamma}, {1, gamma}};
     stage.loss = {{EnergyMatrix::K, gamma - 0.5, stage.work->displacement}};

@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include "mean_force_step.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -22,39 +24,14 @@ class LaursenLove final : public TimeScheme {
       return Refusal{
           "a contact point without mass (singular mass) has no velocity that could be changed alone, and the mid-point "
           "rule leaves the root −1 there: use a regular mass, or midpoint"};
-    StepPlan plan;
-    plan.slots = {"q", "v"};
-    plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = {.slots = {0, 1}};
-    plan.stages = {step(h), velocity_update(h)};
-    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
-    plan.facts.order = 2;
+    StepPlan plan = mean_step_plan();
+    plan.stages = {mean_step(h, middle()), velocity_update(h)};
     plan.facts.needs_regular_mass = true;
     plan.facts.contact_never_gains = true;
     return plan;
   }
 
  private:
-  static Stage step(double h) {
-    Stage stage;
-    stage.matrix = {1 / h, 0.5, h / 4};
-    stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
-    stage.load = {{0.5, 1}};
-    const Combination end{.slots = {1, h}, .z = h / 2}, end_rate{.slots = {0, 1}, .z = 1};
-    const Combination mean{.slots = {1, h / 2}, .z = h / 4}, mean_rate{.slots = {0, 1}, .z = 0.5};
-    stage.impact = {.value = end, .bound = {{1, 1}}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.at(Evaluation::conserving) = {end, {{1, 1}}, mean_rate, {{0.5, 1}}, {1}, Combination{.slots = {1}}, {{0, 1}}};
-    stage.update = {end, end_rate};
-    stage.work = {.displacement = {.slots = {0, h}, .z = h / 2},
-                  .rate = mean_rate,
-                  .load = {{0.5, 1}},
-                  .support = {{1, 1}, {0, -1}}};
-    return stage;
-  }
-
   static Stage velocity_update(double h) {
     Stage stage;
     stage.matrix = {1 / h, 0, 0};

@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include "mean_force_step.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -16,34 +18,10 @@ class Midpoint final : public TimeScheme {
   explicit Midpoint(bool middle) : middle_(middle) {}
 
   PlanOrRefusal plan(double h, const ProblemFacts&) const override {
-    StepPlan plan;
-    plan.slots = {"q", "v"};
-    plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = {.slots = {0, 1}};
-    Stage stage;
-    stage.matrix = {1 / h, 0.5, h / 4};
-    stage.history = {{0, 0, -1}, {0, -1, -h / 2}};
-    stage.load = {{0.5, 1}};
-    const Combination end{.slots = {1, h}, .z = h / 2}, end_rate{.slots = {0, 1}, .z = 1};
-    const Combination mean{.slots = {1, h / 2}, .z = h / 4}, mean_rate{.slots = {0, 1}, .z = 0.5};
-    stage.impact = middle_ ? ImpactMeasure{mean, {{0, 0.5}, {1, 0.5}}} : ImpactMeasure{end, {{1, 1}}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {mean, {{0, 0.5}, {1, 0.5}}, mean_rate, {{0.5, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.at(Evaluation::conserving) = {.displacement = end,
-                                        .bound = {{1, 1}},
-                                        .rate = mean_rate,
-                                        .rate_bound = {{0.5, 1}},
-                                        .before = Combination{.slots = {1}},
-                                        .before_bound = {{0, 1}}};
-    stage.update = {end, end_rate};
-    stage.work = {.displacement = {.slots = {0, h}, .z = h / 2},
-                  .rate = mean_rate,
-                  .load = {{0.5, 1}},
-                  .support = {{1, 1}, {0, -1}}};
-    plan.stages = {stage};
-    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
-    plan.facts.order = 2;
+    StepPlan plan = mean_step_plan();
+    Stage step = mean_step(h, middle());
+    if (middle_) step.impact = {.value = halfway(step.update[0], 0), .bound = both_ends()};
+    plan.stages = {step};
     plan.facts.contact_never_gains = !middle_;
     return plan;
   }

@@ -103,22 +103,23 @@ struct Figure {
 };
 
 const std::vector<Figure>& figures() {
-  using namespace std::placeholders;
+  const auto orders = [](bool impacts) {
+    return [impacts](const StudyResults& results, const Add& add) { add_orders(results, impacts, add); };
+  };
+  const auto column = [](const char* table, const char* name, bool largest = false) {
+    return [=](const StudyResults& results, const Add& add) { add_column(results, table, name, largest, add); };
+  };
   static const std::vector<Figure> all = {
-      {{"order free", "1", "Order in the step without contact."}, std::bind(add_orders, _1, false, _2), 2},
-      {{"order through contact", "1", "Order in the step where a stop is touched."},
-       std::bind(add_orders, _1, true, _2),
-       2},
+      {{"order free", "1", "Order in the step without contact."}, orders(false), 2},
+      {{"order through contact", "1", "Order in the step where a stop is touched."}, orders(true), 2},
       {{"largest step gain", "1", "Largest gain of energy in one step at contact, over the starting energy."},
-       std::bind(add_column, _1, "energy_ends", "step_gain", true, _2),
+       column("energy_ends", "step_gain", true),
        0,
        true},
-      {{"e least", "1", "Least restitution of a free mass over the phases of a step."},
-       std::bind(add_column, _1, "restitution", "least", false, _2)},
-      {{"e mean", "1", "Mean of the same."}, std::bind(add_column, _1, "restitution", "mean", false, _2)},
-      {{"e most", "1", "Largest of the same."}, std::bind(add_column, _1, "restitution", "most", false, _2)},
-      {{"ρ∞", "1", "What a step leaves of the highest frequencies."},
-       std::bind(add_column, _1, "restitution", "rho_inf", false, _2)},
+      {{"e least", "1", "Least restitution of a free mass over the phases of a step."}, column("restitution", "least")},
+      {{"e mean", "1", "Mean of the same."}, column("restitution", "mean")},
+      {{"e most", "1", "Largest of the same."}, column("restitution", "most")},
+      {{"ρ∞", "1", "What a step leaves of the highest frequencies."}, column("restitution", "rho_inf")},
       {{"cost of a step", "µs", "Processor time of one step."}, add_costs},
       {{"error at 1 ms", "m", "Smallest error of the tip, root mean square over time, within 1 ms of processor time."},
        add_reached},
