@@ -191,8 +191,9 @@ Verdict slopes_are_derivatives(const Law& law) {
   if (!bench.law().offers_slopes()) return not_declared("no slopes: exponents are those of twins");
   const bool remembers = reads_before(bench);
   for (const int side : sides)
-    for (const auto& [depth, before] : steps_of(bench))
+    for (const Way& way : steps_of(bench))
       for (const double speed : speeds_of(bench)) {
+        const double depth = way.depth, before = way.before;
         const PointAnswer here = at_point(bench, side, depth, speed, before);
         if (here.effort == 0) continue;  // a damper that lets go
         const double dg = 1e-5 * std::abs(depth), du = 1e-5;
