@@ -268,7 +268,7 @@ LaneOutcome PointwiseSolver::finish(const Lane& lane, bool converged, int iterat
       apart = problem.reach * (bridged ? lane.slack(i, terms_[i], answer) : mobility * apart);
     else
       apart = answer.stiffness > 0 && !bridged ? apart / answer.stiffness : 0.0;
-    outcome.residual = std::max(outcome.residual, apart);
+    outcome.residual = std::isnan(apart) ? infinity : std::max(outcome.residual, apart);
   }
   if (!std::isfinite(outcome.residual)) outcome = {false, iterations, infinity};
   for (int i = 0; i < problem.points; ++i) problem.effort[lane.at(i)] = outcome.converged ? effort_[i] : 0.0;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <ricochet/engine/lane_status.hpp>
 
 namespace ricochet {
@@ -13,6 +14,9 @@ std::string text(const LaneEnd& end) {
     case EndCause::effort_not_finite:
       return "a contact effort is not finite";
     case EndCause::law_not_converged:
+      if (std::isinf(end.value))
+        return "the contact law has no finite force at the state that the step reaches: take a smaller step, or a "
+               "scheme (or an evaluation) whose step knows the force while it moves";
       return fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)", end.value,
                          end.count);
     case EndCause::state_not_finite:

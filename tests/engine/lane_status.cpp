@@ -1,5 +1,6 @@
 // Why a march ended: a cause with its numbers; status and sentence follow from it, never the other way round.
 #include <catch2/catch.hpp>
+#include <limits>
 #include <ricochet/engine/lane_status.hpp>
 #include <set>
 
@@ -21,6 +22,8 @@ TEST_CASE("each cause of an end has a sentence of its own; only a step that cann
 TEST_CASE("the numbers of a cause stand in its sentence") {
   CHECK(text(LaneEnd{.cause = EndCause::law_not_converged, .value = 0.25, .count = 50}) ==
         "the contact law did not converge (residual 0.25 after 50 iterations)");
+  CHECK_THAT(text(LaneEnd{.cause = EndCause::law_not_converged, .value = std::numeric_limits<double>::infinity()}),
+             Catch::Contains("no finite force"));
   CHECK(text(LaneEnd{.cause = EndCause::elastic_energy_beyond, .value = 3e9, .bound = 2e9, .factor = 1e9}) ==
         "the elastic energy 3e+09 J passed 2e+09 J, 1e+09 times the scene's own scale");
   CHECK(text(LaneEnd{.cause = EndCause::state_not_finite, .count = 16}) ==

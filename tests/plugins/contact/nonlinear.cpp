@@ -153,6 +153,17 @@ TEST_CASE("a barrier is never passed by an evaluation at the end of the step, ho
   CHECK(audit.contact(0).deepest_penetration == 0);
 }
 
+TEST_CASE("a step that no force holds back lands beyond a barrier, where it has none: that is said") {
+  const Choice law{"barrier", {{"stiffness", 1e3}, {"thickness", 1e-3}}};
+  // A step of 10 mm at 1 m/s into a barrier of 1 mm.
+  Marcher mass = marcher(thrown_mass(), 1, {{"consistent"}, law, {"central-difference"}}, 1e-2);
+  mass.start();
+  mass.march(100);
+  REQUIRE_FALSE(mass.status(0).running);
+  CHECK(mass.status(0).end.failed());
+  CHECK_THAT(text(mass.status(0).end), Catch::Contains("no finite force") && Catch::Contains("take a smaller step"));
+}
+
 TEST_CASE("Lankarani and Nikravesh do not deliver their own restitution, at any speed") {
   // Asks for 0.8, and gives e of χv = ¾(1 − 0.64).
   REQUIRE(damped_restitution(0.75 * 0.36) == Approx(0.847102).epsilon(1e-6));

@@ -113,7 +113,8 @@ void check_work(const Ran& ran, const Json& page) {
   for (const auto& [id, column] :
        {std::pair("work-precision", "seconds"), {"steps-precision", "steps"}, {"step-cost", "microseconds"}})
     for (size_t v = 0; v < figure(page, id).at("views").size(); ++v)
-      CHECK(heights(items_of(figure(page, id), v, is_curve)) == numbers_in(points, column, [&](const auto& row) {
+      CHECK(heights(items_of(figure(page, id), v, is_curve)) ==
+            numbers_in(points, column, [&, id = id](const auto& row) {
               return row[at("error")].text() == figure(page, id).at("views")[v] && row[at("none")].text().empty();
             }));
   // A kind of error that no case has is no view.

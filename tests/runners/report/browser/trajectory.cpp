@@ -115,7 +115,7 @@ void check_samples(const StudyResults& results, const Json& page) {
     for (const Json& series :
          series_of(figure(page, id), 0, [](const Json& s) { return s.at("type") == "line" && s.at("count") > 0; })) {
       const Json& last = series.at("data").back().at("value");
-      ends += std::any_of(results.cases.begin(), results.cases.end(), [&](const CaseRecord& record) {
+      ends += std::any_of(results.cases.begin(), results.cases.end(), [&, column = column](const CaseRecord& record) {
         const Curve& curve = record.curve;
         const auto at = std::find(curve.names.begin(), curve.names.end(), column) - curve.names.begin();
         return !curve.columns.empty() && last[0].get<double>() == Approx(curve.columns[0].back()) &&
