@@ -105,11 +105,11 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--out DIR] [--jobs N] [--fresh]",
-       "Run what is missing of a study; write results and report.",
+       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table]",
+       "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"out", "jobs", "fresh", "plugin"},
+       {"out", "jobs", "fresh", "table", "plugin"},
        command_run},
       {"plan",
        "STUDY.json",

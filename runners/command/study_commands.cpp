@@ -17,6 +17,7 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.out = arguments.out.value_or("");
     options.jobs = arguments.jobs;
     options.fresh = arguments.fresh;
+    options.table = arguments.table;
     return run_study(open.study, open.catalogue, open.registry, options);
   });
 }

@@ -20,6 +20,7 @@ po::options_description described(const Subcommand& command) {
   if (has("jobs"))
     add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
+  if (has("table")) add("table", "print a line for every case");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
@@ -100,6 +101,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.out = path_of(values, "out");
   arguments.to = path_of(values, "to");
   arguments.fresh = values.count("fresh") > 0;
+  arguments.table = values.count("table") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000;
   arguments.jobs = count_of(values, "jobs", most_jobs);
   arguments.periods = count_of(values, "periods", most_samples);

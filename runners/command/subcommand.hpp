@@ -28,6 +28,7 @@ struct Arguments {
   std::optional<std::filesystem::path> out, to;  ///< --out, --to
   int jobs = 0;                                  ///< --jobs; 0: all processors
   bool fresh = false;                            ///< --fresh
+  bool table = false;                            ///< --table
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
   std::string cell;                              ///< --cell; "": none given
@@ -41,7 +42,8 @@ struct Subcommand {
   std::string usage;  ///< operands and options as the help shows them
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
-  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, parameter, start, cell, periods, samples
+  std::vector<std::string>
+      options;  ///< of plugin, out, to, jobs, fresh, table, parameter, start, cell, periods, samples
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 

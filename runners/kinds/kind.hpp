@@ -62,6 +62,11 @@ struct Kind {
 
   /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
   std::function<void(StudyResults&)> tables;
+  /// The rows of `answers` (answers_head) where this kind answers in its own way. Empty: what each choice makes of the
+  /// observed measures.
+  std::function<Table(const StudyResults&)> answers;
+  /// The measures that an answer is made of where the study names none. Empty: none.
+  std::function<std::vector<std::string>(const StudyResults&)> observed;
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
   Table curve;
   /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". Empty, or "": nothing.
@@ -81,6 +86,9 @@ struct Kind {
   /// such a study has no points.
   std::function<int(const StudyResults&, const PointRequest&, std::ostream& out)> point;
 };
+
+/// `answers` without rows.
+Table answers_head();
 
 /// The kinds of the program, in the order in which they are told.
 const std::vector<Kind>& kinds();

@@ -7,6 +7,7 @@
 #include "runners/report/axis_rows.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/html_table.hpp"
+#include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -38,24 +39,15 @@ std::vector<std::string> choices_in(const std::string& factor) {
   return out;
 }
 
-std::string spoken(const std::string& factor) {
-  if (factor == "mass") return "the mass matrix";
-  if (factor == "contact") return "the contact law";
-  if (factor == "time") return "the time scheme";
-  if (factor == "step") return "the step";
-  if (factor == "elements") return "the mesh";
-  return factor;
-}
-
 std::string source_of_spread(const MeasureShare& share, const std::string& first) {
   if (share.order == 4) return "interactions of more than three choices";
   if (share.order == 0) return "what the choices do not tell apart";
   std::vector<std::string> names = choices_in(share.factor);
-  if (names.size() == 1) return spoken(names[0]);
+  if (names.size() == 1) return spoken_choice(names[0]);
   const bool own = std::erase(names, first) > 0;
   std::string out = own ? "its interaction with " : "the interaction of ";
   for (size_t k = 0; k < names.size(); ++k)
-    out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + spoken(names[k]);
+    out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + spoken_choice(names[k]);
   return out;
 }
 

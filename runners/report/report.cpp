@@ -13,6 +13,7 @@
 #include "runners/report/table_view.hpp"
 #include "runners/report/tables.hpp"
 #include "runners/report/template.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace report {
@@ -75,11 +76,31 @@ std::string script(const std::string& attributes, const std::string& content) {
   return "<script" + attributes + ">" + content + "</script>\n";
 }
 
+/// What the rows of `answers` say, the weightiest first.
+std::string answer_sentences(const StudyResults& results) {
+  const Table* answers = find_table(results.derived, "answers");
+  if (!answers) return "";
+  constexpr size_t most = 8;
+  const TableReader rows(*answers);
+  const size_t column = rows.column("sentence");
+  std::string out, rest;
+  size_t count = 0;
+  for (size_t row = 0; row < rows.size(); ++row)
+    if (const std::string text = rows.text(row, column); !text.empty())
+      (count++ < most ? out : rest) += "<li>" + escape(text) + "</li>\n";
+  if (count == 0) return "";
+  out = "<ul class=\"answer lead\">\n" + out + "</ul>\n";
+  if (!rest.empty())
+    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n", count - most,
+                       rest);
+  return out;
+}
+
 }  // namespace
 
 std::string answer_html(const CaseView& view, const KindPage& kind) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
-  const std::string answer = kind.answer ? kind.answer(view) : "";
+  const std::string answer = answer_sentences(view.results()) + (kind.answer ? kind.answer(view) : "");
   if (answer.empty() && view.with_status("done").empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;

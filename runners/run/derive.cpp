@@ -2,6 +2,7 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/run/answers_table.hpp"
 #include "runners/run/effects_table.hpp"
 #include "runners/run/reasons_table.hpp"
 
@@ -14,7 +15,7 @@ void derive_tables(StudyResults& results) {
     kind->tables(results);
   else
     collect_tables(results);
-  for (Table table : {effects_table(results), reasons_table(results)})
+  for (Table table : {answers_table(results), effects_table(results), reasons_table(results)})
     if (!table.rows.empty()) results.derived.push_back(std::move(table));
   for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
 }

@@ -1,6 +1,8 @@
 #include "runners/run/effects_table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <ricochet/measure/statistics/effects.hpp>
 #include <set>
 
@@ -31,11 +33,38 @@ bool absent_by_level(const StudyResults& results, const std::vector<Factor>& fac
   return false;
 }
 
+/// Whether what the finished cases differ by is more than round-off makes of the measure: 2⁻⁵² × steps of its scale.
+bool beyond_round_off(const StudyResults& results, const std::string& name) {
+  const MeasureInfo* info = measure_info(name);
+  const std::string scale = info ? info->scale : "";
+  double low = std::numeric_limits<double>::infinity(), high = -low, floor = 0;
+  for (const CaseRecord& record : results.cases) {
+    const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
+    if (!value) continue;
+    low = std::min(low, *value);
+    high = std::max(high, *value);
+    const double size = scale == "1" ? 1.0 : scale.empty() ? std::abs(*value) : measure(record, scale).value_or(0);
+    floor = std::max(floor, 0x1p-52 * static_cast<double>(record.steps) * size);
+  }
+  return high - low > floor;
+}
+
+/// Two levels have a difference, and no share that another choice of levels would not change: a factor needs three.
+bool has_share(const EffectShare& share, const std::vector<Factor>& factors) {
+  static const std::string times = " × ";
+  constexpr std::size_t fewest = 3;
+  const std::string padded = times + share.factor + times;
+  return std::none_of(factors.begin(), factors.end(), [&](const Factor& factor) {
+    return factor.levels.size() < fewest && padded.find(times + factor.name + times) != std::string::npos;
+  });
+}
+
 }  // namespace
 
 Table effects_table(const StudyResults& results) {
   Table table{"effects",
-              "Over all cases: what one choice, or two together, explain of the spread of one measure.",
+              "Over all cases: what one choice, or two together, explain of the spread of one measure. Choices of two "
+              "levels have differences (answers.csv) and no share; a measure whose spread round-off explains has none.",
               {{"measure", "", "The measure, a column of cases.csv."},
                {"factor", "", "The axis that was varied; two joined by × for what only their combination explains."},
                {"share", "1", "Share of the variance of the measure over the finished cases that the factor explains."},
@@ -55,15 +84,17 @@ Table effects_table(const StudyResults& results) {
   }
   std::vector<Factor> factors = factors_of(results.columns, cells).factors;
   std::erase_if(factors, [](const Factor& factor) { return factor.levels.size() < 2; });
-  if (factors.size() < 2) return table;
+  const auto told = [](const Factor& factor) { return factor.levels.size() > 2; };
+  if (factors.size() < 2 || std::none_of(factors.begin(), factors.end(), told)) return table;
   for (const std::string& name : measures) {
     std::vector<std::optional<double>> values;
     for (const CaseRecord& record : results.cases)
       values.push_back(record.status == "done" ? measure(record, name) : std::nullopt);
-    if (absent_by_level(results, factors, values)) continue;
+    if (absent_by_level(results, factors, values) || !beyond_round_off(results, name)) continue;
     const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)
-      table.rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
+      if (has_share(share, factors))
+        table.rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
   }
   return table;
 }

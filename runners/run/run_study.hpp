@@ -14,13 +14,14 @@ struct RunOptions {
   std::filesystem::path out;  ///< results folder; empty: results/NAME
   int jobs = 0;               ///< 0: all processors
   bool fresh = false;         ///< forget what the folder holds
+  bool table = false;         ///< print a line for every case
 };
 
 /// What would run for a case of a study of this kind, decided without running it.
 CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry);
 
 /// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/,
-/// study.json and report.html, and prints one line per case. Returns the exit code of design §5 (0, 3, 5, 130).
+/// study.json and report.html, and prints the answer. Returns the exit code of design §5 (0, 3, 5, 130).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
 
 /// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.

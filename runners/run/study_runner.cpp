@@ -51,6 +51,7 @@ class FolderRun {
         stop_(signals_.requested()),
         store_(folder_, options.fresh),
         guard_(folder_),
+        table_(options.table),
         jobs_(options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {
     if (options.fresh) remove_crash_record(folder_);
   }
@@ -285,8 +286,9 @@ class FolderRun {
     const int code = results_exit_code(results);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     say(runner_.out,
-        fmt::format("{}\n{} ({} run now in {}, {} kept)\nreport: {}\n", case_table(results), totals_text(results),
-                    fresh_.size(), duration_text(seconds), kept_.size(), (folder_ / "report.html").string()));
+        fmt::format("{}{}\n{} ({} run now in {}, {} kept)\n{}report: {}\n", table_ ? case_table(results) + "\n" : "",
+                    answer_text(results), totals_text(results), fresh_.size(), duration_text(seconds), kept_.size(),
+                    extremes_text(results), (folder_ / "report.html").string()));
     if (code != 0)
       say(runner_.out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
                            ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
@@ -304,6 +306,7 @@ class FolderRun {
   std::atomic<bool>& stop_;
   Store store_;
   const CrashGuard guard_;
+  const bool table_;
   const int jobs_;
   std::map<std::string, std::string> fingerprints_;
   std::set<std::string> kept_, settled_;  // rows that were there; and those that need no run any more

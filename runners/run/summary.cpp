@@ -6,6 +6,10 @@
 #include <map>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/run/answers_table.hpp"
+#include "runners/run/reasons_table.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
@@ -43,6 +47,46 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
     return own.empty() ? "done" : "done: " + own;
   }
   return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
+}
+
+std::string answer_text(const StudyResults& results) {
+  constexpr std::size_t most = 8;
+  const std::vector<std::string> lines = answer_lines(results);
+  std::string out = results.question.empty() ? "" : results.question + "\n";
+  for (std::size_t k = 0; k < std::min(lines.size(), most); ++k) out += "  " + lines[k] + "\n";
+  if (lines.size() > most) out += fmt::format("  {} more in the report\n", lines.size() - most);
+  return out;
+}
+
+std::string extremes_text(const StudyResults& results) {
+  std::string out;
+  if (const std::vector<std::string> observed = observed_measures(results); !observed.empty()) {
+    const CaseRecord *least = nullptr, *most = nullptr;
+    double low = 0, high = 0;
+    for (const CaseRecord& record : results.cases) {
+      const auto value = record.status == "done" ? measure(record, observed.front()) : std::nullopt;
+      if (!value) continue;
+      if (!least || *value < low) least = &record, low = *value;
+      if (!most || *value > high) most = &record, high = *value;
+    }
+    const MeasureInfo* info = measure_info(observed.front());
+    const std::string unit = info && std::string(info->unit) != "1" ? std::string(" ") + info->unit : "";
+    const report::CaseView view(results);
+    if (least && least != most)
+      for (const auto& [word, record, value] : {std::tuple("least", least, low), std::tuple("most", most, high)})
+        out += fmt::format("{} {}: {:.4g}{} in {} ({})\n", word, report::in_words(observed.front()), value, unit,
+                           record->id, view.label(*record));
+  }
+  std::map<std::string, std::pair<int, std::string>> reasons;  // by status: cases of the most frequent one
+  const Table table = reasons_table(results);
+  const TableReader rows(table);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    auto& [count, reason] = reasons[rows.text(row, "status")];
+    const int cases = static_cast<int>(rows.number(row, "cases").value_or(0));
+    if (cases > count) count = cases, reason = rows.text(row, "reason");
+  }
+  for (const auto& [status, most] : reasons) out += fmt::format("{} ({}): {}\n", status, most.first, most.second);
+  return out;
 }
 
 std::string case_table(const StudyResults& results) {

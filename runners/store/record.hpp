@@ -61,6 +61,9 @@ struct MeasureInfo {
   const char* text;
   Of of = Of::motion;
   bool aside = false;  ///< a first look at the table of cases leaves it out
+  /// The measure of the same case that differences of this one are shares of; "1": it is a share itself; "": its own
+  /// largest value.
+  const char* scale = "";
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

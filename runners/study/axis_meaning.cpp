@@ -96,6 +96,15 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
 
 }  // namespace
 
+std::string spoken_choice(const std::string& column) {
+  if (column == "mass") return "the mass matrix";
+  if (column == "contact") return "the contact law";
+  if (column == "time") return "the time scheme";
+  if (column == "step") return "the step";
+  if (column == "elements") return "the mesh";
+  return column;
+}
+
 std::string axis_role(const std::string& column) {
   const std::string first = split(column).front();
   return std::find(method_roles.begin(), method_roles.end(), first) == method_roles.end() ? column : first;

@@ -88,6 +88,7 @@ Json check_places(const Json& value, const std::string& pointer) {
 }
 
 Json check_words(const Field& field, const Json& value, const std::string& pointer) {
+  if (field.nullable && value.is_null()) return value;
   Json result = Json::array();
   const bool list = value.is_array();
   if (list && value.empty())

@@ -85,6 +85,13 @@ Field budget() {
                        "Processor time after which a case is stopped and counts as failed; null: no limit."));
 }
 
+Field observe(std::vector<std::string> measures) {
+  Field field = of_form(Field::Form::words, "observe", std::nullopt,
+                        "The measures that the answer is made of; null: those that the kind asks for.");
+  field.spec = word_parameter("observe", std::move(measures), std::nullopt, field.spec.text.c_str());
+  return optional(std::move(field));
+}
+
 Field steps_per_period() {
   Field field = integer("steps_per_period", {8, 100000000, false, false}, std::nullopt,
                         "Steps per forcing period: h = 2π/(ω·steps_per_period).");

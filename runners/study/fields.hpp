@@ -36,5 +36,7 @@ Field steps_per_period();  ///< an axis
 Field duration();          ///< s
 Field samples();
 Field budget();  ///< s; null: no limit
+/// The measures, out of these, that the answer of the study is made of; null: those that its kind asks for.
+Field observe(std::vector<std::string> measures);
 
 }  // namespace ricochet::keys

@@ -96,8 +96,10 @@ class SchemaWriter {
                 {"maxItems", field.count}};
       case Field::Form::numbers:
         return one_or_list(scalar(field.spec));
-      case Field::Form::words:
-        return one_or_list(scalar(field.spec));
+      case Field::Form::words: {
+        const Json words = one_or_list(scalar(field.spec));
+        return field.nullable ? Json{{"anyOf", Json::array({words, {{"type", "null"}}})}} : words;
+      }
       case Field::Form::starts:
         return one_or_list({{"anyOf", Json::array({scalar(field.spec), object(field.nested.front())})}});
       case Field::Form::methods:

@@ -38,6 +38,14 @@ EnergyAudit::EnergyAudit(const Marcher& marcher)
   for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
   first_.resize(rows);
   second_.resize(rows);
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    Lane& state = lanes_[static_cast<std::size_t>(lane)];
+    state.energy.first = state.energy.last = state.now = initial_energy(marcher, lane);
+    // A scheme with an energy of its own has it once its start rule is through.
+    state.energy.own_energy = !marcher.program().plan.energy.empty();
+    state.has_scheme = !state.energy.own_energy;
+    if (state.has_scheme) state.energy.scheme_start = state.now.scheme;
+  }
 }
 
 void EnergyAudit::combine(const double* const* slots, const double* z, const Combination& c, int lane,
@@ -85,17 +93,34 @@ EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* sl
   if (!marcher.program().contact || !compliant_) return sample;
   double phi = marcher.support(lane, t);
   if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
-  const double layer = marcher.law().layer(lane);
-  for (int j = 0; j < model_.problem().points(); ++j) {
-    const double depth = marcher.depth(lane, j, model_.measured().times(j, place.data()), phi);
-    if (depth > -layer) sample.contact += marcher.law().potential(depth, lane);
-  }
+  sample.contact = potential(marcher, place.data(), phi, lane);
   return sample;
 }
 
+// Of the state that the lane is given, before any rule of the scheme.
+EnergySample EnergyAudit::initial_energy(const Marcher& marcher, int lane) {
+  const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(lane)];
+  const Eigen::VectorXd place = model_.to_model(spec.position), speed = model_.to_model(spec.velocity);
+  EnergySample sample;
+  sample.kinetic = 0.5 * mass_(speed.data());
+  sample.elastic = 0.5 * stiffness_(place.data());
+  if (marcher.program().contact && compliant_)
+    sample.contact = potential(marcher, place.data(), marcher.support(lane, 0), lane);
+  sample.scheme = sample.common();
+  return sample;
+}
+
+double EnergyAudit::potential(const Marcher& marcher, const double* place, double support, int lane) const {
+  const double layer = marcher.law().layer(lane);
+  double sum = 0;
+  for (int j = 0; j < model_.problem().points(); ++j) {
+    const double depth = marcher.depth(lane, j, model_.measured().times(j, place), support);
+    if (depth > -layer) sum += marcher.law().potential(depth, lane);
+  }
+  return sum;
+}
+
 void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
-  // A scheme with an energy of its own has it before the first step, unless its start rule moves time.
-  const bool declares = !marcher.program().plan.energy.empty();
   const StageFacts& facts = view.program->facts;
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
@@ -104,19 +129,12 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
       state.step_loads = state.step_damping = state.step_contact = state.step_scheme = state.step_law = 0;
     }
     const bool balanced = view.plan->work || !view.starting;
-    if (declares && !state.has_scheme && balanced) {
+    if (!state.has_scheme && balanced) {
       state.energy.scheme_start = scheme_energy(marcher, lane);
-      state.now.scheme = state.energy.scheme_start;
+      state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
       state.has_scheme = true;
     }
-    // The first reading: before anything moves, or after the first sub-step.
-    const bool moves = facts.to != facts.from, moved = facts.from > 0;
-    const bool reads = mean_velocity_ ? moves && moved : view.stage == 0 && !view.starting;
-    if (reads && !state.has_first) {
-      state.energy.first = sample(marcher, view.slots, view.from, lane);
-      if (declares) state.energy.first.scheme = state.energy.scheme_start;
-      state.has_first = true;
-    }
+    const bool moves = facts.to != facts.from;
     if (moves || view.stage == 0) {
       std::fill(state.increment.begin(), state.increment.end(), 0.0);
       if (moves) state.duration = (facts.to - facts.from) * h_;
@@ -250,9 +268,6 @@ void EnergyAudit::step_done(Marcher& marcher) {
     if (state.has_scheme)
       totals.largest_step_gain =
           std::max(totals.largest_step_gain, sample.scheme - state.now.scheme - state.step_loads);
-    if (!state.has_first) totals.first = sample;
-    if (!state.has_scheme) totals.scheme_start = sample.scheme;
-    state.has_first = state.has_scheme = true;
     state.now = totals.last = sample;
     const double energy = sample.common();
     if (!std::isfinite(energy) || !std::isfinite(sample.scheme))

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <vector>
@@ -17,11 +18,12 @@ struct EnergySample {
   double common() const { return kinetic + elastic + contact; }
 };
 
-/// What the audit of a lane adds up. `first` is of t = 0 where energies stand at the end of a step, else of the first
-/// sub-step.
+/// What the audit of a lane adds up.
 struct EnergyTotals {
-  EnergySample first, last;
+  EnergySample first;  ///< of the initial state itself, at t = 0, whatever the scheme makes of it
+  EnergySample last;
   double scheme_start = 0;       ///< scheme energy from which the balance starts
+  bool own_energy = false;       ///< the scheme declares one; else `scheme` is the common energy, potential included
   double largest_step_gain = 0;  ///< max over steps of ΔE_scheme − W_loads (J), never below 0
   double work_of_damping = 0;    ///< Σ sᵀC r ≥ 0 where the scheme pairs them (J)
   double work_of_loads = 0;      ///< Σ sᵀF̄, and the support's work through the stops (J)
@@ -31,8 +33,11 @@ struct EnergyTotals {
   /// E_end − E_start − loads + damping + scheme − contact: round-off × steps where the scheme has an exact balance,
   /// else what is left.
   double balance_residual() const {
-    return last.scheme - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact;
+    const double stored = own_energy ? 0.0 : last.contact - first.contact;
+    return last.scheme - stored - scheme_start - work_of_loads + work_of_damping + work_of_scheme - work_of_contact;
   }
+  /// What the motion had to lose (J): the energy of its start, and what the loads brought in beyond what they took.
+  double brought_in() const { return first.common() + std::max(0.0, work_of_loads); }
 };
 
 /// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
@@ -80,8 +85,10 @@ class EnergyAudit final : public StepObserver {
     double force = 0;
     double step_loads = 0, step_damping = 0, step_contact = 0, step_scheme = 0, step_law = 0;
     double penetration = 0, tip_velocity = 0;
-    bool has_scheme = false, has_first = false;
+    bool has_scheme = false;
   };
+  EnergySample initial_energy(const Marcher& marcher, int lane);
+  double potential(const Marcher& marcher, const double* place, double support, int lane) const;
   EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
   void work(const Marcher& marcher, const StageView& view, int lane);
   double scheme_energy(const Marcher& marcher, int lane);

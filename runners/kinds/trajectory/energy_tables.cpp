@@ -42,10 +42,10 @@ Extent extent_of(const Cases& cases, const Measured& of) {
   return out;
 }
 
-/// A measure over the energy at the start; nothing where that is not positive.
-std::optional<double> of_start(const CaseRecord& record, const char* name) {
-  const auto value = measure(record, name), start = measure(record, "energy_start");
-  return value && start && *start > 0 ? std::optional(*value / *start) : std::nullopt;
+/// A measure over the energy that was brought in; nothing where that is not positive.
+std::optional<double> of_brought_in(const CaseRecord& record, const char* name) {
+  const auto value = measure(record, name), all = measure(record, "energy_brought_in");
+  return value && all && *all > 0 ? std::optional(*value / *all) : std::nullopt;
 }
 
 Cases done_cases(const StudyResults& results) {
@@ -65,7 +65,7 @@ const CaseRecord* finest_of(const Cases& cases) {
 
 Cases with_ratio(const Cases& cases) {
   Cases done = with_status(cases, "done");
-  std::erase_if(done, [](const CaseRecord* record) { return !measure(*record, "energy_ratio"); });
+  std::erase_if(done, [](const CaseRecord* record) { return !measure(*record, "energy_left"); });
   return done;
 }
 
@@ -94,8 +94,8 @@ Row group_place(const Cases& group, const std::vector<std::string>& shared) {
 
 double energy_noise(const CaseRecord& record) {
   const double round_off = 0x1p-52 * static_cast<double>(record.steps);
-  const auto residual = of_start(record, "balance_residual");
-  return residual ? std::max(round_off, std::abs(*residual)) : round_off;
+  const auto residual = of_brought_in(record, "balance_residual");
+  return residual && std::abs(*residual) <= exact_balance ? std::max(round_off, std::abs(*residual)) : round_off;
 }
 
 bool energy_is_kept(const StudyResults& results) {
@@ -122,27 +122,28 @@ Table energy_ends_table(const StudyResults& results) {
   Table table = table_of_cases(
       results, "energy_ends", "One finished case: what its energy ends at, and what is told from round-off.",
       {{"energy", "J", "The common mechanical energy at the end."},
-       {"ratio", "1", "The same over that at the start; empty where it starts from 0."},
+       {"ratio", "1",
+        "The same over the energy brought in: that of the start, and what loads brought in beyond what they took."},
        {"change", "1", "Distance of that ratio from 1."},
        {"noise_floor", "1",
         "What of the change is not told from round-off: 2⁻⁵² times the number of steps, or the residual of the energy "
-        "balance over the starting energy, whichever is larger."},
+        "balance over the energy brought in where the balance is exact, whichever is larger."},
        {"kept", "", "Whether the change is within the noise floor."},
-       {"step_gain", "1", "Largest gain of one step over the starting energy."},
+       {"step_gain", "1", "Largest gain of one step over the energy brought in."},
        {"gains", "", "Whether that is more than 1e-9 of it."},
-       {"lost_at_contact", "1", "What the contact efforts took out, over the starting energy."},
+       {"lost_at_contact", "1", "What the contact efforts took out, over the energy brought in."},
        {"conservative", "", "Whether nothing but contact changes the energy of the study's finished cases."}});
   const bool conservative = energy_is_kept(results);
   for (const CaseRecord* record : done_cases(results)) {
-    const auto end = measure(*record, "energy_end"), ratio = measure(*record, "energy_ratio");
+    const auto end = measure(*record, "energy_end"), ratio = measure(*record, "energy_left");
     if (!end && !ratio) continue;
-    const auto gain = of_start(*record, "largest_step_gain");
+    const auto gain = of_brought_in(*record, "largest_step_gain");
     const double noise = energy_noise(*record);
     add_row(
         table, place_of(results, *record),
         {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
          ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain, gain ? Cell(*gain > step_gain_threshold) : Cell(),
-         of_start(*record, "dissipated_at_contact"), conservative});
+         of_brought_in(*record, "dissipated_at_contact"), conservative});
   }
   return table;
 }
@@ -158,7 +159,7 @@ Table energy_by_mass_table(const StudyResults& results) {
                        {"diverged", "1", "Cases that diverged."},
                        {"failed", "1", "Cases that failed."},
                        {"finished", "1", "Finished cases with an energy ratio."},
-                       {"ratio_low", "1", "Smallest energy at the end over that at the start."},
+                       {"ratio_low", "1", "Smallest energy at the end over that brought in."},
                        {"ratio_high", "1", "Largest such ratio."},
                        {"finest_step", "s", "Smallest step of these cases; empty where the step does not vary."},
                        {"finest_low", "1", "Smallest ratio at that step."},
@@ -166,13 +167,13 @@ Table energy_by_mass_table(const StudyResults& results) {
                        {"ended", "1", "Finished cases with an energy at the end."},
                        {"end_low", "J", "Smallest energy at the end."},
                        {"end_high", "J", "Largest energy at the end."},
-                       {"contact_low", "1", "Least that the contact efforts took out, over the starting energy."},
+                       {"contact_low", "1", "Least that the contact efforts took out, over the energy brought in."},
                        {"contact_high", "1", "Most that they took out."},
                        {"audited", "1", "Finished cases whose steps are told to gain energy or not."},
-                       {"gaining", "1", "Those in which single steps gain more than 1e-9 of the starting energy."},
-                       {"largest_gain", "1", "Largest gain of one step over the starting energy."},
+                       {"gaining", "1", "Those in which single steps gain more than 1e-9 of the energy brought in."},
+                       {"largest_gain", "1", "Largest gain of one step over the energy brought in."},
                        {"largest_gain_case", "", "The case that makes it."}});
-  const Measured ratio = measured("energy_ratio");
+  const Measured ratio = measured("energy_left");
   for (const Cases& all : groups_of(all_cases(results), shared)) {
     const Cases done = with_status(all, "done"), finished = with_ratio(done);
     Cases at_finest;
@@ -184,10 +185,11 @@ Table energy_by_mass_table(const StudyResults& results) {
     }
     const Extent ratios = extent_of(done, ratio), fine = extent_of(at_finest, ratio),
                  ends = extent_of(done, measured("energy_end")),
-                 contact = extent_of(done, [](const CaseRecord&r) { return of_start(r, "dissipated_at_contact"); }),
-                 gains = extent_of(done, [](const CaseRecord&r) { return of_start(r, "largest_step_gain"); });
+                 contact =
+                     extent_of(done, [](const CaseRecord&r) { return of_brought_in(r, "dissipated_at_contact"); }),
+                 gains = extent_of(done, [](const CaseRecord&r) { return of_brought_in(r, "largest_step_gain"); });
     const auto gaining = std::count_if(done.begin(), done.end(), [](const CaseRecord* record) {
-      return of_start(*record, "largest_step_gain").value_or(0) > step_gain_threshold;
+      return of_brought_in(*record, "largest_step_gain").value_or(0) > step_gain_threshold;
     });
     add_row(table, group_place(all, shared),
             {all.size(), with_status(all, "refused").size(), with_status(all, "diverged").size(),
@@ -205,7 +207,7 @@ Table energy_trends_table(const StudyResults& results) {
       results, "energy_trends", "One method: how its energy behaves as the step shrinks.", shared,
       {{"steps", "1", "Steps that finished."},
        {"finest_step", "s", "The smallest of them."},
-       {"ratio", "1", "Energy at the end over that at the start, at the finest step."},
+       {"ratio", "1", "Energy at the end over that brought in, at the finest step."},
        {"noise_floor", "1", "The largest noise floor of these cases; see energy_ends.csv."},
        {"first_change", "1",
         "Distance of the ratio from 1 at the coarsest step; empty where energy is not to be kept."},
@@ -225,7 +227,7 @@ Table energy_trends_table(const StudyResults& results) {
     std::vector<double> steps, ratios;
     double noise = 0;
     for (const auto& [step, record] : by_step) {
-      const auto ratio = record->status == "done" ? measure(*record, "energy_ratio") : std::nullopt;
+      const auto ratio = record->status == "done" ? measure(*record, "energy_left") : std::nullopt;
       if (!ratio) continue;
       steps.push_back(step);
       ratios.push_back(*ratio);
@@ -256,13 +258,13 @@ Table choice_worth_table(const StudyResults& results) {
     if (varies(results, column))
       for (const std::string& choice : {axis_role(column), column})
         if (std::find(choices.begin(), choices.end(), choice) == choices.end()) choices.push_back(choice);
-  const bool ratios = extent_of(done, measured("energy_ratio")).count > 0;
+  const bool ratios = extent_of(done, measured("energy_left")).count > 0;
   for (const std::string& choice : choices) {
     std::vector<std::string> others;
     for (const std::string& column : results.columns)
       if (column != choice && axis_role(column) != choice) others.push_back(column);
     const std::vector<Cases> groups = groups_of(done, others);
-    for (const std::string name : {ratios ? "energy_ratio" : "energy_end", "tip_displacement_end"}) {
+    for (const std::string name : {ratios ? "energy_left" : "energy_end", "tip_displacement_end"}) {
       std::vector<double> spreads;
       for (const Cases& group : groups)
         if (const Extent extent = extent_of(group, measured(name)); extent.count > 1)

@@ -41,11 +41,14 @@ class Sampler {
                           static_cast<double>(contact.active)};
     for (const double value : row)
       if (!std::isfinite(value)) return;
+    largest_tip_ = std::max(largest_tip_, std::abs(marcher.tip(0)));
     for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
   }
   Curve finish() { return std::move(curve_); }
+  double largest_tip() const { return largest_tip_; }
 
  private:
+  double largest_tip_ = 0;
   Curve curve_;
 };
 
@@ -64,7 +67,13 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   }
   put("energy_start", start);
   put("energy_end", end);
-  if (start > 0) put("energy_ratio", end / start);
+  const double brought_in = energy.brought_in(), round_off = 0x1p-52 * static_cast<double>(record.steps);
+  // A start that round-off of the run may be larger than is none.
+  if (start > round_off * brought_in) put("energy_ratio", end / start);
+  if (balances || !loads) {
+    put("energy_brought_in", brought_in);
+    if (brought_in > 0) put("energy_left", end / brought_in);
+  }
   if (balances || !loads) put("largest_step_gain", energy.largest_step_gain);
   if (!balances)
     record.notes.push_back(
@@ -79,6 +88,7 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     put("work_of_loads", energy.work_of_loads);
     // What the stops give back (a spring's potential) is not dissipated.
     put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
+    put("stored_at_stops", energy.last.contact - energy.first.contact);
     put("balance_residual", energy.balance_residual());
   }
   put("projection_energy", problem.projection_energy);
@@ -159,6 +169,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   else
     record_early_end(record, marcher, prepared.steps, budget);
   fill_measures(record, marcher, audit, *problem);
+  put_measure(record, "largest_tip_displacement", sampler.largest_tip());
   if (forces.told()) {
     put_measure(record, "contact_force_mean", forces.mean());
     put_measure(record, "contact_force_deviation", forces.deviation());

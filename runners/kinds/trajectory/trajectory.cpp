@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runners/kinds/tables_of_cases.hpp"
@@ -20,41 +21,56 @@ std::vector<MeasureInfo> trajectory_measures() {
   using Of = MeasureInfo::Of;
   return {
       {"scheme_energy_start", "J", "The scheme's own discrete energy after its start rule, where it declares one.",
-       Of::motion, true},
-      {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step.", Of::motion, true},
+       Of::motion, true, "energy_brought_in"},
+      {"scheme_energy_end", "J", "The scheme's own discrete energy after the last step.", Of::motion, true,
+       "energy_brought_in"},
       {"energy_start", "J",
-       "The common mechanical energy ½vᵀMv + ½qᵀKq plus the contact potential, where the scheme's velocity stands: at "
-       "t = 0, "
-       "or in the middle of the first sub-step where the velocity is a mean over it.",
-       Of::motion, true},
+       "The common mechanical energy ½vᵀMv + ½qᵀKq plus the contact potential of the initial state, at t = 0.",
+       Of::motion, true, "energy_brought_in"},
       {"energy_end", "J",
-       "The common mechanical energy at the end of the last step, or in the middle of its last sub-step."},
-      {"energy_ratio", "1", "Common energy at the end divided by that at the start."},
+       "The common mechanical energy at the end of the last step, or in the middle of its last sub-step.", Of::motion,
+       false, "energy_brought_in"},
+      {"energy_ratio", "1",
+       "Common energy at the end divided by that at the start; none where that is 0 or of the size of round-off.",
+       Of::motion, true},
+      {"energy_brought_in", "J",
+       "The common energy at the start, and what the loads brought in over the run beyond what they took.", Of::motion,
+       true},
+      {"energy_left", "1", "Common energy at the end divided by the energy that was brought in.", Of::motion, false,
+       "1"},
       {"largest_step_gain", "J",
        "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
-       "work of the loads."},
+       "work of the loads.",
+       Of::motion, false, "energy_brought_in"},
       {"drift_per_impact", "J",
-       "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true},
-      {"work_of_damping", "J", "Energy taken out by the viscous forces over the run."},
+       "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true,
+       "energy_brought_in"},
+      {"work_of_damping", "J", "Energy taken out by the viscous forces over the run.", Of::motion, false,
+       "energy_brought_in"},
       {"work_of_loads", "J",
        "Energy brought in by the distributed load and by the moving support over the run, in the frame of the clamp.",
-       Of::motion, true},
+       Of::motion, true, "energy_brought_in"},
       {"dissipated_at_contact", "J",
-       "Energy taken out by the contact efforts over the run, less what springs at the stops still store."},
+       "Energy taken out by the contact efforts over the run, less what springs at the stops still store.", Of::motion,
+       false, "energy_brought_in"},
+      {"stored_at_stops", "J", "Energy that springs at the stops hold at the end beyond that at the start.", Of::motion,
+       true, "energy_brought_in"},
       {"balance_residual", "J",
        "What the balance of the scheme's own energy fails to close by: change − loads + damping + losses that the "
        "scheme "
        "declares − work of the stops; "
        "round-off × steps "
-       "where the scheme has an exact balance."},
+       "where the scheme has an exact balance.",
+       Of::motion, false, "energy_brought_in"},
       {"projection_energy", "J",
        "Energy after minus before the projection of the initial state on the constraint of a singular mass.",
-       Of::motion, true},
+       Of::motion, true, "energy_brought_in"},
       {"kernel_energy", "J",
        "Energy of the initial state in the kernel of a singular mass, which no inertia holds: lost or left ringing at "
        "any step, 0 after projection.",
-       Of::motion, true},
-      {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop."},
+       Of::motion, true, "energy_brought_in"},
+      {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop.", Of::motion, false,
+       "largest_tip_displacement"},
       {"impacts", "1", "Number of times that contact began: no active point in one sub-step, some in the next."},
       {"contact_instants", "1", "Number of instants of contact (sub-steps) at which some point was closed.", Of::motion,
        true},
@@ -75,14 +91,19 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"law_iterations", "1", "Most iterations that one solve of the contact law took."},
       {"dissipated_by_law", "J",
        "Energy that a compliant law itself took out over the run, by the power that it reports: the share of a damper "
-       "in what is dissipated at contact."},
+       "in what is dissipated at contact.",
+       Of::motion, false, "energy_brought_in"},
       {"dissipated_by_scheme", "J",
        "Energy that the scheme itself took out over the run, apart from damping and stops: numerical damping, where "
        "the "
-       "scheme declares its losses."},
+       "scheme declares its losses.",
+       Of::motion, false, "energy_brought_in"},
       {"first_impact", "s", "Time at which a contact point first closed.", Of::motion, true},
       {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
-      {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run."},
+      {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run.", Of::motion, false,
+       "largest_tip_displacement"},
+      {"largest_tip_displacement", "m", "Largest absolute displacement of the tip among the samples of the run.",
+       Of::motion, true},
       {"microseconds_per_step", "µs",
        "Processor time of the marching, energy audit of every step included, divided by the number of steps.",
        Of::computation},
@@ -106,7 +127,11 @@ std::string energies_text(const CaseRecord& record) {
   auto end = measure(record, "energy_end");
   if (start && end) {
     std::string text = fmt::format("energy {:.4g} J → {:.4g} J", *start, *end);
-    if (*start != 0) text += fmt::format(" ({})", signed_percent((*end - *start) / std::abs(*start)));
+    const auto brought_in = measure(record, "energy_brought_in"), left = measure(record, "energy_left");
+    if (brought_in && *brought_in > *start)
+      text += fmt::format(", {:.4g} J brought in by loads", *brought_in - *start);
+    else if (left)
+      text += fmt::format(" ({})", signed_percent(*left - 1));
     parts.push_back(text);
   }
   if (const auto impacts = measure(record, "impacts"))
@@ -136,13 +161,30 @@ void check_window(const Json& study) {
                                  study["duration"].get<double>()));
 }
 
+std::vector<std::string> measure_names(const std::vector<MeasureInfo>& measures) {
+  std::vector<std::string> names;
+  for (const MeasureInfo& info : measures) names.emplace_back(info.name);
+  return names;
+}
+
+/// Where loads bring energy in, what is left of it at the end says little: what went at the stops is asked for.
+std::vector<std::string> observed_energies(const StudyResults& results) {
+  const bool driven = std::any_of(results.cases.begin(), results.cases.end(), [](const CaseRecord& record) {
+    return measure(record, "work_of_loads").value_or(0) != 0;
+  });
+  return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
+}
+
 }  // namespace
 
 Kind trajectory_kind() {
   Kind kind;
   kind.format.name = "trajectory";
   kind.format.text = "Each case marches its scene once.";
-  kind.format.keys = {keys::step(), keys::duration(), keys::samples(), keys::optional(window_key()), keys::budget()};
+  kind.measures = trajectory_measures();
+  kind.format.keys = {keys::step(),    keys::duration(),
+                      keys::samples(), keys::optional(window_key()),
+                      keys::budget(),  keys::observe(measure_names(kind.measures))};
   kind.format.check = check_window;
   kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"window", "budget"}); };
   kind.plan = plan_case;
@@ -156,12 +198,12 @@ Kind trajectory_kind() {
   kind.tables = [](StudyResults& results) {
     collect_tables(results);
     for (Table table : {energy_ends_table(results), energy_by_mass_table(results), energy_trends_table(results),
-                        choice_worth_table(results)})
+                        energy_ledger_table(results), choice_worth_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   };
   kind.curve = curves_head();
   kind.outcome = energies_text;
-  kind.measures = trajectory_measures();
+  kind.observed = observed_energies;
   kind.measures_stand = true;
   kind.alone = minimal_study;
   kind.page = report::trajectory_page;

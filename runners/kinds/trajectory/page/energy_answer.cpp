@@ -55,7 +55,7 @@ std::vector<EnergyEnd> energy_ends(const CaseView& view) {
 
 std::string with_ratio(const CaseView& view, const EnergyEnd& end) {
   const std::string label = view.label(*end.record, view.varying_without({"step"}));
-  return fmt::format("<strong>{}</strong>, which ends at {} of its start",
+  return fmt::format("<strong>{}</strong>, which keeps {} of the energy brought in",
                      label.empty() ? "the only method" : escape(label), percent_text(end.ratio));
 }
 
@@ -92,12 +92,12 @@ std::string headline(const CaseView& view) {
   const std::string step = view.varies("step") ? fmt::format("With the finest step, {} s: ", exact_text(finest)) : "";
   std::string out = "<p class=\"lead\">" + step;
   if (keeps ? low.change == high.change : low.ratio == high.ratio)
-    out += fmt::format("{} at {} of its starting energy.",
+    out += fmt::format("{} with {} of the energy brought in.",
                        at_finest.size() == 1 ? "the one finished case ends" : "every case ends",
                        percent_text(at_finest.front().ratio));
   else if (keeps)
-    out += fmt::format("closest to its starting energy is {}{}; farthest is {}{}.", with_ratio(view, low),
-                       ties(at_finest, low), with_ratio(view, high), ties(at_finest, high));
+    out += fmt::format("closest to its start is {}{}; farthest is {}{}.", with_ratio(view, low), ties(at_finest, low),
+                       with_ratio(view, high), ties(at_finest, high));
   else
     out += fmt::format("the most energy is left by {}{}, the least by {}{}: {} of the larger.", with_ratio(view, high),
                        ties(at_finest, high), with_ratio(view, low), ties(at_finest, low),
@@ -110,7 +110,8 @@ std::string headline(const CaseView& view) {
   out += fmt::format(
       "</p>\n<p class=\"fine\">Noise floor of a case: the larger of 2<sup>−52</sup> × its number of steps and the "
       "residual of "
-      "its energy balance, relative to its starting energy; at most {} in these cases. Smaller differences are not "
+      "its energy balance, where that is exact, over the energy brought in; at most {} in these cases. Smaller "
+      "differences are not "
       "told from "
       "round-off.</p>\n",
       number_text(noise, 2));
@@ -159,7 +160,7 @@ class MassRow {
 
   std::string ends() const {
     if (count("finished") > 0) {
-      std::string text = fmt::format("over {} the energy ends at {} of its start",
+      std::string text = fmt::format("over {} the energy ends at {} of what was brought in",
                                      count_text(count("finished"), "finished case", "finished cases"),
                                      range_text(number("ratio_low").value_or(0), number("ratio_high").value_or(0)));
       if (const auto finest = number("finest_step"))
@@ -168,7 +169,7 @@ class MassRow {
       return text + ".";
     }
     if (count("ended") == 0) return "no finished case.";
-    return fmt::format("over {} the energy ends between {} and {} J (it starts from 0, so there is no ratio).",
+    return fmt::format("over {} the energy ends between {} and {} J (nothing was brought in, so there is no ratio).",
                        count_text(count("ended"), "finished case", "finished cases"),
                        number_text(number("end_low").value_or(0)), number_text(number("end_high").value_or(0)));
   }
@@ -177,18 +178,18 @@ class MassRow {
   std::string contact() const {
     const auto low = number("contact_low"), high = number("contact_high");
     if (!low || !high) return "";
-    return fmt::format(" Contact took {} to {} of the starting energy.", share_text(*low), share_text(*high));
+    return fmt::format(" Contact took {} to {} of the energy brought in.", share_text(*low), share_text(*high));
   }
 
   std::string gains() const {
     if (count("audited") == 0) return "";
     const double largest = number("largest_gain").value_or(0);
     if (count("gaining") == 0)
-      return fmt::format(" No step gains more than 1e-9 of the starting energy (largest: {} of it).",
+      return fmt::format(" No step gains more than 1e-9 of the energy brought in (largest: {} of it).",
                          number_text(largest, 2));
     const CaseRecord* record = view_.find(rows_.text(row_, "largest_gain_case"));
     const std::string label = record ? view_.label(*record) : "";
-    return fmt::format(" In {} of {} single steps gain energy, at most {} of the starting energy in one step{}.",
+    return fmt::format(" In {} of {} single steps gain energy, at most {} of the energy brought in in one step{}.",
                        count("gaining"), count_text(count("audited"), "case", "cases"), share_text(largest),
                        label.empty() ? "" : " (" + escape(label) + ")");
   }
@@ -261,8 +262,9 @@ std::string matrix(const CaseView& view) {
   if (steps.empty()) return "";
   const std::vector<CaseGroup> groups = view.group(view.all(), view.varying_without({"step"}));
   HtmlTable table(
-      fmt::format("Energy at the end over energy at the start, E(T)/E(0). Columns: step h (s), coarse to fine. {}",
-                  keeps ? "Bold: kept within the noise floor. Order: of |E(T)/E(0) − 1| between the two finest steps, "
+      fmt::format("Energy at the end over the energy brought in: that of the start, and what loads brought in. "
+                  "Columns: step h (s), coarse to fine. {}",
+                  keeps ? "Bold: kept within the noise floor. Order: of |ratio − 1| between the two finest steps, "
                           "where it falls."
                         : "Order: of the moves between neighbouring steps, from the three finest, where they shrink."),
       {{"method"}});
@@ -301,9 +303,9 @@ std::string choice_worth(const CaseView& view) {
     const std::string choice = worth.text(row, "choice"), measure = worth.text(row, "measure");
     if (choices.empty() || choices.back() != choice) choices.push_back(choice);
     (measure == "tip_displacement_end" ? tip : energy)[choice] = row;
-    ratios = ratios || measure == "energy_ratio";
+    ratios = ratios || measure == "energy_left";
   }
-  const std::string what = ratios ? "E(T)/E(0)" : "E(T) (J)";
+  const std::string what = ratios ? "energy left" : "E(T) (J)";
   HtmlTable table(
       "What each choice is worth: the spread of a result over the finished cases that differ in this choice alone. A "
       "method's name stands for the method with its parameters.",
@@ -342,8 +344,9 @@ std::string energy_answer(const CaseView& view) {
   if (view.with_status("done").empty()) return "";
   if (!derived(view, "energy_ends"))
     return "<p>These cases have no energy measures; their figures are in the table below.</p>\n";
-  return headline(view) + "<ul class=\"answer\">\n" + mass_sentences(view) + "</ul>\n" + work_sentence(view) +
-         matrix(view) + choice_worth(view);
+  return matrix(view) + "<details><summary>Energies of each mass matrix, and what each choice is worth</summary>\n" +
+         headline(view) + "<ul class=\"answer\">\n" + mass_sentences(view) + "</ul>\n" + work_sentence(view) +
+         choice_worth(view) + "</details>\n";
 }
 
 }  // namespace ricochet::report

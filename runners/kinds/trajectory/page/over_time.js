@@ -5,7 +5,7 @@
 
   // The scales of a column: as it is, as a ratio to the start, as the modulus of its change. Subtracting first keeps an unchanged value exactly 0.
   const scaled = { value: (y) => y, ratio: (y, start) => (1 / start) * y, change: (y, start) => Math.abs((1 / start) * (y - start)) };
-  const scaleNames = { ratio: ["E / E(0)", "1"], change: ["|E / E(0) − 1|", "1"] };
+  const scaleNames = { ratio: ["E / E_in", "1"], change: ["|E / E_in − 1|", "1"] };
   const startless = (curve, scale) => scale !== "value" && curve.start === null;   // no start to be compared with
   const valuesOf = (curve, scale) => (startless(curve, scale) ? [] : Float64Array.from(curve.values, (y) => scaled[scale](y, curve.start)));
 
@@ -33,7 +33,7 @@
     curvesOf(facet) {
       const out = [];
       for (const one of facet.cases) {
-        const curve = this.data.curve(one, this.subject.column), measured = measureOf(one, "energy_start"), start = curve && (measured === null ? curve.y[0] : measured);
+        const curve = this.data.curve(one, this.subject.column), measured = measureOf(one, "energy_brought_in"), start = curve && (measured === null ? curve.y[0] : measured);
         if (curve) out.push({ one, t: curve.x, values: curve.y, start: start > 0 ? start : null, ...this.look(one, this.view.colour(one)) });
       }
       // The finest last, on top of the others.
@@ -89,7 +89,7 @@
       const y = scale === "change" ? ricochet.logAxis(quantity, range, true) : ricochet.heightAxis(quantity, range), out = ricochet.view(x, quantity, ricochet.valueAxis(x, time, false), y, true);
       if (frame.own) out.notes.push(ricochet.ownScale);
       for (const curve of facet.curves) {
-        if (startless(curve, scale)) out.notes.push(curve.name + ": energy 0 at the start, so no ratio to it.");
+        if (startless(curve, scale)) out.notes.push(curve.name + ": no energy was brought in, so no ratio to it.");
         else this.draw(out, curve, scale, range);
       }
       const unseen = scale === "change" ? facet.curves.map((curve) => ({ curve, zeros: valuesOf(curve, scale).filter((value) => value === 0).length })).filter(({ zeros }) => zeros > 0) : [];

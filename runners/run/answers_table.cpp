@@ -1,0 +1,263 @@
+#include "runners/run/answers_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/statistics/choices.hpp>
+#include <ricochet/measure/statistics/quantiles.hpp>
+
+#include "runners/kinds/kind.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/run/choice_effects.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr double nearly_all = 0.9, tells = 0.8;
+
+/// What all groups of one choice and one measure say together.
+struct Said {
+  const ChoiceEffects* effects = nullptr;
+  std::string verdict, depends_on;
+  double median = 0, largest = 0;       ///< effects, over the scale
+  std::optional<double> step, mesh;     ///< median of what they leave open
+  const GroupEffect* widest = nullptr;  ///< the group with the largest effect of those that decide
+  std::string clause;                   ///< of a sentence about the choice
+};
+
+std::string percent(double share) {
+  return report::number_text(100 * share, 2) + " %";
+}
+
+std::string of_scale(const ChoiceEffects& effects, double share) {
+  return percent(share) + (effects.scale.empty() ? "" : " " + effects.scale);
+}
+
+/// The group whose effect stands in the middle, so that its figures belong together.
+double median_of(std::vector<double> values) {
+  return lower_median(values);
+}
+
+std::optional<double> median_open(const ChoiceEffects& effects, std::optional<double> ResolvedEffect::*move) {
+  std::vector<double> known;
+  for (const GroupEffect& group : effects.groups)
+    if (group.found.*move) known.push_back(*(group.found.*move));
+  return known.empty() ? std::nullopt : std::optional(median_of(known));
+}
+
+/// The other choice that tells the groups that decide from those that do not; "" where none does.
+std::string separating_choice(const StudyResults& results, const ChoiceEffects& effects) {
+  std::vector<int> labels;
+  for (const GroupEffect& group : effects.groups) labels.push_back(static_cast<int>(group.found.verdict));
+  std::vector<ChoiceAxis> axes;
+  for (const std::string& column : results.columns) {
+    if (column == "step" || column == "elements" || axis_role(column) == effects.choice) continue;
+    ChoiceAxis axis_levels{column, {}};
+    for (const GroupEffect& group : effects.groups)
+      axis_levels.levels.push_back(axis(*group.levels.front(), column).text());
+    axes.push_back(std::move(axis_levels));
+  }
+  const DecidingChoice found = deciding_choice(labels, axes);
+  return found.share >= tells ? found.name : "";
+}
+
+/// "against 0.6 % from the step and 0.1 % from the mesh".
+std::string against(const Said& said) {
+  std::string out;
+  if (said.step) out = percent(*said.step) + " from the step";
+  if (said.mesh) out += (out.empty() ? "" : " and ") + percent(*said.mesh) + " from the mesh";
+  return out.empty() ? "" : "against " + out;
+}
+
+/// Down to 1, 2 or 5 times a power of ten.
+double rounded_down(double value) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  const double digit = value / decade;
+  return decade * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
+}
+
+/// "; refine h to 2e-6 s": where what is open, if it falls with h (or with the element), is a third of the effect.
+std::string next_sizes(const std::vector<const Said*>& same) {
+  double step = 0, elements = 0, open_step = 0, open_mesh = 0;
+  for (const Said* said : same)
+    for (const GroupEffect& group : said->effects->groups) {
+      if (group.found.verdict != EffectVerdict::unresolved) continue;
+      const double wanted = std::max(answer_threshold, group.found.effect) / 3;
+      if (group.step > 0 && (step == 0 || group.step < step)) step = group.step;
+      elements = std::max(elements, group.elements);
+      open_step = std::max(open_step, group.found.step.value_or(0) / wanted);
+      open_mesh = std::max(open_mesh, group.found.mesh.value_or(0) / wanted);
+    }
+  std::string out;
+  if (open_step > 1 && step > 0)
+    out = fmt::format("refine h to {} s", report::number_text(rounded_down(step / open_step), 3));
+  if (open_mesh > 1 && elements > 0)
+    out += fmt::format("{} the mesh to {} elements", out.empty() ? "refine" : " and",
+                       report::number_text(std::ceil(elements * open_mesh), 2));
+  return out.empty() ? "" : "; " + out + " (if what is open falls with them)";
+}
+
+Said said_of(const StudyResults& results, const ChoiceEffects& effects) {
+  Said out;
+  out.effects = &effects;
+  std::vector<double> sizes;
+  for (const GroupEffect& group : effects.groups) sizes.push_back(group.found.effect);
+  out.median = median_of(sizes);
+  out.largest = *std::max_element(sizes.begin(), sizes.end());
+  out.step = median_open(effects, &ResolvedEffect::step);
+  out.mesh = median_open(effects, &ResolvedEffect::mesh);
+  for (const GroupEffect& group : effects.groups)
+    if (!out.widest || group.found.effect > out.widest->found.effect) out.widest = &group;
+  const std::size_t observed = effects.groups.size() - effects.count(EffectVerdict::not_observed);
+  const auto share = [&](EffectVerdict verdict) {
+    return static_cast<double>(effects.count(verdict)) / static_cast<double>(observed);
+  };
+  EffectVerdict verdict = EffectVerdict::not_observed;
+  if (observed == 0)
+    verdict = EffectVerdict::not_observed;
+  else if (share(EffectVerdict::untold) > 0.5)
+    verdict = EffectVerdict::untold;
+  else if (share(EffectVerdict::decides) >= nearly_all)
+    verdict = EffectVerdict::decides;
+  else if (share(EffectVerdict::no_matter) >= nearly_all)
+    verdict = EffectVerdict::no_matter;
+  else if (share(EffectVerdict::unresolved) + share(EffectVerdict::untold) > 0.5)
+    verdict = EffectVerdict::unresolved;
+  else
+    out.depends_on = separating_choice(results, effects);
+  out.verdict = verdict == EffectVerdict::not_observed && observed > 0 ? "depends" : effect_word(verdict);
+  return out;
+}
+
+std::string range_of(const Said& said) {
+  const ChoiceEffects& effects = *said.effects;
+  if (effects.groups.size() < 2 || said.largest <= 1.05 * said.median) return of_scale(effects, said.median);
+  return fmt::format("{} (median of {} combinations; up to {})", of_scale(effects, said.median), effects.groups.size(),
+                     percent(said.largest));
+}
+
+/// "least with consistent, most with singular", where the choice moves the measure most.
+std::string extremes(const report::CaseView& view, const Said& said) {
+  std::vector<std::string> own;
+  for (const std::string& column : view.varying())
+    if (axis_role(column) == said.effects->choice) own.push_back(column);
+  const GroupEffect& group = *said.widest;
+  const std::string least = view.label(*group.levels[group.found.least], own),
+                    most = view.label(*group.levels[group.found.most], own);
+  return fmt::format("least with {}, most with {}", least, most);
+}
+
+std::string as_sentence(std::string text) {
+  // The first letter of a choice is one of ASCII.
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text + ".";
+}
+
+std::string clause(const report::CaseView& view, const Said& said) {
+  const ChoiceEffects& effects = *said.effects;
+  const std::string name = report::in_words(effects.measure);
+  if (said.verdict == "not observed") return name;
+  if (said.verdict == "not told") return fmt::format("{} by {}", name, range_of(said));
+  if (said.verdict == "does not matter") return fmt::format("{} {} {}", name, range_of(said), against(said));
+  if (said.verdict == "decides")
+    return fmt::format("{} by {} {} ({})", name, range_of(said), against(said), extremes(view, said));
+  if (said.verdict == "not resolved") return fmt::format("{} by {} {}", name, range_of(said), against(said));
+  return fmt::format("{} in {} of {} combinations by up to {}", name, effects.count(EffectVerdict::decides),
+                     effects.groups.size(), of_scale(effects, said.largest));
+}
+
+/// A sentence on what has the same choice and verdict.
+std::string sentence_of(const std::vector<const Said*>& same) {
+  const Said& first = *same.front();
+  const std::string name = spoken_choice(first.effects->choice);
+  std::string clauses;
+  for (const Said* said : same) clauses += (clauses.empty() ? "" : "; ") + said->clause;
+  std::string out;
+  if (first.verdict == "decides")
+    out = fmt::format("{} decides: {}", name, clauses);
+  else if (first.verdict == "does not matter")
+    out = fmt::format("{} does not matter here: {}", name, clauses);
+  else if (first.verdict == "not resolved")
+    out = fmt::format("what {} changes is not resolved: {}{}", name, clauses, next_sizes(same));
+  else if (first.verdict == "not told")
+    out = fmt::format("{} changes {}; with one step and one mesh nothing tells whether these would: give two of each",
+                      name, clauses);
+  else if (first.verdict == "depends")
+    out = fmt::format("{} decides in part{}: {}", name,
+                      first.depends_on.empty() ? "" : ", as " + spoken_choice(first.depends_on) + " tells", clauses);
+  else
+    out = fmt::format("{} changes nothing that is observed: {} 0 or round-off throughout", name, clauses);
+  return as_sentence(out);
+}
+
+Table choices_said(const StudyResults& results) {
+  Table table = answers_head();
+  const std::vector<ChoiceEffects> all = choice_effects(results, observed_measures(results));
+  const report::CaseView view(results);
+  std::vector<Said> said;
+  for (const ChoiceEffects& effects : all) {
+    said.push_back(said_of(results, effects));
+    said.back().clause = clause(view, said.back());
+  }
+  // What decides first, by size; then what is open; then what does not matter.
+  const auto rank = [](const Said& one) {
+    static const std::vector<std::string> order = {"decides",         "depends",  "not resolved",
+                                                   "does not matter", "not told", "not observed"};
+    return std::find(order.begin(), order.end(), one.verdict) - order.begin();
+  };
+  std::stable_sort(said.begin(), said.end(), [&](const Said& a, const Said& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : a.verdict == "decides" && a.median > b.median;
+  });
+  std::vector<bool> told(said.size(), false);
+  for (std::size_t k = 0; k < said.size(); ++k) {
+    const Said& one = said[k];
+    std::vector<const Said*> same;
+    for (std::size_t other = k; other < said.size() && !told[k]; ++other)
+      if (said[other].effects->choice == one.effects->choice && said[other].verdict == one.verdict &&
+          said[other].depends_on == one.depends_on)
+        same.push_back(&said[other]);
+    for (const Said* said_here : same) told[static_cast<std::size_t>(said_here - said.data())] = true;
+    const Cell line = same.empty() ? Cell() : Cell(sentence_of(same));
+    table.rows.push_back({one.effects->choice, one.effects->measure, one.verdict, one.median, one.largest,
+                          one.effects->scale, one.step, one.mesh, one.effects->groups.size(), one.depends_on, line});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<std::string> observed_measures(const StudyResults& results) {
+  std::vector<std::string> names;
+  if (const auto asked = results.study.find("observe"); asked != results.study.end() && asked->is_array())
+    for (const auto& name : *asked) names.push_back(name.get<std::string>());
+  const Kind* kind = find_kind(results.kind);
+  if (names.empty() && kind && kind->observed) names = kind->observed(results);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::none_of(results.cases.begin(), results.cases.end(),
+                        [&](const CaseRecord& one) { return one.status == "done" && measure(one, name); });
+  });
+  return names;
+}
+
+Table answers_table(const StudyResults& results) {
+  const Kind* kind = find_kind(results.kind);
+  return kind && kind->answers ? kind->answers(results) : choices_said(results);
+}
+
+std::vector<std::string> answer_lines(const StudyResults& results) {
+  std::vector<std::string> lines;
+  const Table* table = find_table(results.derived, "answers");
+  if (!table) return lines;
+  const TableReader rows(*table);
+  const std::size_t column = rows.column("sentence");
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (std::string text = rows.text(row, column); !text.empty()) lines.push_back(std::move(text));
+  return lines;
+}
+
+}  // namespace ricochet

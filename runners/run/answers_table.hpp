@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+namespace ricochet {
+
+/// answers: what the study says to its question, in the order in which it is read. Of a kind that answers itself its
+/// rows; else one row per choice and observed measure.
+Table answers_table(const StudyResults& results);
+
+/// The sentences of that table, a few at most.
+std::vector<std::string> answer_lines(const StudyResults& results);
+
+/// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
+/// finished case has.
+std::vector<std::string> observed_measures(const StudyResults& results);
+
+}  // namespace ricochet

@@ -1,0 +1,142 @@
+#include "runners/run/choice_effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runners/study/axis_meaning.hpp"
+
+namespace ricochet {
+namespace {
+
+bool refines(const std::string& column) {
+  return column == "step" || column == "elements";
+}
+
+double number_on(const CaseRecord& record, const char* column) {
+  return axis(record, column).number().value_or(0);
+}
+
+/// A measure over its scale; what has none is scaled by the group later.
+struct Scaling {
+  explicit Scaling(const std::string& measure_name) : name(measure_name) {
+    const MeasureInfo* info = measure_info(name);
+    scale = info ? info->scale : "";
+    share = scale == "1";
+    if (share) scale.clear();
+  }
+  std::optional<double> of(const CaseRecord& record) const {
+    const auto value = measure(record, name);
+    if (!value || scale.empty()) return value;
+    const auto size = measure(record, scale);
+    return size && *size > 0 ? std::optional(*value / *size) : std::nullopt;
+  }
+  /// Whether values of a group still are to be divided by the largest of them.
+  bool own() const { return scale.empty() && !share; }
+  std::string words() const {
+    if (own()) return "of the larger";
+    if (share) return "";
+    std::string text = scale;
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return "of the " + text;
+  }
+  std::string name, scale;
+  bool share = false;
+};
+
+/// One level: its cases with a value, and the finest of them.
+struct FinestLevel {
+  std::vector<std::pair<const CaseRecord*, double>> cases;
+
+  const CaseRecord* finest() const {
+    return std::max_element(
+               cases.begin(), cases.end(),
+               [](const auto& a, const auto& b) {
+                 const double mesh_a = number_on(*a.first, "elements"), mesh_b = number_on(*b.first, "elements");
+                 return mesh_a != mesh_b ? mesh_a < mesh_b : number_on(*a.first, "step") > number_on(*b.first, "step");
+               })
+        ->first;
+  }
+  double value(const CaseRecord* record) const {
+    return std::find_if(cases.begin(), cases.end(), [&](const auto& one) { return one.first == record; })->second;
+  }
+  /// By how much the value moved from the next coarser size of `refined` to the finest, all else being the same.
+  std::optional<double> last_move(const char* refined, const char* other) const {
+    const CaseRecord* best = finest();
+    const bool step = std::string_view(refined) == "step";
+    const double size = number_on(*best, refined);
+    std::optional<double> next, move;
+    for (const auto& [record, own] : cases) {
+      const double at = number_on(*record, refined);
+      if (number_on(*record, other) != number_on(*best, other) || (step ? at <= size : at >= size)) continue;
+      if (next && (step ? at >= *next : at <= *next)) continue;
+      next = at;
+      move = std::abs(own - value(best));
+    }
+    return move;
+  }
+};
+
+GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
+  GroupEffect out;
+  double largest = 0, floor = 0;
+  for (const FinestLevel& level : levels) largest = std::max(largest, std::abs(level.value(level.finest())));
+  if (own_scale && largest > 0)
+    for (FinestLevel& level : levels)
+      for (auto& one : level.cases) one.second /= largest;
+  std::vector<LevelValue> values;
+  for (const FinestLevel& level : levels) {
+    const CaseRecord* best = level.finest();
+    out.levels.push_back(best);
+    out.elements = std::max(out.elements, number_on(*best, "elements"));
+    const double step = number_on(*best, "step");
+    if (out.step == 0 || (step > 0 && step < out.step)) out.step = step;
+    values.push_back({level.value(best), level.last_move("step", "elements"), level.last_move("elements", "step")});
+    // A measure that is its own scale is known to all its digits, but for those that a run loses.
+    if (!own_scale) floor = std::max(floor, 0x1p-52 * static_cast<double>(best->steps));
+  }
+  out.found = resolved_effect(values, answer_threshold, floor);
+  return out;
+}
+
+}  // namespace
+
+std::size_t ChoiceEffects::count(EffectVerdict verdict) const {
+  return static_cast<std::size_t>(std::count_if(
+      groups.begin(), groups.end(), [&](const GroupEffect& group) { return group.found.verdict == verdict; }));
+}
+
+std::vector<ChoiceEffects> choice_effects(const StudyResults& results, const std::vector<std::string>& measures) {
+  const Cases done = with_status(all_cases(results), "done");
+  std::vector<std::string> choices;
+  for (const std::string& column : results.columns) {
+    const std::string choice = axis_role(column);
+    if (refines(column) || std::find(choices.begin(), choices.end(), choice) != choices.end()) continue;
+    choices.push_back(choice);
+  }
+  std::vector<ChoiceEffects> out;
+  for (const std::string& choice : choices) {
+    std::vector<std::string> own, others;
+    for (const std::string& column : results.columns)
+      if (!refines(column)) (axis_role(column) == choice ? own : others).push_back(column);
+    const std::vector<Cases> groups = groups_of(done, others);
+    for (const std::string& name : measures) {
+      const Scaling scaling(name);
+      ChoiceEffects effects{choice, name, scaling.words(), {}};
+      for (const Cases& group : groups) {
+        std::vector<FinestLevel> levels;
+        for (const Cases& cases : groups_of(group, own)) {
+          FinestLevel level;
+          for (const CaseRecord* record : cases)
+            if (const auto value = scaling.of(*record)) level.cases.emplace_back(record, *value);
+          if (!level.cases.empty()) levels.push_back(std::move(level));
+        }
+        if (levels.size() > 1) effects.groups.push_back(group_effect(levels, scaling.own()));
+      }
+      if (!effects.groups.empty()) out.push_back(std::move(effects));
+    }
+  }
+  return out;
+}
+
+}  // namespace ricochet
