@@ -145,6 +145,12 @@ std::string in_words(std::string name) {
   return name;
 }
 
+std::string list_text(std::vector<std::string> items, size_t most) {
+  const size_t all = items.size();
+  items.resize(std::min(all, most));
+  return fmt::format("{}{}", fmt::join(items, ", "), all > most ? fmt::format(" and {} more", all - most) : "");
+}
+
 std::string count_text(size_t count, std::string_view singular, std::string_view plural) {
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }

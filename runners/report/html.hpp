@@ -36,6 +36,8 @@ std::string status_mark(const std::string& status);
 
 /// The name of a column as words: "energy_end" → "energy end".
 std::string in_words(std::string name);
+/// "a, b, c and 4 more".
+std::string list_text(std::vector<std::string> items, size_t most = 6);
 
 /// "1 case", "3 cases".
 std::string count_text(size_t count, std::string_view singular, std::string_view plural);

@@ -31,6 +31,7 @@ struct Said {
 };
 
 std::string percent(double share) {
+  if (share >= 1) return fmt::format("{:.0f} %", 100 * share);
   return report::number_text(100 * share, 2) + " %";
 }
 

@@ -139,6 +139,24 @@ std::vector<MotionError> motion_errors(const SampledMotion& motion, const Sample
   return errors;
 }
 
+std::vector<MotionSize> motion_sizes(const SampledMotion& reference, const SampleGrid& grid, double horizon,
+                                     const std::vector<std::string>& names) {
+  SampledMotion rest = reference;
+  for (auto* series :
+       {&rest.tip, &rest.tip_velocity, &rest.energy, &rest.impulse, &rest.displacement, &rest.strain, &rest.velocity})
+    std::fill(series->begin(), series->end(), 0.0);
+  double displacement = 0;
+  for (const auto* series : {&reference.tip, &reference.displacement})
+    for (const double value : *series) displacement = std::max(displacement, std::abs(value));
+  std::vector<MotionSize> sizes;
+  for (const MotionError& error : motion_errors(rest, reference, grid, horizon, names)) {
+    const double size = error.name == "impact-times" ? horizon : error.value.value_or(0);
+    const bool tip = error.name == "tip-linf" || error.name == "tip-l2";
+    sizes.push_back({size, std::numeric_limits<double>::epsilon() * (tip ? displacement : size)});
+  }
+  return sizes;
+}
+
 double common_horizon(const SampledMotion& a, const SampledMotion& b, const SampleGrid& grid, double share) {
   double size = 0;
   for (const double tip : a.tip) size = std::max(size, std::abs(tip));

@@ -30,6 +30,16 @@ struct MotionError {
 std::vector<MotionError> motion_errors(const SampledMotion& motion, const SampledMotion& reference,
                                        const SampleGrid& grid, double horizon, const std::vector<std::string>& names);
 
+/// How large the quantities are that errors are differences of.
+struct MotionSize {
+  double size = 0;        ///< what the error of a motion that stays at rest would be; of impact-times, the horizon
+  double resolution = 0;  ///< ε times the scale of what is read: differences below are round-off. For the tip, whose
+                          ///< own motion may be round-off, the largest displacement anywhere.
+};
+/// In the order of the names; see motion_errors(). Zero where the reference has no such quantity.
+std::vector<MotionSize> motion_sizes(const SampledMotion& reference, const SampleGrid& grid, double horizon,
+                                     const std::vector<std::string>& names);
+
 /// The time up to which two motions stay within `share` of the first one's largest tip displacement; the grid's last
 /// time when they always do.
 double common_horizon(const SampledMotion& a, const SampledMotion& b, const SampleGrid& grid, double share);

@@ -359,6 +359,7 @@ OrderFit fit_order(const std::vector<OrderPoint>& points, const OrderQuestion& q
   std::string span = span_text(points, out, question);
   if (w.from > 0) span += fmt::format("; {} coarser left as pre-asymptotic", w.from);
   if (w.to < logs.size()) span += fmt::format("; {} finer do not follow", logs.size() - w.to);
+  out.saturated = stops_falling || *out.high < falling;
   if (stops_falling)
     out.reason = fmt::format("the error stops falling at {:.2g}: something other than the {} dominates; {}",
                              std::exp(best->line.mean_y), question.refined, span);

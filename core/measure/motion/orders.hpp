@@ -56,6 +56,7 @@ struct OrderFit {
   std::size_t points = 0;                  ///< points used
   std::vector<std::size_t> left_out;       ///< dips inside the range, indices
   std::optional<double> gci;  ///< of the finest point used, in the unit of value (or e): see grid_convergence()
+  bool saturated = false;     ///< the errors do not fall over the range: the slope is no order
   OrderVerdict verdict = OrderVerdict::undecided;
   std::string reason;  ///< one sentence: why this verdict, which points
 };

@@ -39,6 +39,12 @@ Kind basins_kind() {
   kind.format.keys = basins_keys();
   kind.plan = plan_basins;
   kind.point = march_cell_again;
+  kind.answers = [](const StudyResults& results) {
+    Table table = answers_head();
+    for (const std::string& sentence : report::basins_said(report::CaseView(results)))
+      table.rows.push_back({{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, sentence});
+    return table;
+  };
   kind.page = report::basins_page;
   return kind;
 }

@@ -1,5 +1,6 @@
 #include "runners/kinds/bifurcation/bifurcation.hpp"
 
+#include "runners/kinds/bifurcation/bifurcation_answers.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/bifurcation/point.hpp"
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
@@ -49,6 +50,7 @@ Kind bifurcation_kind() {
   kind.format.keys = bifurcation_keys();
   kind.plan = plan_bifurcation;
   kind.measures = orbit_measures();
+  kind.answers = bifurcation_answers;
   kind.point = march_orbit_again;
   kind.page = report::bifurcation_page;
   return kind;

@@ -76,6 +76,11 @@ std::vector<MeasureInfo> comparison_measures() {
       {"reference_of_mesh", "1",
        "1 where the reference has the case's own mesh, so that the error is the time scheme's; 0 where it has none.",
        Of::computation},
+      {"reference_of_law", "1",
+       "1 where the reference has the case's own stops; 0 where it has rigid ones and the case a compliant law, so "
+       "that "
+       "the error is the law's as well.",
+       Of::computation},
       {"declared_order", "1", "Order in the step that the scheme declares for such a run.", Of::computation},
       {"error.tip-linf", "m", "Largest difference of the tip's displacement from the reference, over the samples."},
       {"error.tip-l2", "m", "Root mean square over time of the difference of the tip's displacement."},
@@ -105,6 +110,21 @@ std::vector<MeasureInfo> comparison_measures() {
        Of::computation},
       {"floor.impulse", "N s", "What the reference itself is uncertain by: below it the error says nothing.",
        Of::computation},
+      {"size.tip-linf", "m", "What this error would be of a motion at rest: errors over it are relative ones.",
+       Of::computation, true},
+      {"size.tip-l2", "m", "What this error would be of a motion at rest: errors over it are relative ones.",
+       Of::computation, true},
+      {"size.displacement-l2", "m^3/2",
+       "What this error would be of a motion at rest: errors over it are relative ones.", Of::computation, true},
+      {"size.displacement-h2", "m^-1/2",
+       "What this error would be of a motion at rest: errors over it are relative ones.", Of::computation, true},
+      {"size.velocity-l2", "m^3/2/s", "What this error would be of a motion at rest: errors over it are relative ones.",
+       Of::computation, true},
+      {"size.energy", "J", "What this error would be of a motion at rest: errors over it are relative ones.",
+       Of::computation, true},
+      {"size.impact-times", "s", "The horizon: errors over it are relative ones.", Of::computation, true},
+      {"size.impulse", "N s", "What this error would be of a motion at rest: errors over it are relative ones.",
+       Of::computation, true},
   };
 }
 

@@ -62,6 +62,13 @@ bool meshed(const StudyResults& results) {
   return results.study.at("scene").at("structure").at("type") != "oscillator";
 }
 
+/// What errors that do not fall may have met.
+std::string saturates_at(const OrderQuestion& question, bool reference_of_law) {
+  const bool other = question.other_unknown || question.other_error > 0;
+  if (reference_of_law) return other ? question.other : "not told";
+  return other ? "the law or " + question.other.substr(4) : "the law";
+}
+
 }  // namespace
 
 Table errors_table(const StudyResults& results) {
@@ -94,7 +101,11 @@ Table orders_table(const StudyResults& results) {
        {"high", "1", "Upper end of the 95 % interval of the order."},
        {"declared", "1", "The order in the step that the scheme declares; empty where it declares none."},
        {"verdict", "", "Whether the fit confirms the declared order, refutes it, or cannot decide."},
-       {"reason", "", "What the verdict rests on: which points were used, and what was in the way."}});
+       {"reason", "", "What the verdict rests on: which points were used, and what was in the way."},
+       {"saturates_at", "",
+        "Where the errors do not fall, so that there is no order: what may keep them up. The law: stops of the "
+        "reference "
+        "are rigid and those of the case are not; the mesh, or the step: the reference has none. Not told: neither."}});
   for (const std::string refined : {"step", "elements"}) {
     const std::string other = refined == "step" ? "elements" : "step";
     std::set<double> sizes;
@@ -131,13 +142,16 @@ Table orders_table(const StudyResults& results) {
         question.other_unknown = single_valued(results, other) && meshed(results) &&
                                  (refined == "elements" || measure(*finest, "reference_of_mesh") != 1.0);
         const OrderFit fit = fit_order(points, question);
+        const bool of_law = measure(*finest, "reference_of_law") != 0.0;
         Row row = {finest->id};
         for (const std::string& column : without(results.columns, "step"))
           row.push_back(column == refined ? Cell() : axis(first, column));
         const std::string gci =
             fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "";
-        row.insert(row.end(), {refined, name, fit.order, fit.low, fit.high, question.declared,
-                               verdict_word(fit.verdict), fit.reason + gci});
+        const auto slope = [&](const std::optional<double>& value) { return fit.saturated ? Cell() : Cell(value); };
+        row.insert(row.end(), {refined, name, slope(fit.order), slope(fit.low), slope(fit.high), question.declared,
+                               verdict_word(fit.verdict), fit.reason + gci,
+                               fit.saturated ? Cell(saturates_at(question, of_law)) : Cell()});
         table.rows.push_back(std::move(row));
       }
     }

@@ -15,6 +15,7 @@ namespace {
 struct TimedError {
   const CaseRecord* record = nullptr;
   double known = 0;                       ///< the error, or its floor if that is larger; > 0
+  double size = 0;                        ///< what a motion at rest has; 0 where it is not known
   double seconds = 0, low = 0, high = 0;  ///< run time: median, fastest, slowest
 };
 
@@ -38,8 +39,12 @@ std::vector<std::string> columns_that(const StudyResults& results, Wanted wanted
 std::optional<TimedError> timed_error(const CaseRecord& record, const std::string& error) {
   const auto value = measure(record, "error." + error), seconds = measure(record, "timed_seconds");
   if (record.status != "done" || !value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
-  return TimedError{&record, std::max(*value, measure(record, "floor." + error).value_or(0)), *seconds,
-                    measure(record, "timed_low").value_or(*seconds), measure(record, "timed_high").value_or(*seconds)};
+  return TimedError{&record,
+                    std::max(*value, measure(record, "floor." + error).value_or(0)),
+                    measure(record, "size." + error).value_or(0),
+                    *seconds,
+                    measure(record, "timed_low").value_or(*seconds),
+                    measure(record, "timed_high").value_or(*seconds)};
 }
 
 // The fastest case of each method that is precise enough, the fastest method first.
@@ -68,7 +73,7 @@ Table precision_targets_table(const StudyResults& results) {
               {}};
   table.columns = joined(joined(std::move(table.columns), axis_columns(results, scene)),
                          {{"error", "", "Which error: a quantity of the motion and how its difference is measured."},
-                          {"at_most", "that of the error", "The error to be reached, a power of ten."},
+                          {"at_most", "that of the error", "The error to be reached."},
                           {"seconds", "s", "Processor time of the case: median of the repeats."},
                           {"low", "s", "Its fastest repeat."},
                           {"high", "s", "Its slowest repeat."},
@@ -77,7 +82,10 @@ Table precision_targets_table(const StudyResults& results) {
                           {"other_low", "s", "Its fastest repeat."},
                           {"other_high", "s", "Its slowest repeat."},
                           {"speed_up", "1", "other_seconds over seconds."},
-                          {"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."}});
+                          {"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."},
+                          {"share", "1",
+                           "at_most over what the error of a motion at rest would be, a power of ten; empty where that "
+                           "is not known: then at_most is one."}});
   const std::vector<Cases> scenes = groups_of(all_cases(results), scene);
   const nlohmann::ordered_json errors = results.study.value("errors", nlohmann::ordered_json::array());
   for (const auto& error : errors)
@@ -88,10 +96,13 @@ Table precision_targets_table(const StudyResults& results) {
       if (points.empty()) continue;
       const auto [best, worst] = std::minmax_element(
           points.begin(), points.end(), [](const TimedError& a, const TimedError& b) { return a.known < b.known; });
-      int k = static_cast<int>(std::ceil(-std::log10(worst->known)));
-      while (best->known > std::pow(10, -k)) --k;
+      double size = 0;
+      for (const TimedError& point : points) size = std::max(size, point.size);
+      const double unit = size > 0 ? size : 1;
+      int k = static_cast<int>(std::ceil(-std::log10(worst->known / unit)));
+      while (best->known > unit * std::pow(10, -k)) --k;
       for (;; ++k) {
-        const double tolerance = std::pow(10, -k);
+        const double share = std::pow(10, -k), tolerance = unit * share;
         const std::vector<TimedError> entries = fastest(points, tolerance, method);
         if (entries.empty()) break;
         const TimedError& first = entries[0];
@@ -103,6 +114,7 @@ Table precision_targets_table(const StudyResults& results) {
                                  second.seconds / first.seconds, second.low <= first.high});
         }
         row.resize(table.columns.size());
+        if (size > 0) row.back() = share;
         table.rows.push_back(std::move(row));
         if (tolerance <= best->known) break;
       }

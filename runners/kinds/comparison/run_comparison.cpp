@@ -12,6 +12,9 @@
 namespace ricochet {
 namespace {
 
+// A quantity below so many units of round-off of the motion is none.
+constexpr double not_observed = 16;
+
 std::vector<std::string> errors_of(const StudyCase& study_case) {
   return study_case.settings.at("errors").get<std::vector<std::string>>();
 }
@@ -31,7 +34,9 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
              const std::vector<std::string>& names) {
   const ReferenceMotion& reference = set.applicable.front()->found;
   const auto found = motion_errors(motion, reference.motion, set.grid, set.horizon, names);
-  std::vector<double> floors(names.size(), 0.0);
+  const auto sizes = motion_sizes(reference.motion, set.grid, set.horizon, names);
+  std::vector<double> floors;
+  for (const MotionSize& size : sizes) floors.push_back(size.resolution);
   const auto raise = [&](const SampledMotion& other) {
     if (other.tip.empty()) return;
     const auto gaps = motion_errors(other, reference.motion, set.grid, set.horizon, names);
@@ -45,7 +50,15 @@ void compare(CaseRecord& record, const SampledMotion& motion, const ReferenceSet
       record.notes.push_back(fmt::format("no error {}: {}", names[i], found[i].reason));
       continue;
     }
+    if (sizes[i].size > 0 && sizes[i].size <= not_observed * sizes[i].resolution) {
+      record.notes.push_back(
+          fmt::format("no error {}: not observed, for it is at most {:.2g} in the reference itself, "
+                      "which is round-off of a motion of this size",
+                      names[i], sizes[i].size));
+      continue;
+    }
     put_measure(record, "error." + names[i], *found[i].value);
+    put_measure(record, "size." + names[i], sizes[i].size);
     put_measure(record, "floor." + names[i], floors[i]);
   }
 }
@@ -83,7 +96,9 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const bool whole = sampler.sampled() == set.grid.times.size();
   const auto& events = sampler.contact().events();
   put_measure(record, "horizon", set.horizon);
-  put_measure(record, "reference_of_mesh", set.applicable.front()->of_the_mesh ? 1 : 0);
+  const bool of_the_mesh = set.applicable.front()->of_the_mesh;
+  put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);
+  put_measure(record, "reference_of_law", rigid || of_the_mesh ? 1 : 0);
   put_measure(record, "impacts",
               static_cast<double>(
                   std::count_if(events.begin(), events.end(), [](const ContactEvent& event) { return event.begins; })));

@@ -1,6 +1,7 @@
 #include "runners/kinds/convergence/convergence.hpp"
 
 #include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/page/page.hpp"
@@ -26,6 +27,11 @@ Kind convergence_kind() {
     results.derived.push_back(orders_table(results));
     results.derived.push_back(order_verdicts_table(results.derived.back()));
     collect_tables(results);
+  };
+  kind.answers = [](const StudyResults& results) {
+    Table table = answers_head();
+    say_orders(results, table);
+    return table;
   };
   kind.curve = curves_head();
   kind.outcome = errors_text;

@@ -113,6 +113,7 @@ Kind stability_kind() {
     return measure(record, "contradictions").value_or(0) > 0 ? "spectrum and march disagree without contact" : "";
   };
   kind.measures = stability_measures();
+  kind.answers = stability_answers;
   kind.page = report::stability_page;
   return kind;
 }

@@ -1,6 +1,7 @@
 #include "runners/kinds/work-precision/work_precision.hpp"
 
 #include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/precision_targets.hpp"
@@ -39,6 +40,12 @@ Kind work_precision_kind() {
     results.derived.push_back(work_precision_table(results));
     results.derived.push_back(precision_targets_table(results));
     collect_tables(results);
+  };
+  kind.answers = [](const StudyResults& results) {
+    Table table = answers_head();
+    say_precision(results, table);
+    say_orders(results, table);
+    return table;
   };
   kind.curve = curves_head();
   kind.outcome = errors_text;

@@ -82,9 +82,9 @@ std::string differences_html(const CaseView& view) {
 
 }  // namespace
 
-std::string basins_html(const CaseView& view) {
+std::vector<std::string> basins_said(const CaseView& view) {
   const Basins basins = basins_of(view.results());
-  if (basins.grids.empty()) return "";
+  if (basins.grids.empty()) return {};
   size_t attractors = 0, known = 0, decided = 0;
   for (const BasinLabel& label : basins.labels) attractors += label.decided;
   for (const BasinGrid& grid : basins.grids)
@@ -92,11 +92,10 @@ std::string basins_html(const CaseView& view) {
       known += cell != BasinGrid::absent;
       decided += cell != BasinGrid::absent && basins.labels[cell].decided;
     }
-  std::string out =
-      fmt::format("<p class=\"lead\">Over {} × {} cells in {}: {}; {} of the cells end in one of them.",
-                  basins.xs.size(), basins.ys.size(), count_text(basins.grids.size(), "case", "cases"),
-                  count_text(attractors, "attractor", "attractors"),
-                  known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none");
+  std::vector<std::string> out = {fmt::format(
+      "Over {} × {} cells in {}: {}; {} of the cells end in one of them.", basins.xs.size(), basins.ys.size(),
+      count_text(basins.grids.size(), "case", "cases"), count_text(attractors, "attractor", "attractors"),
+      known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none")};
   double most = -1;
   std::string who;
   const AxisRows differences(view.results(), "basin_differences");
@@ -106,8 +105,20 @@ std::string basins_html(const CaseView& view) {
       who = view.name_of(differences.text(row, "case")) + " and " + view.name_of(differences.text(row, "other_case"));
     }
   if (most >= 0 && basins.grids.size() > 1)
-    out += fmt::format(" At most {} of them depend on the method ({}).", share_text(most), escape(who));
-  return out + "</p>\n" + fractions_html(view) + differences_html(view) + uncertainty_html(view);
+    out.push_back(fmt::format("At most {} of them depend on the method ({}).", share_text(most), who));
+  const AxisRows exponents(view.results(), "basin_uncertainty");
+  for (size_t row = 0; row < exponents.size(); ++row)
+    if (const auto high = exponents.number(row, "high"); high && *high < 1)
+      out.push_back(fmt::format("The boundary of basins is fractal in {}: uncertainty exponent {} (95 %: {} to {}).",
+                                view.name_of(exponents.text(row, "case")),
+                                number_text(exponents.number(row, "exponent").value_or(0), 2),
+                                number_text(exponents.number(row, "low").value_or(0), 2), number_text(*high, 2)));
+  return out;
+}
+
+std::string basins_html(const CaseView& view) {
+  if (basins_of(view.results()).grids.empty()) return "";
+  return fractions_html(view) + differences_html(view) + uncertainty_html(view);
 }
 
 }  // namespace ricochet::report

@@ -14,56 +14,8 @@
 namespace ricochet::report {
 namespace {
 
-constexpr size_t most_sentences = 8;
-
 std::string value_text(double value, const Quantity& parameter) {
   return number_text(value, 7) + (parameter.unit.empty() ? "" : " " + parameter.unit);
-}
-
-/// What the methods say over the range, from `verdict_shares`.
-std::string verdict_lead(const StudyResults& results, const Quantity& parameter) {
-  const Table* shares = find_table(results.derived, "verdict_shares");
-  if (!shares || shares->rows.empty()) return "";
-  const TableReader rows(*shares);
-  size_t all = 0;
-  std::string parts;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const std::string verdict = rows.text(row, "verdict"), choice = rows.text(row, "choice");
-    const auto intervals = static_cast<size_t>(rows.number(row, "intervals").value_or(0));
-    const auto share = rows.number(row, "share");
-    all += intervals;
-    parts += fmt::format("{}<strong>{}</strong> in {}{}", parts.empty() ? "" : "; ",
-                         escape(verdict == "depends" && !choice.empty() ? "depends on " + choice : verdict), intervals,
-                         share ? fmt::format(" ({} of the range)", share_text(*share)) : "");
-  }
-  const auto from = rows.number(0, "from"), to = rows.number(0, "to");
-  const std::string range = from && to ? fmt::format(" of {} from {} to {}", escape(parameter.name),
-                                                     number_text(*from, 5), value_text(*to, parameter))
-                                       : "";
-  return fmt::format("<p class=\"lead\">What the methods say over {}{}: {}.</p>\n",
-                     count_text(all, "interval", "intervals"), range, parts);
-}
-
-std::vector<std::string> verdict_sentences(const StudyResults& results) {
-  std::vector<std::string> out;
-  const Table* verdicts = find_table(results.derived, "verdicts");
-  if (!verdicts) return out;
-  const TableReader rows(*verdicts);
-  for (size_t row = 0; row < rows.size(); ++row)
-    if (std::string sentence = rows.text(row, "sentence"); !sentence.empty()) out.push_back(std::move(sentence));
-  return out;
-}
-
-std::string sentences_html(const std::vector<std::string>& sentences) {
-  if (sentences.empty()) return "";
-  std::string out = "<ul class=\"answer\">\n", rest;
-  for (size_t k = 0; k < sentences.size(); ++k)
-    (k < most_sentences ? out : rest) += "<li>" + escape(sentences[k]) + "</li>\n";
-  out += "</ul>\n";
-  if (!rest.empty())
-    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n",
-                       count_text(sentences.size() - most_sentences, "interval", "intervals"), rest);
-  return out;
 }
 
 /// Orbits by group of classes.
@@ -219,8 +171,7 @@ std::string dynamics_answer_html(const CaseView& view) {
     if (counts.contains(record->id)) cases.push_back(record);
   if (cases.empty()) return "";
   const Quantity parameter = swept_parameter(view.results());
-  return verdict_lead(view.results(), parameter) + regime_sentence(total_of(counts)) +
-         grazing_sentence(view.results(), cases, parameter) + sentences_html(verdict_sentences(view.results())) +
+  return regime_sentence(total_of(counts)) + grazing_sentence(view.results(), cases, parameter) +
          regime_table(view, cases, counts);
 }
 

@@ -25,6 +25,12 @@ void order_cell(HtmlTable& table, const AxisRows& rows, size_t row) {
   const std::string verdict = rows.text(row, "verdict"), interval = interval_text(rows, row);
   const auto order = rows.number(row, "order");
   const bool declared = rows.number(row, "declared").has_value();
+  const std::string floor = rows.text(row, "saturates_at");
+  if (!floor.empty()) {
+    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, verdict + ": " + rows.text(row, "reason"),
+                 verdict_class(declared ? verdict : ""));
+    return;
+  }
   const char* mark = !declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
   table.number((order ? order_number(*order) : "–") + mark,
                fmt::format("{}{}{}: {}", interval, order ? " " : "", verdict, rows.text(row, "reason")),
@@ -106,7 +112,9 @@ std::string details(const AxisRows& rows, const std::vector<Method>& all) {
         if (verdict != wanted) continue;
         const auto order = rows.number(row, "order"), declared = rows.number(row, "declared");
         table.row(method.label, method.colour).text(method.refined).text(rows.text(row, "error"), "text");
-        table.number((order ? order_number(*order) : "–") + " " + interval_text(rows, row));
+        const std::string floor = rows.text(row, "saturates_at");
+        table.number(floor.empty() ? (order ? order_number(*order) : "–") + " " + interval_text(rows, row)
+                                   : "floor: " + floor);
         table.number(declared ? number_text(*declared, 3) : "–");
         table.text(verdict, verdict_class(verdict)).text(rows.text(row, "reason"), "reason");
       }

@@ -25,26 +25,6 @@ std::string why(const TableReader& rows, size_t row) {
          (rows.truth(row, "refused") == true ? grows : fmt::format("h = {} s: {}", number_text(*step, 3), grows));
 }
 
-/// "Where a limit is both predicted and observed, 4 of 30 agree to 2 %."
-std::string agreement_text(const StudyResults& results) {
-  const Table* agreement = find_table(results.derived, "step_limit_agreement");
-  if (!agreement || agreement->rows.empty()) return "";
-  const TableReader rows(*agreement);
-  const size_t both = rows.size() - 1;
-  const auto count = [&](const char* column) { return static_cast<size_t>(rows.number(both, column).value_or(0)); };
-  std::string out = fmt::format("{} of steps.", count_text(count("ranges"), "range", "ranges"));
-  if (count("limits") > 0)
-    out += fmt::format(" Where a limit is both predicted and observed, {} of {} agree to {}.", count("agree"),
-                       count("limits"), share_text(rows.number(both, "tolerance").value_or(0)));
-  if (count("disagree") > 0)
-    out += fmt::format(
-        " In {} the marches and the spectra disagree at some step: contacts that open and close make "
-        "energy that no spectrum of a fixed contact set shows, and growth may need longer than the "
-        "horizon.",
-        count_text(count("disagree"), "range", "ranges"));
-  return out;
-}
-
 }  // namespace
 
 std::string stability_html(const CaseView& view) {
@@ -73,7 +53,7 @@ std::string stability_html(const CaseView& view) {
     table.number(ratio ? number_text(*ratio, 4) : "–").text(why(rows, row), "reason");
   }
   if (table.size() == 0) return "";
-  return "<p class=\"lead\">" + agreement_text(view.results()) + "</p>\n" + table.html();
+  return table.html();
 }
 
 }  // namespace ricochet::report

@@ -43,7 +43,8 @@ std::string work_precision_html(const CaseView& view) {
       {"runner-up"}, {"with step"},     {"run time (s)", true}, {"speed-up", true}, {"spreads"}};
   if (!scene.empty()) heads.insert(heads.begin() + 1, {"scene"});
   HtmlTable table(
-      "The cheapest method for an error of at most 10<sup>−k</sup>: of the steps that were run, the one that takes the "
+      "The cheapest method for a relative error of at most 10<sup>−k</sup>, 1 being a motion at rest: of the steps "
+      "that were run, the one that takes the "
       "least time. Spread: fastest to slowest repeat (in the time's tooltip); where the spreads overlap, the two are "
       "not told apart.",
       std::move(heads));
@@ -53,7 +54,9 @@ std::string work_precision_html(const CaseView& view) {
     table.row().text(with_unit(quantity), "text");
     const CaseRecord* record = view.find(targets.text(row, "case"));
     if (!scene.empty()) table.text(record ? view.label(*record, scene) : "");
-    table.number(power_text(targets.number(row, "at_most").value_or(0)));
+    const auto share = targets.number(row, targets.column_if_any("share"));
+    table.number(power_text(share ? *share : targets.number(row, "at_most").value_or(0)),
+                 share ? exact_text(targets.number(row, "at_most").value_or(0)) : "");
     case_cells(table, view, targets, row, "");
     case_cells(table, view, targets, row, "other_");
     if (const auto speed_up = targets.number(row, "speed_up"))

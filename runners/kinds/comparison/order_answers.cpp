@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+/// The orders in the step of one time scheme, over errors and everything else that varies.
+struct SchemeOrders {
+  std::size_t confirmed = 0, refuted = 0, undecided = 0, saturated = 0, found = 0;
+  std::optional<double> declared, low, high;  ///< of the orders that were fitted
+  std::size_t declaring() const { return confirmed + refuted + undecided; }
+  const char* verdict() const {
+    return declaring() == 0 ? "no order declared"
+           : refuted > 0    ? "not as declared"
+           : confirmed > 0  ? "as declared"
+                            : "not decided";
+  }
+};
+
+void include(SchemeOrders& scheme, double order) {
+  scheme.low = std::min(scheme.low.value_or(order), order);
+  scheme.high = std::max(scheme.high.value_or(order), order);
+  ++scheme.found;
+}
+
+std::string span(const SchemeOrders& scheme) {
+  if (!scheme.low) return scheme.saturated > 0 ? "errors do not fall" : "no order found";
+  const std::string low = fmt::format("{:.2f}", *scheme.low), high = fmt::format("{:.2f}", *scheme.high);
+  return low == high ? low : low + " to " + high;
+}
+
+std::string clause(const std::string& name, const SchemeOrders& scheme) {
+  const std::string verdict = scheme.verdict();
+  if (verdict == "as declared")
+    return fmt::format("{} (declared {}, found {}; {} of {} confirmed)", name, report::number_text(*scheme.declared, 3),
+                       span(scheme), scheme.confirmed, scheme.declaring());
+  if (verdict == "not as declared")
+    return fmt::format("{} (declared {}, found {}; {} of {} refuted)", name, report::number_text(*scheme.declared, 3),
+                       span(scheme), scheme.refuted, scheme.declaring());
+  return fmt::format("{} ({})", name, span(scheme));
+}
+
+std::string opening(const std::string& verdict) {
+  if (verdict == "as declared") return "Converge with the order that they declare: ";
+  if (verdict == "not as declared") return "Do not: ";
+  if (verdict == "not decided") return "Not decided by these points: ";
+  return "Orders where none is declared, which through contact is the rule: ";
+}
+
+}  // namespace
+
+void say_orders(const StudyResults& results, Table& answers) {
+  const Table* orders = find_table(results.derived, "orders");
+  if (!orders) return;
+  const TableReader rows(*orders);
+  const report::CaseView view(results);
+  std::vector<std::string> columns;
+  for (const std::string& column : view.varying())
+    if (report::role_of(column) == "time") columns.push_back(column);
+  std::vector<std::pair<std::string, SchemeOrders>> schemes;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const CaseRecord* record = view.find(rows.text(row, "case"));
+    if (!record || rows.text(row, "refined") != "step") continue;
+    SchemeOrders& scheme = in_order_met(schemes, view.name(*record, columns));
+    if (const auto declared = rows.number(row, "declared")) {
+      scheme.declared = declared;
+      const std::string verdict = rows.text(row, "verdict");
+      ++(verdict == "confirmed" ? scheme.confirmed : verdict == "refuted" ? scheme.refuted : scheme.undecided);
+    }
+    if (const auto order = rows.number(row, "order")) include(scheme, *order);
+    scheme.saturated += !rows.text(row, rows.column_if_any("saturates_at")).empty();
+  }
+  for (const std::string verdict : {"as declared", "not as declared", "no order declared", "not decided"}) {
+    std::vector<std::string> said;
+    for (const auto& [name, scheme] : schemes)
+      if (scheme.verdict() == verdict) said.push_back(clause(name, scheme));
+    const std::string sentence = opening(verdict) + report::list_text(said);
+    bool first = true;
+    for (const auto& [name, scheme] : schemes) {
+      if (scheme.verdict() != verdict) continue;
+      answers.rows.push_back({name,
+                              "order in the step",
+                              verdict,
+                              {},
+                              {},
+                              {},
+                              {},
+                              {},
+                              scheme.found,
+                              {},
+                              first ? Cell(sentence + ".") : Cell()});
+      first = false;
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string time_text(double seconds) {
+  return seconds < 1e-3 ? report::number_text(1e6 * seconds, 2) + " µs"
+         : seconds < 1  ? report::number_text(1e3 * seconds, 2) + " ms"
+                        : report::number_text(seconds, 2) + " s";
+}
+
+/// "singular · newmark at h = 5e-5 s (0.7 ms)".
+std::string how(const report::CaseView& view, const CaseRecord& record, double seconds) {
+  std::vector<std::string> methods;
+  for (const std::string& column : view.varying())
+    if (const std::string role = report::role_of(column); role == "mass" || role == "contact" || role == "time")
+      methods.push_back(column);
+  std::string at;
+  if (view.varies("step")) at = fmt::format(" at h = {} s", report::CaseView::text(record, "step"));
+  if (view.varies("elements")) at += fmt::format(" on {} elements", report::CaseView::text(record, "elements"));
+  return fmt::format("{}{} ({})", view.name(record, methods), at, time_text(seconds));
+}
+
+}  // namespace
+
+void say_precision(const StudyResults& results, Table& answers) {
+  const Table* targets = find_table(results.derived, "precision_targets");
+  if (!targets || targets->rows.empty()) return;
+  const TableReader rows(*targets);
+  const report::CaseView view(results);
+  std::vector<std::string> scene;
+  for (const std::string& column : view.varying_without({"mass", "contact", "time", "step", "elements"}))
+    scene.push_back(column);
+  const std::string error = rows.text(0, "error");
+  constexpr std::size_t most = 6;
+  std::size_t said = 0;
+  for (std::size_t row = 0; row < rows.size() && said < most; ++row) {
+    const CaseRecord* record = view.find(rows.text(row, "case"));
+    const auto share = rows.number(row, rows.column_if_any("share"));
+    if (!record || !share || rows.text(row, "error") != error || *share > 0.1) continue;
+    const std::string where = scene.empty() ? "" : ", " + view.label(*record, scene);
+    std::string sentence = fmt::format("For {} of at most {} %{}: {}", error, report::number_text(100 * *share, 2),
+                                       where, how(view, *record, rows.number(row, "seconds").value_or(0)));
+    const CaseRecord* other = view.find(rows.text(row, "other_case"));
+    if (other) {
+      const bool tie = rows.truth(row, "overlap") == true;
+      sentence += fmt::format("; {} {}", tie ? "not told apart from" : "next",
+                              how(view, *other, rows.number(row, "other_seconds").value_or(0)));
+    }
+    answers.rows.push_back(
+        {"", "error." + error, "cheapest", *share, {}, "size_" + error, {}, {}, {}, {}, sentence + "."});
+    ++said;
+  }
+}
+
+}  // namespace ricochet
