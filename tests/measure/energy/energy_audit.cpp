@@ -130,3 +130,38 @@ TEST_CASE("impacts of the damped reference are five, and releases follow them") 
   CHECK(audit.contact(0).deepest_penetration < 1e-12);
   CHECK(audit.contact(0).impulse > 0);
 }
+
+TEST_CASE("the first energy is that of the initial state, whatever the scheme makes of its first step") {
+  const SceneSpec scene = busy_scene();
+  const auto time = GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.5}}}, Choice{"moreau-jean"}, Choice{"newmark"},
+                             Choice{"paoli-schatzman"});
+  const double h = time.name == "paoli-schatzman" ? 1e-5 : 1e-3;
+  const Choice mass{"consistent"};
+  const auto problem = problem_of(scene, 5, mass);
+  Marcher beam = marcher(scene, 5, {mass, {"signorini"}, time}, h);
+  const EnergyAudit audit = audited(beam, 2 * h);
+  INFO(time.name);
+  const double kinetic = 0.5 * problem->velocity.dot(dense_mass(problem->inertia) * problem->velocity),
+               elastic = 0.5 * problem->position.dot(problem->stiffness * problem->position);
+  // Round-off of the coordinates in which it marches.
+  CHECK(audit.totals(0).first.kinetic == Approx(kinetic).epsilon(1e-9));
+  CHECK(audit.totals(0).first.elastic == Approx(elastic).epsilon(1e-9));
+}
+
+TEST_CASE("what a scene at rest is given is what its loads bring in, at any step") {
+  SceneSpec scene = working_set();
+  scene.initial = {};
+  scene.load = Formula("2*sin(30*t)", "/scene/load");
+  beam_of(scene).damping = {1e-4, 0};
+  std::vector<double> brought_in;
+  for (const double h : {2e-4, 5e-5}) {
+    Marcher beam = marcher(scene, 8, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, h);
+    const EnergyAudit audit = audited(beam, 0.4);
+    CHECK(audit.totals(0).first.common() == 0);
+    CHECK(audit.totals(0).brought_in() == audit.totals(0).work_of_loads);
+    CHECK(audit.energy(0).common() < audit.totals(0).brought_in());
+    brought_in.push_back(audit.totals(0).brought_in());
+  }
+  // A measure of the motion: it does not grow as the step shrinks.
+  CHECK(brought_in[0] == Approx(brought_in[1]).epsilon(0.05));
+}

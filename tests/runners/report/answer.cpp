@@ -21,7 +21,7 @@ std::string words(const std::vector<double>& steps, const std::vector<double>& r
     record.axes = {{"step", steps[k]}};
     record.status = "done";
     record.steps = 4000;  // a noise floor of 9e-13
-    record.measures = {{"energy_ratio", ratios[k]}, {"work_of_damping", 0}, {"work_of_loads", 0}};
+    record.measures = {{"energy_left", ratios[k]}, {"work_of_damping", 0}, {"work_of_loads", 0}};
     results.cases.push_back(record);
   }
   const Table trends = energy_trends_table(results);
@@ -61,12 +61,12 @@ TEST_CASE("the answer's figures are those of the results", "[report]") {
   double low = INFINITY, high = 0;
   for (const CaseRecord& record : results.cases)
     if (record.status == "done" && CaseView::text(record, "mass.velocity") == "P1") {
-      low = std::min(low, *ricochet::measure(record, "energy_ratio"));
-      high = std::max(high, *ricochet::measure(record, "energy_ratio"));
+      low = std::min(low, *ricochet::measure(record, "energy_left"));
+      high = std::max(high, *ricochet::measure(record, "energy_left"));
     }
   CHECK(low < high);
-  CHECK(says("over 6 finished cases the energy ends at 99.60 % to 99.9960 % of its start"));
-  CHECK(says("closest to its starting energy is <strong>singular, velocity P1"));
+  CHECK(says("over 6 finished cases the energy ends at 99.60 % to 99.9960 % of what was brought in"));
+  CHECK(says("closest to its start is <strong>singular, velocity P1"));
   CHECK(says("In 2 of 8 cases single steps gain energy, at most 5 %"));
   CHECK(says("1 diverged"));
   CHECK(says("3 refused"));
@@ -75,9 +75,9 @@ TEST_CASE("the answer's figures are those of the results", "[report]") {
   SECTION("other measurements, other words") {
     for (CaseRecord& record : results.cases)
       for (auto& [name, value] : record.measures)
-        if (name == "energy_ratio") value = CaseView::text(record, "mass") == "consistent" ? 1 : 0.5;
+        if (name == "energy_left") value = CaseView::text(record, "mass") == "consistent" ? 1 : 0.5;
     const std::string changed = answer_of(results);
-    CHECK(changed.find("closest to its starting energy is <strong>consistent") != std::string::npos);
+    CHECK(changed.find("closest to its start is <strong>consistent") != std::string::npos);
     CHECK(changed.find("8 of 28 finished cases over all steps end where they began") != std::string::npos);
   }
   SECTION("where damping works, the start is no reference") {
@@ -85,14 +85,14 @@ TEST_CASE("the answer's figures are those of the results", "[report]") {
       for (auto& [name, value] : record.measures)
         if (name == "work_of_damping") value = -0.4;
     const std::string damped = answer_of(results);
-    CHECK(damped.find("closest to its starting energy") == std::string::npos);
+    CHECK(damped.find("closest to its start") == std::string::npos);
     CHECK(damped.find("damping −0.4 to −0.4 J. What went") != std::string::npos);
     CHECK(damped.find("Contact took") != std::string::npos);
   }
-  SECTION("from rest there is no ratio, and none is made up") {
+  SECTION("where nothing is brought in there is no ratio, and none is made up") {
     for (CaseRecord& record : results.cases) {
       std::erase_if(record.measures,
-                    [](const auto& m) { return m.first == "energy_ratio" || m.first == "energy_start"; });
+                    [](const auto& m) { return m.first == "energy_left" || m.first == "energy_brought_in"; });
     }
     const std::string rest = answer_of(results);
     CHECK(rest.find("there is no ratio") != std::string::npos);

@@ -82,6 +82,8 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
                      {"energy_start", start},
                      {"energy_end", energy},
                      {"energy_ratio", ratio},
+                     {"energy_brought_in", start},
+                     {"energy_left", ratio},
                      {"largest_step_gain", time == "newmark" ? 0.05 * start : 3e-14},
                      {"drift_per_impact", (energy - start) / 8},
                      {"work_of_damping", 0},
@@ -99,7 +101,8 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
 
 /// The tables that the answer of a study of trajectories speaks of, from the measures that its cases have now.
 inline void derive_energies(StudyResults& out) {
-  out.derived = {energy_ends_table(out), energy_by_mass_table(out), energy_trends_table(out), choice_worth_table(out)};
+  out.derived = {energy_ends_table(out), energy_by_mass_table(out), energy_trends_table(out), energy_ledger_table(out),
+                 choice_worth_table(out)};
 }
 
 /// Masses × time methods × steps, some refused, some diverged.

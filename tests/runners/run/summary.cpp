@@ -9,8 +9,12 @@ namespace {
 CaseRecord done(double start, double end, double impacts) {
   CaseRecord record;
   record.status = "done";
-  record.measures = {
-      {"energy_start", start}, {"energy_end", end}, {"impacts", impacts}, {"microseconds_per_step", 0.4213}};
+  record.measures = {{"energy_start", start},
+                     {"energy_end", end},
+                     {"energy_brought_in", start},
+                     {"impacts", impacts},
+                     {"microseconds_per_step", 0.4213}};
+  if (start > 0) record.measures.emplace_back("energy_left", end / start);
   return record;
 }
 
@@ -31,6 +35,10 @@ TEST_CASE("summary: outcomes in words") {
         "done: energy 1 J → 1 J (−1.0e-07 %), 0 impacts, 0.421 µs/step");
   CHECK(outcome_text(done(2, 2, 0), "trajectory") == "done: energy 2 J → 2 J (unchanged), 0 impacts, 0.421 µs/step");
   CHECK(outcome_text(done(0, 2, 0), "trajectory") == "done: energy 0 J → 2 J, 0 impacts, 0.421 µs/step");
+  CaseRecord driven = done(0, 2, 3);
+  driven.measures[2].second = 5;
+  CHECK(outcome_text(driven, "trajectory") ==
+        "done: energy 0 J → 2 J, 5 J brought in by loads, 3 impacts, 0.421 µs/step");
   CHECK(outcome_text(ended("done", ""), "trajectory") == "done");
   CHECK(outcome_text(ended("refused", "β = 0 leaves S singular"), "trajectory") == "refused: β = 0 leaves S singular");
   CHECK(outcome_text(ended("diverged", "at t = 0.1 s"), "trajectory") == "diverged: at t = 0.1 s");
@@ -62,11 +70,10 @@ TEST_CASE("summary: a stability case whose march contradicts its spectrum is sai
   results.kind = "stability";
   CaseRecord record = ended("done", "");
   record.measures = {{"largest_radius", 1.0}};
-  record.tables = {
-      {"stability_observed",
-       "",
-       named_columns({"step", "closed", "behaviour"}),
-       {{1e-4, false, "stable"}, {1e-3, false, "unstable"}}}};
+  record.tables = {{"stability_observed",
+                    "",
+                    named_columns({"step", "closed", "behaviour"}),
+                    {{1e-4, false, "stable"}, {1e-3, false, "unstable"}}}};
   results.cases = {record};
   CHECK(outcome_text(record, "stability") == "done: largest spectral radius 1");
   CHECK(results_exit_code(results) == 0);

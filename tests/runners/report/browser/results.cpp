@@ -69,15 +69,15 @@ void check_trajectory(const Ran& ran, const Json& page) {
   for (const CaseRecord& record : ran.results.cases) {
     if (!record.curve.columns.empty()) samples += record.curve.columns[0].size();
     if (record.status != "done") continue;
-    if (const auto ratio = ricochet::measure(record, "energy_ratio")) {
+    if (const auto ratio = ricochet::measure(record, "energy_left")) {
       ratios.insert(*ratio);
       if (*ratio != 1) changes.insert(std::abs(*ratio - 1));
     }
   }
   const Json& energy = figure(page, "final-energy-step");
   for (size_t v = 0; v < energy.at("views").size(); ++v) {
-    if (energy.at("views")[v] == "E(T) / E(0)") CHECK(heights(items_of(energy, v, is_curve)) == ratios);
-    if (energy.at("views")[v] == "|E(T) / E(0) − 1|") CHECK(heights(items_of(energy, v, is_curve)) == changes);
+    if (energy.at("views")[v] == "E(T) / E_in") CHECK(heights(items_of(energy, v, is_curve)) == ratios);
+    if (energy.at("views")[v] == "|E(T) / E_in − 1|") CHECK(heights(items_of(energy, v, is_curve)) == changes);
   }
   for (const Json& series : series_of(figure(page, "tip"), 0,
                                       [](const Json& s) { return s.at("type") == "line" && s.at("name") != "stops"; }))

@@ -113,7 +113,8 @@ void check_open_first(const Json& page) {
 TEST_CASE("figures of stability draw cells and limits", "[report][browser]") {
   if (left_out()) return;
   const StudyResults results = with_tables(synthetic::stability());
-  const Json pages = read_back("stability", {page_of("stability", results), page_of("open_first", with_tables(open_first()))});
+  const Json pages =
+      read_back("stability", {page_of("stability", results), page_of("open_first", with_tables(open_first()))});
   require_works(pages.at("stability"), results.cases.size());
   check_radii(pages.at("stability"));
   check_map(pages.at("stability"));

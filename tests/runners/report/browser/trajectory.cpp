@@ -28,7 +28,7 @@ StudyResults stiffnesses() {
     record.axes = {{"mass", "consistent"}, {"contact", contact}, {"step", 1e-5}};
     if (stiffness) record.axes.emplace_back("contact.stiffness", *stiffness);
     record.status = "done";
-    record.measures = {{"energy_start", 1}, {"energy_end", ratio}, {"energy_ratio", ratio}};
+    record.measures = {{"energy_brought_in", 1}, {"energy_end", ratio}, {"energy_left", ratio}};
     results.cases.push_back(record);
   };
   for (const double stiffness : {1e3, 1e6, 1e9}) add("penalty", stiffness, 1 - 1 / stiffness);
