@@ -82,6 +82,12 @@ double rounded_down(double value) {
   return decade * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
 }
 
+/// Up to two digits that count.
+std::string two_digits(double value) {
+  const double unit = std::max(1.0, std::pow(10, std::floor(std::log10(value)) - 1));
+  return fmt::format("{:.0f}", unit * std::ceil(value / unit));
+}
+
 /// "; refine h to 2e-6 s": where what is open, if it falls with h (or with the element), is a third of the effect.
 std::string next_sizes(const std::vector<const Said*>& same) {
   double step = 0, elements = 0, open_step = 0, open_mesh = 0;
@@ -98,8 +104,7 @@ std::string next_sizes(const std::vector<const Said*>& same) {
   if (open_step > 1 && step > 0)
     out = fmt::format("refine h to {} s", report::number_text(rounded_down(step / open_step), 3));
   if (open_mesh > 1 && elements > 0)
-    out += fmt::format("{} the mesh to {} elements", out.empty() ? "refine" : " and",
-                       report::number_text(std::ceil(elements * open_mesh), 2));
+    out += fmt::format("{} the mesh to {} elements", out.empty() ? "refine" : " and", two_digits(elements * open_mesh));
   return out.empty() ? "" : "; " + out + " (if what is open falls with them)";
 }
 
@@ -127,7 +132,7 @@ Said said_of(const StudyResults& results, const ChoiceEffects& effects) {
     verdict = EffectVerdict::decides;
   else if (share(EffectVerdict::no_matter) >= nearly_all)
     verdict = EffectVerdict::no_matter;
-  else if (share(EffectVerdict::unresolved) + share(EffectVerdict::untold) > 0.5)
+  else if (share(EffectVerdict::decides) == 0 || share(EffectVerdict::unresolved) + share(EffectVerdict::untold) > 0.5)
     verdict = EffectVerdict::unresolved;
   else
     out.depends_on = separating_choice(results, effects);

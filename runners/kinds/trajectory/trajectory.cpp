@@ -49,7 +49,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        "energy_brought_in"},
       {"work_of_loads", "J",
        "Energy brought in by the distributed load and by the moving support over the run, in the frame of the clamp.",
-       Of::motion, true, "energy_brought_in"},
+       Of::motion, true},
       {"dissipated_at_contact", "J",
        "Energy taken out by the contact efforts over the run, less what springs at the stops still store.", Of::motion,
        false, "energy_brought_in"},

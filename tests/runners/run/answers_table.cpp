@@ -69,6 +69,13 @@ TEST_CASE("where a choice decides with some levels of another, that one is named
                              "of 2 combinations by up to 20 %."));
 }
 
+TEST_CASE("what decides nowhere is not said to decide in part") {
+  // Within 1 % with one law, open with the other.
+  const Table answers =
+      answers_table(study([](int mass, int law, double step) { return 0.4 + 0.004 * mass + (law ? 300 : 1) * step; }));
+  CHECK(verdict_of(answers, "mass") == "not resolved");
+}
+
 TEST_CASE("one step tells nothing of what it leaves open") {
   const Table answers = answers_table(study([](int mass, int, double) { return mass ? 0.6 : 0.4; }, {1e-4}));
   CHECK(verdict_of(answers, "mass") == "not told");

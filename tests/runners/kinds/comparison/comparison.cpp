@@ -215,11 +215,11 @@ TEST_CASE("a measure that some method never has is left out of the effects, neit
   CHECK(measures() == std::set<std::string>{"impulse", "first_impact", "work_of_damping"});
 }
 
-TEST_CASE("effects stand beside the cases wherever two choices vary, and sum to the whole") {
+TEST_CASE("effects stand beside the cases wherever two choices of three levels vary, and sum to the whole") {
   Run run;
   Json study = oscillator("trajectory");
   study.erase("reference");
-  study["methods"]["time"] = {{{"name", "moreau-jean"}, {"theta", {0.5, 1}}, {"restitution", 0.5}}};
+  study["methods"]["time"] = {{{"name", "moreau-jean"}, {"theta", {0.5, 0.75, 1}}, {"restitution", 0.5}}};
   CHECK(run.go(study) == 0);
   const StudyResults results = run.results();
   const Table& effects = table(results, "effects");
