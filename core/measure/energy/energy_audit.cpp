@@ -27,13 +27,10 @@ EnergyAudit::EnergyAudit(const Marcher& marcher)
       compliant_(marcher.law().reads().has_value()),
       mean_velocity_(marcher.program().velocity_offset != 0) {
   const auto rows = static_cast<std::size_t>(model_.rows());
-  const auto points = static_cast<std::size_t>(model_.problem().points());
-  lanes_.resize(static_cast<std::size_t>(marcher.lanes()));
-  for (Lane& lane : lanes_) {
-    lane.increment.assign(rows, 0.0);
-    lane.duration = h_;
-    lane.signs.assign(points, 0);
-    lane.asked.assign(points, 0);
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    Lane& state = lanes_.emplace_back(model_.problem().points());
+    state.increment.assign(rows, 0.0);
+    state.duration = h_;
   }
   for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
   first_.resize(rows);
@@ -195,10 +192,7 @@ void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) 
 void EnergyAudit::count_contact(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   ContactTotals& contact = state.contact;
-  if (view.program->opens_instant) {
-    state.in_contact = false;
-    state.force = 0;
-  }
+  if (view.program->opens_instant) state.force = 0;
   const LaneOutcome& outcome = view.outcome[lane];
   if ((view.touched_lanes >> lane) & 1u) {
     contact.most_iterations = std::max(contact.most_iterations, outcome.iterations);
@@ -210,13 +204,12 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
     for (int j = 0; j < model_.problem().points(); ++j) {
       const double p = view.effort[0][j * T_ + lane];
       if (p == 0) continue;
-      state.asked[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
+      state.closed.press(j, p);
       // An effort that gives no momentum only puts a position right: it is no force.
       if (momentum != 0) state.force += p;
       contact.impulse += momentum * std::abs(p);
     }
     contact.residual = std::max(contact.residual, outcome.residual);
-    state.in_contact = true;
   }
   if (view.program->closes_instant) close_instant(view, state);
 }
@@ -224,21 +217,18 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
 // What an instant of contact was, beside the one before it.
 void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   ContactTotals& contact = state.contact;
-  const bool was_active = contact.active > 0;
   contact.force = state.force;
   contact.active = 0;
-  if (!state.in_contact && !was_active) return;
-  if (state.asked != state.signs) ++contact.active_set_changes;
-  for (const signed char sign : state.asked) contact.active += sign != 0;
-  state.signs.swap(state.asked);
-  std::fill(state.asked.begin(), state.asked.end(), static_cast<signed char>(0));
+  if (state.closed.idle()) return;
+  const ClosedPoints::Change change = state.closed.end_instant();
+  contact.active = change.active;
+  contact.active_set_changes += change.changed;
+  contact.impacts += change.closings;
   if (contact.active > 0) {
     ++contact.contact_steps;
-    if (!was_active) {
-      ++contact.impacts;
-      if (contact.first_impact < 0) contact.first_impact = view.time + view.program->facts.instant * h_;
-    }
-  } else if (was_active && contact.first_release < 0) {
+    if (!change.was_active && contact.first_impact < 0)
+      contact.first_impact = view.time + view.program->facts.instant * h_;
+  } else if (change.was_active && contact.first_release < 0) {
     contact.first_release = view.from;
   }
 }

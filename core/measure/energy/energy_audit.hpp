@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/closed_points.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -43,7 +44,7 @@ struct EnergyTotals {
 /// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
 /// together as one.
 struct ContactTotals {
-  long long impacts = 0;             ///< times that contact began anywhere (from no active point to some)
+  long long impacts = 0;             ///< times that a point closed, summed over the points
   long long active_set_changes = 0;  ///< steps whose set of active points (with side) differs from the step before
   long long contact_steps = 0;
   int most_iterations = 0;                       ///< of one solve of the law
@@ -78,11 +79,11 @@ class EnergyAudit final : public StepObserver {
     EnergyTotals energy;
     EnergySample now;
     ContactTotals contact;
-    std::vector<double> increment;          // of the position, over the stages of the last sub-step
-    double duration = 0;                    // of it, s
-    std::vector<signed char> signs, asked;  // side of each active point: at the last instant, and at the present one
-    bool in_contact = false;                // at the present instant
-    double force = 0;
+    explicit Lane(int points) : closed(points) {}
+    std::vector<double> increment;  // of the position, over the stages of the last sub-step
+    double duration = 0;            // of it, s
+    ClosedPoints closed;
+    double force = 0;  // of the present instant
     double step_loads = 0, step_damping = 0, step_contact = 0, step_scheme = 0, step_law = 0;
     double penetration = 0, tip_velocity = 0;
     bool has_scheme = false;

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+constexpr int settles_after = 2;  // sub-steps without an effort until a speed out is read
+
+// Mean of |v| where v goes evenly from a to b.
+double mean_speed(double a, double b) {
+  const double sum = std::abs(a) + std::abs(b);
+  return a * b >= 0 ? 0.5 * sum : 0.5 * (a * a + b * b) / sum;
+}
+
+}  // namespace
+
+ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std::size_t most)
+    : model_(*marcher.program().model), behind_(behind), most_(most), h_(marcher.program().h), T_(marcher.width()) {
+  const int points = model_.problem().points();
+  for (int lane = 0; lane < marcher.lanes(); ++lane) {
+    Lane& state = lanes_.emplace_back(points);
+    state.leaving.reserve(static_cast<std::size_t>(points));
+    state.stops.resize(2 * static_cast<std::size_t>(points));
+    state.impacts.reserve(std::min<std::size_t>(most, 64));
+  }
+  if (!marcher.program().contact) return;
+  earlier_.resize(static_cast<std::size_t>(model_.rows()) * static_cast<std::size_t>(T_));
+  latest_.resize(earlier_.size());
+}
+
+void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view) {
+  if (behind_) behind_->stage_solved(marcher, view);
+  if (!view.effort) return;
+  const StageProgram& program = *view.program;
+  if (program.opens_instant) open_instant(marcher, view);
+  lasts_ = std::max(lasts_, program.momentum);
+  for (std::uint32_t mask = view.contact_lanes; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    if (!marcher.status(lane).running) continue;
+    Lane& state = lanes_[static_cast<std::size_t>(lane)];
+    const double* efforts = view.effort[0] + lane;
+    for (std::size_t j = 0; j < state.points.size(); ++j) {
+      const double p = efforts[j * static_cast<std::size_t>(T_)];
+      if (p == 0) continue;
+      state.closed.press(static_cast<int>(j), p);
+      state.points[j].given += program.momentum * std::abs(p);
+    }
+    busy_ |= 1U << lane;
+  }
+  if (!program.closes_instant) return;
+  for (std::uint32_t mask = busy_; mask != 0; mask &= mask - 1)
+    if (const int lane = std::countr_zero(mask); marcher.status(lane).running) close_instant(marcher, view, lane);
+}
+
+void ImpactRecorder::step_done(Marcher& marcher) {
+  if (behind_) behind_->step_done(marcher);
+}
+
+// What the last sub-step was, for the points that wait for it.
+void ImpactRecorder::open_instant(const Marcher& marcher, const StageView& view) {
+  lasts_ = 0;
+  move_to(marcher, view.slots[0], view.from);
+}
+
+// Keeps the positions at a time, and those before them. Stages of a start rule may ask several times at the same.
+void ImpactRecorder::move_to(const Marcher& marcher, const double* positions, double time) {
+  const bool moves = known_ > 0 && time > latest_time_ + 1e-9 * h_;
+  if (moves) {
+    earlier_.swap(latest_);
+    earlier_time_ = latest_time_;
+  }
+  std::copy_n(positions, latest_.size(), latest_.data());
+  latest_time_ = time;
+  known_ = moves ? 2 : std::max(known_, 1);
+  if (!moves) return;
+  for (std::uint32_t mask = busy_; mask != 0; mask &= mask - 1)
+    if (const int lane = std::countr_zero(mask); marcher.status(lane).running) moved(marcher, lane);
+}
+
+// Absolute velocity of a point over the last sub-step; of the initial state where there was none.
+double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point) const {
+  if (known_ < 2) {
+    const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(lane)];
+    double speed = marcher.support_rate(lane, 0);
+    for (SparseRows::InnerIterator entry(model_.problem().contact, point); entry; ++entry)
+      speed += entry.value() * spec.velocity[entry.col()];
+    return speed;
+  }
+  const RowMatrix& rows = model_.contact();
+  double way = 0;
+  for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e) {
+    const auto at = static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)]) * static_cast<std::size_t>(T_) +
+                    static_cast<std::size_t>(lane);
+    way += rows.value[static_cast<std::size_t>(e)] * (latest_[at] - earlier_[at]);
+  }
+  if (marcher.program().support) way += marcher.support(lane, latest_time_) - marcher.support(lane, earlier_time_);
+  return way / (latest_time_ - earlier_time_);
+}
+
+// A sub-step is over: the velocities over it.
+void ImpactRecorder::moved(const Marcher& marcher, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  state.closed.each([&](int point) {
+    Point& one = state.points[static_cast<std::size_t>(point)];
+    const double now = velocity(marcher, lane, point);
+    stop(state, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
+    one.velocity = now;
+  });
+  std::erase_if(state.leaving, [&](int point) {
+    Point& one = state.points[static_cast<std::size_t>(point)];
+    if (one.row < state.impacts.size()) {
+      Impact& impact = state.impacts[one.row];
+      const double now = velocity(marcher, lane, point);
+      impact.speed_out = impact.side == StopSide::lower ? now : -now;
+    }
+    return ++one.free == settles_after;
+  });
+}
+
+void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  Point& one = state.points[static_cast<std::size_t>(point)];
+  one.velocity = velocity(marcher, lane, point);
+  std::erase(state.leaving, point);
+  const double towards = side > 0 ? -one.velocity : one.velocity;
+  StopTotals& totals = stop(state, point, side);
+  totals.fastest = totals.impacts == 0 ? towards : std::max(totals.fastest, towards);
+  ++totals.impacts;
+  ++state.count;
+  one.row = state.impacts.size();
+  if (one.row >= most_) {
+    one.row = std::numeric_limits<std::size_t>::max();
+    return;
+  }
+  Impact impact;
+  impact.time = view.time + view.program->facts.instant * h_;
+  impact.point = point;
+  impact.side = side > 0 ? StopSide::lower : StopSide::upper;
+  impact.speed_in = towards;
+  state.impacts.push_back(impact);
+}
+
+void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  state.force = 0;
+  state.closed.end_instant([&](int point, int before, int now) {
+    Point& one = state.points[static_cast<std::size_t>(point)];
+    if (before != 0 && now != before) {
+      if (one.row < state.impacts.size()) state.impacts[one.row].open_end = false;
+      one.free = 0;
+      if (now == 0) state.leaving.push_back(point);
+    }
+    one.side = now;
+    if (now == 0) return;
+    if (now != before) begin(marcher, view, lane, point, now);
+    const double force = lasts_ > 0 ? one.given / lasts_ : 0.0;
+    state.force += force;
+    state.peak = std::max(state.peak, force);
+    StopTotals& totals = stop(state, point, now);
+    totals.impulse += one.given;
+    totals.contact_time += lasts_;
+    totals.squares += one.given * force;
+    totals.peak_force = std::max(totals.peak_force, force);
+    if (one.row < state.impacts.size()) {
+      Impact& impact = state.impacts[one.row];
+      impact.impulse += one.given;
+      impact.duration += lasts_;
+      impact.peak_force = std::max(impact.peak_force, force);
+      impact.release_force = force;
+    }
+    one.pushed = one.given;
+    one.given = 0;
+  });
+  if (state.closed.idle() && state.leaving.empty()) busy_ &= ~(1U << lane);
+}
+
+void ImpactRecorder::finish(const Marcher& marcher) {
+  if (known_ > 0 && marcher.time() > latest_time_) move_to(marcher, marcher.slot(0), marcher.time());
+}
+
+double ImpactRecorder::take_peak(int lane) {
+  return std::exchange(lanes_[static_cast<std::size_t>(lane)].peak, 0.0);
+}
+
+}  // namespace ricochet

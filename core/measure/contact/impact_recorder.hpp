@@ -1,0 +1,132 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/closed_points.hpp>
+#include <vector>
+
+/// \file
+/// Contact point by point, as a march meets it. Contact is looked at once per instant: each sub-step, with the stages
+/// that ask together as one. With ω the momentum weight of a stage (s: what an effort of 1 N finally gives to a free
+/// mass) and p the effort that it finds at a point (N), an instant
+///
+///     lasts   Ω = max ω                over its stages (s),
+///     gives   I = Σ ω |p|              (N s),    by the force    F = I / Ω    (N),
+///
+/// as the mean force of a window has it. An effort that gives no momentum (ω = 0, of a projection) closes a point and
+/// is no force. The velocity of a point between two instants is the difference of its absolute positions before any
+/// stage of either, H q + φ, over the time between: of one stage per step (x_{n+1} − x_n)/h, of several sub-steps that
+/// of one of them. Stops do not move: it is relative to them.
+namespace ricochet {
+
+enum class StopSide { lower, upper };
+
+/// A point closes at a stop, is pushed for one or more instants, and opens.
+struct Impact {
+  double time = 0;  ///< of the first instant with an effort, s
+  int point = 0;    ///< row of H
+  StopSide side = StopSide::lower;
+  /// Towards the stop, m/s: the velocity over the sub-step that ends where the one that closes the point begins, free
+  /// of its efforts; that of the initial state where there is none before.
+  double speed_in = 0;
+  /// Away from the stop, m/s: the velocity over the second sub-step without an effort, when what the first one still
+  /// had of the efforts before it is spent; over the first where the point closes again or the march ends after it. NaN
+  /// while the point is closed.
+  double speed_out = std::numeric_limits<double>::quiet_NaN();
+  double impulse = 0;        ///< Σ I, N s
+  double peak_force = 0;     ///< largest F, N
+  double duration = 0;       ///< Σ Ω, s
+  double release_force = 0;  ///< F of the last instant, N
+  bool open_end = true;      ///< the point is still closed
+};
+
+/// A point at one of its stops, over the whole run.
+struct StopTotals {
+  long long impacts = 0;
+  double peak_force = 0;    ///< N
+  double impulse = 0;       ///< N s
+  double contact_time = 0;  ///< Σ Ω, s
+  double squares = 0;       ///< Σ Ω F², N² s
+  /// ∫ F |v| dt, J: of an instant, I times the mean of |v| where v goes, evenly with the momentum given, from the
+  /// velocity over the sub-step before to that over the instant's own. So a free mass with e has ½ m v² (1 + e²).
+  double normal_work = 0;
+  double fastest = 0;  ///< largest speed in, m/s
+
+  /// Over the time in contact, N; 0 where that is 0.
+  double mean_force() const { return contact_time > 0 ? impulse / contact_time : 0; }
+  double rms_force() const { return contact_time > 0 ? std::sqrt(squares / contact_time) : 0; }
+};
+
+/// Writes down the impacts of every contact point of every lane. Passes everything on to the observer behind it.
+///
+/// A step costs one copy of the positions; a point that is open costs nothing more. Nothing is allocated but by an
+/// impact, when the list grows. Beyond `most` impacts of a lane the list ends, totals go on.
+class ImpactRecorder final : public StepObserver {
+ public:
+  static constexpr std::size_t most_impacts = 100000;
+
+  explicit ImpactRecorder(const Marcher& marcher, StepObserver* behind = nullptr, std::size_t most = most_impacts);
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override;
+  void step_done(Marcher& marcher) override;
+  /// To be called once, when the march is over: what its last sub-step was, for those who wait for it.
+  void finish(const Marcher& marcher);
+
+  /// In the order in which they began, those still closed included.
+  const std::vector<Impact>& impacts(int lane) const { return lane_of(lane).impacts; }
+  /// How often a point closed, summed over the points; may be more than the list holds.
+  long long count(int lane) const { return lane_of(lane).count; }
+  const StopTotals& totals(int lane, int point, StopSide side) const {
+    return lane_of(lane).stops[2 * static_cast<std::size_t>(point) + static_cast<std::size_t>(side)];
+  }
+
+  /// Σ_i F_i of the last instant, N: forces of opposite stops do not cancel.
+  double force(int lane) const { return lane_of(lane).force; }
+  /// Largest F of one point since it was last asked, N.
+  double take_peak(int lane);
+
+ private:
+  struct Point {
+    double given = 0;     // I of the instant under way
+    double velocity = 0;  // over the sub-step before the last instant; of closed points
+    double pushed = 0;    // I of the last instant
+    int side = 0;         // at the last instant: −1 upper, 0 open, 1 lower
+    int free = 0;         // sub-steps without an effort since it opened, while its speed out is open
+    std::size_t row = 0;  // of its last impact; beyond the list where that is full
+  };
+  struct Lane {
+    explicit Lane(int points) : closed(points), points(static_cast<std::size_t>(points)) {}
+    ClosedPoints closed;
+    std::vector<Point> points;
+    std::vector<int> leaving;  // points whose speed out is open
+    std::vector<StopTotals> stops;
+    std::vector<Impact> impacts;
+    long long count = 0;
+    double force = 0, peak = 0;
+  };
+  const Lane& lane_of(int lane) const { return lanes_[static_cast<std::size_t>(lane)]; }
+  static StopTotals& stop(Lane& lane, int point, int side) {
+    return lane.stops[2 * static_cast<std::size_t>(point) + (side > 0 ? 0U : 1U)];
+  }
+  void open_instant(const Marcher& marcher, const StageView& view);
+  void move_to(const Marcher& marcher, const double* positions, double time);
+  void moved(const Marcher& marcher, int lane);
+  double velocity(const Marcher& marcher, int lane, int point) const;
+  void close_instant(const Marcher& marcher, const StageView& view, int lane);
+  void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
+
+  const MarchModel& model_;
+  StepObserver* behind_;
+  std::size_t most_;
+  double h_;
+  int T_;
+  std::vector<Lane> lanes_;
+  std::vector<double> earlier_, latest_;  // positions before the instant before the one under way, and before that one
+  double earlier_time_ = 0, latest_time_ = 0;
+  int known_ = 0;           // how many of these there are
+  std::uint32_t busy_ = 0;  // lanes with a point that is closed or whose speed out is open
+  double lasts_ = 0;        // Ω of the instant under way
+};
+
+}  // namespace ricochet
