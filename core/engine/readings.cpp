@@ -14,6 +14,7 @@ bool Marcher::any_running() const {
 }
 
 double Marcher::support(int lane, double t) const {
+  if (!program_.support) return 0;
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
   return spec.amplitude * std::sin(program_.problem->support.pulsation * t + spec.phase);
 }

@@ -55,8 +55,9 @@ void sample_places(double length, int cells, SampleGrid& grid) {
     }
 }
 
-ContactLog::ContactLog(const Marcher& marcher)
-    : model_(*marcher.program().model),
+ContactLog::ContactLog(const Marcher& marcher, StepObserver* behind)
+    : behind_(behind),
+      model_(*marcher.program().model),
       problem_(*marcher.program().problem),
       T_(marcher.width()),
       h_(marcher.program().h),
@@ -93,6 +94,7 @@ double ContactLog::onset(const Marcher& marcher, const StageView& view, int poin
 }
 
 void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
+  if (behind_) behind_->stage_solved(marcher, view);
   if (!view.effort) {
     momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
     return;
@@ -147,10 +149,10 @@ void ContactLog::close_instant(const StageView& view) {
   }
 }
 
-MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid)
+MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObserver* beside)
     : marcher_(marcher),
       grid_(grid),
-      log_(marcher),
+      log_(marcher, beside),
       mass_(QuadraticForm::of(marcher.program().problem->inertia)),
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),

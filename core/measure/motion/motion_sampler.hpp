@@ -17,11 +17,15 @@ void sample_places(double length, int cells, SampleGrid& grid);
 ///
 /// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero, kept within a
 /// sub-step of the one that closed it; a release is the beginning of the first sub-step without contact on that side.
+/// Passes everything on to the observer behind it.
 class ContactLog final : public StepObserver {
  public:
-  explicit ContactLog(const Marcher& marcher);
+  explicit ContactLog(const Marcher& marcher, StepObserver* behind = nullptr);
   void stage_solved(const Marcher& marcher, const StageView& view) override;
-  void step_done(Marcher&) override { momentum_.step_done(); }
+  void step_done(Marcher& marcher) override {
+    if (behind_) behind_->step_done(marcher);
+    momentum_.step_done();
+  }
 
   const std::vector<ContactEvent>& events() const { return events_; }
   double impulse() const { return momentum_.momentum(); }  ///< ∫₀ᵗ Σp, signed, N s
@@ -33,6 +37,7 @@ class ContactLog final : public StepObserver {
   void close_instant(const StageView& view);
   double onset(const Marcher& marcher, const StageView& view, int point, int side);
 
+  StepObserver* behind_;
   const MarchModel& model_;
   const SemiDiscrete& problem_;
   int T_;
@@ -57,7 +62,8 @@ class ContactLog final : public StepObserver {
 /// that time. The march goes up to two steps beyond the last time.
 class MotionSampler {
  public:
-  MotionSampler(Marcher& marcher, const SampleGrid& grid);
+  /// `beside`: looks at the same march.
+  MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObserver* beside = nullptr);
 
   /// Marches to the end of the grid. `keep_going` is asked now and then; when it says no, or the lane stops, what was
   /// read so far is kept: `sampled()` times.

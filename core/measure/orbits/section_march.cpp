@@ -103,7 +103,7 @@ class SectionMarch::Watch final : public StepObserver {
     const double speed = closing_speed(marcher, view, lane, side, point);
     const double turns = (static_cast<double>(marcher.step() % plan_.steps_per_period) + view.program->facts.from) /
                          plan_.steps_per_period;
-    orbit.impacts.push_back({2 * std::numbers::pi * turns, side, std::abs(speed)});
+    orbit.impacts.push_back({2 * std::numbers::pi * turns, side, std::abs(speed), point});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
     if (plan_.section != SectionKind::impact) return;
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -40,11 +40,13 @@ struct SectionPoint {
   double displacement = 0, velocity = 0, opposite_displacement = 0, opposite_velocity = 0;
 };
 
-/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s).
+/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s), and
+/// the row of H that does; of several at once, the first.
 struct ImpactPoint {
   double phase = 0;
   std::int64_t side = 0;  ///< as wide as the others: no padding, the bytes of equal impacts are equal
   double speed = 0;
+  std::int64_t point = 0;
 };
 
 /// An orbit, on its way or complete. Plain data: what is needed to go on is in it.

@@ -227,6 +227,7 @@ class BifurcationRun {
           if (!scheduler_->finished(task)) continue;
           view.orbit = &scheduler_->orbit(task);
           view.group = scenes_[scene].group;
+          view.problem = &scenes_.problem(view.group);
           view.marginal = marginal_[static_cast<std::size_t>(view.group)].sentence;
           view.viscosity = viscosity_[static_cast<std::size_t>(view.group)];
         }

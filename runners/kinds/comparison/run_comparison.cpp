@@ -6,6 +6,7 @@
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
+#include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -86,7 +87,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   say_references(record, set);
 
   const double run = thread_seconds(), budget = budget_of(study_case);
-  MotionSampler sampler(marcher, set.grid);
+  ImpactRecorder recorder(marcher);
+  MotionSampler sampler(marcher, set.grid, &recorder);
   sampler.march([&] {
     if (stop) throw Interrupted{};
     return thread_seconds() - run <= budget;
@@ -99,9 +101,8 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const bool of_the_mesh = set.applicable.front()->of_the_mesh;
   put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);
   put_measure(record, "reference_of_law", rigid || of_the_mesh ? 1 : 0);
-  put_measure(record, "impacts",
-              static_cast<double>(
-                  std::count_if(events.begin(), events.end(), [](const ContactEvent& event) { return event.begins; })));
+  recorder.finish(marcher);
+  add_contact(record, recorder, marcher);
   put_measure(record, "active_set_changes", static_cast<double>(sampler.contact().changes()));
   if (whole) {
     record.status = "done";

@@ -7,6 +7,7 @@
 #include "runners/kinds/comparison/page/page.hpp"
 #include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
@@ -26,6 +27,7 @@ Kind convergence_kind() {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
     results.derived.push_back(order_verdicts_table(results.derived.back()));
+    describe_contact(results.cases);
     collect_tables(results);
   };
   kind.answers = [](const StudyResults& results) {

@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* orbits_mark = "orbits 3";
+constexpr const char* orbits_mark = "orbits 4";
 constexpr const char* exponents_mark = "exponents 2";
 
 }  // namespace
@@ -32,7 +32,7 @@ void serialize(Archive& archive, SectionSeries& series) {
 
 template <class Archive>
 void serialize(Archive& archive, ImpactPoint& impact) {
-  archive(impact.phase, impact.side, impact.speed);
+  archive(impact.phase, impact.side, impact.speed, impact.point);
 }
 
 template <class Archive>

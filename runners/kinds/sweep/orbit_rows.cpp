@@ -167,7 +167,8 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
       points.add({view.value, start, static_cast<double>(i), section[i].displacement, section[i].velocity,
                   section[i].opposite_displacement, section[i].opposite_velocity});
     for (const ImpactPoint& impact : impacts_shown(view))
-      impacts.add({view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed});
+      impacts.add({view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed,
+                   view.problem->contact_x[static_cast<std::size_t>(impact.point)]});
   }
   record.tables.push_back(std::move(values));
   record.tables.push_back(changes(views, starts));

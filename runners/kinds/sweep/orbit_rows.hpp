@@ -19,6 +19,7 @@ struct OrbitView {
   std::string refusal;    ///< why there is no orbit
   const Orbit* orbit = nullptr;
   int group = -1;
+  const SemiDiscrete* problem = nullptr;  ///< of that group
   std::string marginal;  ///< what the stability analysis says of roots that are the scheme's
   std::optional<EquivalentViscosity> viscosity;
   OrbitExponents exponents;

@@ -152,7 +152,8 @@ NumberTable impacts_head(const SweptColumns& swept) {
                                                start_column,
                                                {"phase", "rad", "Phase of the forcing at the impact."},
                                                {"side", "", "The stop that is hit: lower or upper."},
-                                               {"speed", "m/s", "Speed at which the contact point closes."}});
+                                               {"speed", "m/s", "Speed at which the contact point closes."},
+                                               {"x", "m", "Place of the contact point."}});
   table.text = "One impact of one orbit: of one period of what repeats, else of every kept period.";
   return table;
 }

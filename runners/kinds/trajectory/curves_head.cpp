@@ -15,7 +15,14 @@ Table curves_head() {
            {"scheme_energy", "J", "The scheme's own discrete energy; the common one where it declares none."},
            {"contact_force", "N", "Sum of the contact efforts over the points at the last step, positive upwards."},
            {"penetration", "m", "Distance by which a contact point is past its stop, the largest over the points."},
-           {"active", "1", "Number of contact points that are closed."}},
+           {"active", "1", "Number of contact points that are closed."},
+           {"contact_force_total", "N",
+            "Sum of the forces at the contact points by magnitude at the last step: those of opposite stops do not "
+            "cancel."},
+           {"contact_force_peak", "N", "Largest force of one contact point since the sample before, from every step."},
+           {"tip_displacement_low", "m", "Smallest displacement of the tip since the sample before, from every step."},
+           {"tip_displacement_high", "m", "Largest displacement of the tip since the sample before."},
+           {"penetration_peak", "m", "Largest penetration since the sample before, from every step."}},
           {}};
 }
 

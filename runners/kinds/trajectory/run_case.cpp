@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
+#include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -18,36 +21,60 @@ namespace {
 // The audit of every step costs about this much more than the step alone.
 constexpr double audit_seconds_per_step = 6e-7;
 
-// The sampled series of one lane, in the columns of a trajectory's curve.
-class Sampler {
+// The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
+// samples. Passes everything on to the observer behind it.
+class Sampler final : public StepObserver {
  public:
-  Sampler() {
+  Sampler(const EnergyAudit& audit, ImpactRecorder& recorder, StepObserver& behind)
+      : audit_(audit), recorder_(recorder), behind_(behind) {
     for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
   }
-  void take(const Marcher& marcher, const EnergyAudit& audit) {
-    const EnergySample& energy = audit.energy(0);
-    const ContactTotals& contact = audit.contact(0);
+  void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
+  void step_done(Marcher& marcher) override {
+    behind_.step_done(marcher);
+    if (!marcher.status(0).running) return;
+    const double tip = marcher.tip(0);
+    largest_tip_ = std::max(largest_tip_, std::abs(tip));
+    low_ = std::min(low_, tip);
+    high_ = std::max(high_, tip);
+    deepest_ = std::max(deepest_, audit_.penetration(0));
+  }
+  void take(const Marcher& marcher) {
+    const EnergySample& energy = audit_.energy(0);
+    const ContactTotals& contact = audit_.contact(0);
     const double row[] = {marcher.time(),
                           marcher.tip(0),
-                          audit.tip_velocity(0),
+                          audit_.tip_velocity(0),
                           energy.kinetic,
                           energy.elastic,
                           energy.contact,
                           energy.common(),
                           energy.scheme,
                           contact.force,
-                          audit.penetration(0),
-                          static_cast<double>(contact.active)};
+                          audit_.penetration(0),
+                          static_cast<double>(contact.active),
+                          recorder_.force(0),
+                          recorder_.take_peak(0),
+                          low_,
+                          high_,
+                          deepest_};
+    low_ = infinity;
+    high_ = -infinity;
+    deepest_ = 0;
     for (const double value : row)
       if (!std::isfinite(value)) return;
-    largest_tip_ = std::max(largest_tip_, std::abs(marcher.tip(0)));
     for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
   }
   Curve finish() { return std::move(curve_); }
   double largest_tip() const { return largest_tip_; }
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  const EnergyAudit& audit_;
+  ImpactRecorder& recorder_;
+  StepObserver& behind_;
+  double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;
   Curve curve_;
 };
@@ -94,7 +121,6 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   put("projection_energy", problem.projection_energy);
   put("kernel_energy", problem.kernel_energy);
   put("deepest_penetration", contact.deepest_penetration);
-  put("impacts", static_cast<double>(contact.impacts));
   put("contact_instants", static_cast<double>(contact.contact_steps));
   put("active_set_changes", static_cast<double>(contact.active_set_changes));
   put("impulse", contact.impulse);
@@ -135,15 +161,16 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   EnergyAudit audit(marcher);
-  ForceWindow forces(study_case.settings, audit);
-  Sampler sampler;
+  ImpactRecorder recorder(marcher, &audit);
+  ForceWindow forces(study_case.settings, recorder);
+  Sampler sampler(audit, recorder, forces);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   bool spent = false;
   long long chunk = 16;
-  marcher.start(&forces);
-  if (marcher.step() > 0) sampler.take(marcher, audit);
+  marcher.start(&sampler);
+  if (marcher.step() > 0) sampler.take(marcher);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
   for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
     // Samples at equal fractions of the run, on whole steps.
@@ -152,14 +179,14 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
       const double before = thread_seconds();
-      marcher.march(std::min(target - marcher.step(), chunk), &forces);
+      marcher.march(std::min(target - marcher.step(), chunk), &sampler);
       const double now = thread_seconds();
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.
       chunk =
           now - before < 0.01 ? std::min(2 * chunk, 20000LL) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
     }
-    if (marcher.any_running() && marcher.step() == target) sampler.take(marcher, audit);
+    if (marcher.any_running() && marcher.step() == target) sampler.take(marcher);
   }
   record.run_seconds = thread_seconds() - run;
   record.steps = marcher.step();
@@ -168,7 +195,9 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     record.status = "done";
   else
     record_early_end(record, marcher, prepared.steps, budget);
+  recorder.finish(marcher);
   fill_measures(record, marcher, audit, *problem);
+  add_contact(record, recorder, marcher);
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
   if (forces.told()) {
     put_measure(record, "contact_force_mean", forces.mean());

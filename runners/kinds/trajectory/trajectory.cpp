@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
@@ -71,7 +72,8 @@ std::vector<MeasureInfo> trajectory_measures() {
        Of::motion, true, "energy_brought_in"},
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop.", Of::motion, false,
        "largest_tip_displacement"},
-      {"impacts", "1", "Number of times that contact began: no active point in one sub-step, some in the next."},
+      {"impacts", "1",
+       "Number of times that a contact point closed, summed over the points; each is a row of impacts.csv."},
       {"contact_instants", "1", "Number of instants of contact (sub-steps) at which some point was closed.", Of::motion,
        true},
       {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed.", Of::motion,
@@ -80,6 +82,10 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Momentum that the contact efforts give, summed by magnitude over the contact points; what an effort of each "
        "stage is "
        "worth follows from the scheme's plan."},
+      {"peak_contact_force", "N",
+       "Largest force at one contact point over the run, from every step. That of an impact on a rigid stop is its "
+       "impulse over a step or two: it grows as the step shrinks."},
+      {"contact_time", "s", "Time in contact, summed over the contact points.", Of::motion, true},
       {"contact_force_mean", "N",
        "Mean of the contact force over the study's window, summed over the points: times the window it is the impulse. "
        "The instants of a step count by the momentum that an effort of each gives."},
@@ -102,7 +108,7 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
       {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run.", Of::motion, false,
        "largest_tip_displacement"},
-      {"largest_tip_displacement", "m", "Largest absolute displacement of the tip among the samples of the run.",
+      {"largest_tip_displacement", "m", "Largest absolute displacement of the tip over the steps of the run.",
        Of::motion, true},
       {"microseconds_per_step", "µs",
        "Processor time of the marching, energy audit of every step included, divided by the number of steps.",
@@ -196,6 +202,7 @@ Kind trajectory_kind() {
     return runner;
   };
   kind.tables = [](StudyResults& results) {
+    describe_contact(results.cases);
     collect_tables(results);
     for (Table table : {energy_ends_table(results), energy_by_mass_table(results), energy_trends_table(results),
                         energy_ledger_table(results), choice_worth_table(results)})

@@ -7,6 +7,7 @@
 #include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/comparison/run_comparison.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
@@ -39,6 +40,7 @@ Kind work_precision_kind() {
     results.derived.push_back(order_verdicts_table(results.derived.back()));
     results.derived.push_back(work_precision_table(results));
     results.derived.push_back(precision_targets_table(results));
+    describe_contact(results.cases);
     collect_tables(results);
   };
   kind.answers = [](const StudyResults& results) {

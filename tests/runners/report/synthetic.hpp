@@ -55,7 +55,7 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
                                            : 40 * step;
   Curve& curve = record.curve;
   curve.names = {"t",      "tip_displacement", "tip_velocity",  "kinetic",     "elastic", "contact",
-                 "energy", "scheme_energy",    "contact_force", "penetration", "active"};
+                 "energy", "scheme_energy",    "contact_force", "penetration", "active",  "contact_force_peak"};
   curve.columns.resize(curve.names.size());
   double energy = start;
   for (int i = 0; i <= shape.samples; ++i) {
@@ -66,7 +66,9 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
       energy = start * (1 + 0.05 * impacts) * std::exp(diverges ? 60 * t : 0.5 * t * -std::log10(step));
     if (diverges && energy > 1e9) break;
     const double x = tip(t, beta), force = std::abs(x) >= 0.1 ? 40 * (1 + std::sin(900 * t)) * (x > 0 ? -1 : 1) : 0;
-    const double row[] = {t, x, 0, 0.4 * energy, 0.6 * energy, 0, energy, energy, force, 0, force != 0 ? 1.0 : 0.0};
+    // Between two samples the force was larger than at either.
+    const double row[] = {t,      x,     0, 0.4 * energy,           0.6 * energy,         0, energy,
+                          energy, force, 0, force != 0 ? 1.0 : 0.0, 1.5 * std::abs(force)};
     for (size_t c = 0; c < curve.columns.size(); ++c) curve.columns[c].push_back(row[c]);
   }
   if (diverges) {

@@ -27,7 +27,7 @@ Orbit full_orbit() {
   orbit.readings.values = {1, 2, 3, 4};
   orbit.strobed = {{0.1, 0.2, 0.3, 0.4}, {1, 2, 3, 4}};
   orbit.points = {{0.1, 0.2, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()}};
-  orbit.impacts = {{1.5, 1, 0.25}, {2.5, 0, 0.75}};
+  orbit.impacts = {{1.5, 1, 0.25, 3}, {2.5, 0, 0.75, 0}};
   orbit.impact_counts = {1, 1};
   orbit.contact_steps = 1234567890123;
   orbit.most_on_a_side = 3;
@@ -62,6 +62,7 @@ TEST_CASE("orbits come back bit for bit") {
   CHECK(std::isnan(is.points.at(0).opposite_velocity));
   CHECK(is.impacts.at(0).side == 1);
   CHECK(is.impacts.at(1).speed == 0.75);
+  CHECK(is.impacts.at(0).point == 3);
   CHECK(is.impact_counts == was.impact_counts);
   CHECK(is.contact_steps == was.contact_steps);
   CHECK(is.most_on_a_side == was.most_on_a_side);

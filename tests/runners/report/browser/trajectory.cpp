@@ -109,7 +109,7 @@ void check_axes(const Json& page) {
 /// A curve ends where its case's samples end.
 void check_samples(const StudyResults& results, const Json& page) {
   for (const auto& [id, column] :
-       {std::pair("energy", "energy"), {"tip", "tip_displacement"}, {"force", "contact_force"}}) {
+       {std::pair("energy", "energy"), {"tip", "tip_displacement"}, {"force", "contact_force_peak"}}) {
     INFO(id);
     size_t ends = 0;
     for (const Json& series :

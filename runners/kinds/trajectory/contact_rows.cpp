@@ -1,0 +1,114 @@
+#include "runners/kinds/trajectory/contact_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* side_names[] = {"lower", "upper"};
+
+const Column point_column{"point", "1", "Number of the contact point of the scene, from 0."};
+const Column x_column{"x", "m", "Place of the contact point."};
+
+NumberTable impacts_head() {
+  NumberTable table = number_table(
+      "impacts",
+      {{"t", "s", "Time at which the point closes: that of the first effort."},
+       point_column,
+       x_column,
+       {"side", "", "The stop that is hit: lower or upper."},
+       {"speed_in", "m/s",
+        "Velocity of the point towards the stop, over the sub-step before the one that closes it: a difference of "
+        "positions over the time between them."},
+       {"speed_out", "m/s",
+        "Velocity away from the stop over the second sub-step without an effort; over the first where the point closes "
+        "again after it. Empty where the point did not leave."},
+       {"impulse", "N s", "Momentum that the efforts give, by magnitude."},
+       {"peak_force", "N",
+        "Largest force; that of an impact on a rigid stop is its impulse over a step or two, and grows as they "
+        "shrink."},
+       {"duration", "s", "Time for which the point is pushed, whole sub-steps."},
+       {"release_force", "N", "The last force; where the point is still closed, that of the last instant."},
+       {"open_end", "", "Whether the point was still closed when the march ended."}});
+  table.text = "One impact of one case: a contact point closes, is pushed, and opens.";
+  return table;
+}
+
+Table stops_head() {
+  return {
+      "stops",
+      "One stop of one contact point of one case that was ever hit.",
+      {point_column,
+       x_column,
+       {"side", "", "The stop: lower or upper."},
+       {"impacts", "1", "Number of times that the point closed there."},
+       {"peak_force", "N", "Largest force."},
+       {"mean_force", "N", "Mean of the force over the time in contact."},
+       {"rms_force", "N", "Root mean square of the force over the time in contact."},
+       {"contact_time", "s", "Time in contact."},
+       {"impulse", "N s", "Momentum that the efforts gave, by magnitude."},
+       {"normal_work", "J",
+        "∫F|v|dt over the run: what the force works on the point, in and out alike; on a free mass ½mv²(1 + e²) per "
+        "impact."},
+       {"largest_speed_in", "m/s", "Largest velocity with which the point came."}},
+      {}};
+}
+
+void add_impacts(CaseRecord& record, const ImpactRecorder& recorder, const std::vector<double>& x) {
+  NumberTable table = impacts_head();
+  table.words = {{"side", {side_names[0], side_names[1]}}, {"open_end", {"false", "true"}}};
+  for (const Impact& impact : recorder.impacts(0))
+    table.add({impact.time, static_cast<double>(impact.point), x[static_cast<std::size_t>(impact.point)],
+               static_cast<double>(impact.side), impact.speed_in, impact.speed_out, impact.impulse, impact.peak_force,
+               impact.duration, impact.release_force, impact.open_end ? 1.0 : 0.0});
+  const auto listed = static_cast<long long>(table.rows());
+  if (listed < recorder.count(0))
+    record.notes.push_back(fmt::format("impacts.csv has the first {} of {} impacts; counts and sums have all of them",
+                                       listed, recorder.count(0)));
+  record.numbers.push_back(std::move(table));
+}
+
+}  // namespace
+
+void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const Marcher& marcher) {
+  put_measure(record, "impacts", static_cast<double>(recorder.count(0)));
+  if (!marcher.program().contact) return;
+  const SemiDiscrete& problem = *marcher.program().problem;
+  Table stops = stops_head();
+  double peak = 0, time = 0;
+  for (int point = 0; point < problem.points(); ++point)
+    for (const StopSide side : {StopSide::lower, StopSide::upper}) {
+      const StopTotals& totals = recorder.totals(0, point, side);
+      if (totals.impacts == 0) continue;
+      peak = std::max(peak, totals.peak_force);
+      time += totals.contact_time;
+      stops.rows.push_back({point, problem.contact_x[static_cast<std::size_t>(point)],
+                            side_names[static_cast<std::size_t>(side)], totals.impacts, totals.peak_force,
+                            totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
+                            totals.normal_work, totals.fastest});
+    }
+  put_measure(record, "peak_contact_force", peak);
+  put_measure(record, "contact_time", time);
+  add_impacts(record, recorder, problem.contact_x);
+  record.tables.push_back(std::move(stops));
+}
+
+void describe_contact(std::vector<CaseRecord>& records) {
+  const Table stops = stops_head();
+  const NumberTable impacts = impacts_head();
+  for (CaseRecord& record : records) {
+    for (Table& table : record.tables)
+      if (table.name == stops.name) describe(table, stops);
+    for (NumberTable& table : record.numbers)
+      if (table.name == impacts.name) {
+        table.text = impacts.text;
+        describe(table.columns, impacts.columns);
+      }
+  }
+}
+
+}  // namespace ricochet
