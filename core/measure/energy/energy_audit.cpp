@@ -233,8 +233,12 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   }
 }
 
+double EnergyAudit::tip_velocity(int lane) const {
+  const Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  return (state.lift + model_.tip().times(0, state.increment.data())) / state.duration;
+}
+
 void EnergyAudit::step_done(Marcher& marcher) {
-  const RowMatrix& tip = model_.tip();
   const double t = marcher.time();
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
@@ -244,9 +248,7 @@ void EnergyAudit::step_done(Marcher& marcher) {
       state.penetration = marcher.penetration(lane);
       state.contact.deepest_penetration = std::max(state.contact.deepest_penetration, state.penetration);
     }
-    double tip_increment = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
-    tip_increment += tip.times(0, state.increment.data());
-    state.tip_velocity = tip_increment / state.duration;
+    state.lift = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
     const bool declares = !marcher.program().plan.energy.empty();
     sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();
     EnergyTotals& totals = state.energy;

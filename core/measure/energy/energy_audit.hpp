@@ -72,7 +72,7 @@ class EnergyAudit final : public StepObserver {
   /// Whether the plan declares a work form: without, the works and the balance are not known.
   bool balances() const { return balances_; }
   /// Δu_tip/Δt of the last sub-step, absolute, m/s.
-  double tip_velocity(int lane) const { return lanes_[static_cast<std::size_t>(lane)].tip_velocity; }
+  double tip_velocity(int lane) const;
 
  private:
   struct Lane {
@@ -85,7 +85,8 @@ class EnergyAudit final : public StepObserver {
     ClosedPoints closed;
     double force = 0;  // of the present instant
     double step_loads = 0, step_damping = 0, step_contact = 0, step_scheme = 0, step_law = 0;
-    double penetration = 0, tip_velocity = 0;
+    double penetration = 0;
+    double lift = 0;  // of the support over the last sub-step
     bool has_scheme = false;
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);

@@ -2,6 +2,8 @@
 // wrong.
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 
+#include <set>
+
 #include "tests/runners/kinds/sweep/sweep_case.hpp"
 
 using namespace ricochet;
@@ -138,6 +140,22 @@ TEST_CASE("bifurcation: impacts with inertia say that their jump was put on") {
   const double sum =
       of_values(record, "exponent_1")[0].number().value() + of_values(record, "exponent_2")[0].number().value();
   CHECK(sum / 2 == Approx(-0.1 + std::log(0.8) * 2.2 / (2 * 3.14159265358979)).margin(2e-3));
+}
+
+TEST_CASE("bifurcation: an impact says where the point is that closes") {
+  Json text = beam_sweep({0.09});
+  text["scene"]["stops"] = {{"lower", "x<1 ? -0.04 : -0.5"}, {"upper", "x<1 ? 0.04 : 0.1"}, {"at", {0.75, 1.501}}};
+  const CaseRecord record = run_sweep(text);
+  const NumberTable& impacts = numbers_of(record, "impacts");
+  REQUIRE(impacts.rows() > 4);
+  std::set<double> places;
+  for (std::size_t i = 0; i < impacts.rows(); ++i) {
+    const double x = column_of(impacts, "x")[i];
+    places.insert(x);
+    if (column_of(impacts, "side")[i] == 0) CHECK(x == 0.75);  // the tip has no stop below that it reaches
+  }
+  CHECK(places.contains(0.75));
+  CHECK(places.size() <= 2);
 }
 
 TEST_CASE("bifurcation: the step follows the forcing period") {

@@ -19,22 +19,21 @@ using namespace ricochet;
 
 namespace {
 
-const std::atomic<bool> never = false;
+const std::atomic<bool> goes_on = false;
 
 /// A tube between plates, its far end on a stop without a gap; a load swings it.
 Json tube_study() {
-  return Json::parse(R"({
+  return Json::parse(R"json({
     "name": "tube", "kind": "trajectory",
-    "scene": {"structure": {"type": "beam", "length": 1.5, "section": {"type": "given", "EI": 498, "rhoS": 1.013}, "damping": {"stiffness": 1e-4}},
+    "scene": {"structure": {"type": "beam", "length": 1.5, "section": {"type": "given", "EI": 498, "rhoS": 1.013},
+                            "damping": {"stiffness": 1e-4}},
               "stops": {"lower": "x>1.4 ? 0 : -0.0003", "upper": "x>1.4 ? 1 : 0.0003", "at": [0.5, 1.0, 1.5]},
               "load": "-20 - 60*sin(90*t)",
-              "initial": {
-  "displacement" : 0, "velocity" : 0}},
+              "initial": {"displacement": 0, "velocity": 0}},
     "mesh": {"elements": 15},
     "methods": {"mass": "consistent", "contact": {"name": "penalty", "stiffness": 1e6},
                 "time": ["newmark-dumont-paoli", "bathe"]},
-    "step": 5e-5, "duration": 0.3, "samples": 100
-})");
+    "step": 5e-5, "duration": 0.3, "samples": 100})json");
 }
 
 StudyResults results_of(const Json& text) {
@@ -44,7 +43,7 @@ StudyResults results_of(const Json& text) {
   const Study study = parse_study(text.dump(1), catalogue, registry);
   results.kind = "trajectory";
   results.columns = {"mass", "contact", "contact.stiffness", "time", "elements", "step"};
-  for (const StudyCase& one : study.cases) results.cases.push_back(run_case(one, registry, never));
+  for (const StudyCase& one : study.cases) results.cases.push_back(run_case(one, registry, goes_on));
   return results;
 }
 
@@ -162,8 +161,8 @@ TEST_CASE("a study that compares lists its impacts too, and one without contact 
   Registry registry;
   const Study study = parse_study(text.dump(1), catalogue, registry);
   CaseRunner runner = find_kind("convergence")->start({study, registry, {}, 1});
-  runner.open({}, never);
-  const CaseRecord record = runner.run(study.cases.front(), never);
+  runner.open({}, goes_on);
+  const CaseRecord record = runner.run(study.cases.front(), goes_on);
   REQUIRE(record.status == "done");
   const NumberTable* impacts = find_table(record.numbers, "impacts");
   REQUIRE(impacts);
