@@ -226,8 +226,8 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   contact.impacts += change.closings;
   if (contact.active > 0) {
     ++contact.contact_steps;
-    if (!change.was_active && contact.first_impact < 0)
-      contact.first_impact = view.time + view.program->facts.instant * h_;
+    contact.spells += !change.was_active;
+    if (contact.first_impact < 0) contact.first_impact = view.time + view.program->facts.instant * h_;
   } else if (change.was_active && contact.first_release < 0) {
     contact.first_release = view.from;
   }

@@ -45,6 +45,7 @@ struct EnergyTotals {
 /// together as one.
 struct ContactTotals {
   long long impacts = 0;             ///< times that a point closed, summed over the points
+  long long spells = 0;              ///< times that contact began anywhere: from no closed point to some
   long long active_set_changes = 0;  ///< steps whose set of active points (with side) differs from the step before
   long long contact_steps = 0;
   int most_iterations = 0;                       ///< of one solve of the law

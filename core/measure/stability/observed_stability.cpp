@@ -135,8 +135,8 @@ class GainWatch final : public StepObserver {
     const ContactTotals& contact = audit_.contact(0);
     cell.gain = gain_;
     cell.impacts = contact.impacts;
-    if (contact.impacts > 0)
-      cell.changes_per_impact = static_cast<double>(contact.active_set_changes) / static_cast<double>(contact.impacts);
+    if (contact.spells > 0)
+      cell.changes_per_impact = static_cast<double>(contact.active_set_changes) / static_cast<double>(contact.spells);
     cell.fast_share = force_.share();
     if (gain_ <= 1) return;
     cell.behaviour = Behaviour::growing;

@@ -30,14 +30,15 @@ struct ObservedCell {
   long long first_bad_step = -1;  ///< where it showed; −1: never
   double growth = 0;              ///< of amplitudes, per step, where they grow geometrically
   double gain = 0;                ///< largest energy that nothing gave, over all that was given
-  long long impacts = 0;
-  double changes_per_impact = 0;  ///< changes of the active set per impact; 2: it closes and opens
+  long long impacts = 0;          ///< times that a contact point closed
+  /// Changes of the active set for each time that contact began anywhere; 2: it closes and opens.
+  double changes_per_impact = 0;
   /// Share of the contact force's power above a quarter of the step frequency (mean left out), over windows of 1024
   /// steps that begin at an impact; a force that lasts one step has ½, one that alternates 1.
   double fast_share = 0;
   std::string cause;  ///< one sentence, "" when stable
   bool stable() const { return behaviour == Behaviour::stable || behaviour == Behaviour::linear_growth; }
-  /// The active set flickers: over 0.75 of the power is fast, or over 20 changes per impact.
+  /// The active set flickers: over 0.75 of the power is fast, or over 20 changes for each time that contact began.
   bool chatters() const { return fast_share > 0.75 || changes_per_impact > 20; }
 };
 using ObservedOrRefusal = std::variant<ObservedCell, Refusal>;

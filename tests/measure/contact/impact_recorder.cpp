@@ -182,6 +182,8 @@ TEST_CASE("a point that is always closed hides no impact of another") {
   CHECK(impulse == Approx(run.audit.contact(0).impulse).epsilon(1e-12));
   CHECK(durations == Approx(contact_time).epsilon(1e-12));
   CHECK(tip.contact_time > 0.3 * duration);
+  // What is counted where nothing was closed before misses them.
+  CHECK(run.audit.contact(0).spells < counted);
   // Rows come in the order in which contact began; the times of a step are those of its sub-steps.
   CHECK(std::is_sorted(run.impacts().begin(), run.impacts().end(),
                        [](const Impact& a, const Impact& b) { return a.time < b.time; }));
