@@ -15,6 +15,7 @@
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
@@ -36,12 +37,15 @@ struct Case {
   std::vector<double> nanoseconds;
   std::unique_ptr<Marcher> marcher;
   std::unique_ptr<EnergyAudit> audit;
-  std::unique_ptr<MotionSampler> sampler;  ///< reads the motion every `steps_per_sample` steps, contact at each
+  std::unique_ptr<ImpactRecorder> recorder;  ///< before the audit
+  std::unique_ptr<MotionSampler> sampler;    ///< reads the motion every `steps_per_sample` steps, contact at each
   long long contact_steps = 0;
+  StepObserver* observer() const { return recorder ? static_cast<StepObserver*>(recorder.get()) : audit.get(); }
 };
 
-// What looks at the march: nothing, the energy audit at every step, or samples as a comparing study takes them.
-enum class Watch { nothing, energy, samples };
+// What looks at the march: nothing, the energy audit at every step, the same behind a recorder of impacts, or samples
+// as a comparing study takes them.
+enum class Watch { nothing, energy, impacts, samples };
 constexpr int steps_per_sample = 500;
 
 // Time of one call, as the fastest of several batches: what a cost model should compare is the machine at rest.
@@ -108,7 +112,7 @@ double measure_rounds(std::vector<Case>& cases, int rounds) {
       if (one.sampler)
         for (int k = 0; k < steps / steps_per_sample; ++k) one.sampler->next();
       else
-        one.marcher->march(steps, one.audit.get());
+        one.marcher->march(steps, one.observer());
       const double elapsed = thread_nanoseconds() - start;
       one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
     }
@@ -141,7 +145,7 @@ void add_schemes(const Registry& registry, std::vector<Case>& cases) {
       fmt::print("{}: refused: {}\n", name, refusal->sentence);
       continue;
     }
-    Case one{name, StopsSpec::Place::nodes, "lumped", "", options.kind, 1, {}, nullptr, nullptr, nullptr, 0};
+    Case one{name, StopsSpec::Place::nodes, "lumped", "", options.kind, 1, {}, nullptr, nullptr, nullptr, nullptr, 0};
     one.marcher = std::make_unique<Marcher>(std::move(std::get<Program>(program)));
     one.marcher->start();
     one.marcher->march(40000);  // into the impacting regime
@@ -195,7 +199,7 @@ int main(int argc, char** argv) {
                        OperatorKind kind, Watch watch = Watch::nothing) {
     for (const int lanes : {1, 8, 16, 32}) {
       if (watch != Watch::nothing && lanes > 1) continue;
-      Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, nullptr, 0};
+      Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, nullptr, nullptr, 0};
       const auto* mass_entry = registry.mass(mass);
       std::map<std::string, ParameterValue> values;
       if (!velocity.empty()) values["velocity"] = velocity;
@@ -222,9 +226,10 @@ int main(int argc, char** argv) {
         one.sampler = std::make_unique<MotionSampler>(*one.marcher, grid);
         for (int k = 0; k < 24000 / steps_per_sample; ++k) one.sampler->next();
       } else {
-        if (watch == Watch::energy) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
-        one.marcher->start(one.audit.get());
-        one.marcher->march(24000, one.audit.get());  // into the impacting regime
+        if (watch != Watch::nothing) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
+        if (watch == Watch::impacts) one.recorder = std::make_unique<ImpactRecorder>(*one.marcher, one.audit.get());
+        one.marcher->start(one.observer());
+        one.marcher->march(24000, one.observer());  // into the impacting regime
       }
       cases.push_back(std::move(one));
     }
@@ -238,6 +243,9 @@ int main(int argc, char** argv) {
   add("consistent, tip", tip, "consistent", "", OperatorKind::automatic);
   add("consistent, tip, band", tip, "consistent", "", OperatorKind::band);
   add("consistent, all nodes, energy audit", nodes, "consistent", "", OperatorKind::band, Watch::energy);
+  add("consistent, all nodes, audit and impacts", nodes, "consistent", "", OperatorKind::band, Watch::impacts);
+  add("consistent, tip, energy audit", tip, "consistent", "", OperatorKind::automatic, Watch::energy);
+  add("consistent, tip, audit and impacts", tip, "consistent", "", OperatorKind::automatic, Watch::impacts);
   add("consistent, all nodes, sampled", nodes, "consistent", "", OperatorKind::band, Watch::samples);
   add("consistent, sparse", nodes, "consistent", "", OperatorKind::sparse);
 
