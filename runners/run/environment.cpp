@@ -8,7 +8,6 @@
 #include <sys/utsname.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <boost/version.hpp>
 #include <ctime>
 #include <fstream>
@@ -24,9 +23,6 @@
 
 namespace ricochet {
 namespace {
-
-constexpr const char* kEarlier = " (earlier cases)";
-constexpr const char* kStarted = "started";
 
 std::string compiler() {
 #if defined(__clang__)
@@ -106,18 +102,6 @@ Environment describe_environment(const std::vector<std::filesystem::path>& plugi
   }
   environment.entries.emplace_back(kStarted, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
   return environment;
-}
-
-Environment merge_environments(const Environment& now, const Environment& earlier) {
-  Environment merged = now;
-  const auto has = [&](const std::pair<std::string, std::string>& entry) {
-    return std::find(merged.entries.begin(), merged.entries.end(), entry) != merged.entries.end();
-  };
-  for (const auto& [name, value] : earlier.entries) {
-    const std::pair<std::string, std::string> entry = {name.ends_with(kEarlier) ? name : name + kEarlier, value};
-    if (name != kStarted && !has({name, value}) && !has(entry)) merged.entries.push_back(entry);
-  }
-  return merged;
 }
 
 }  // namespace ricochet

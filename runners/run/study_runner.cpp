@@ -21,6 +21,7 @@
 #include "runners/run/summary.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/store/merge_environments.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
@@ -60,6 +61,7 @@ class FolderRun {
     const std::vector<ExpectedCase> expected = expected_cases(runner_, study_);
     for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
     kept_ = settled_ = store_.begin(results_header(study_), expected);
+    say_versions();
     take_over();
     announce();
     if (runner_.cases.open) open();
@@ -72,6 +74,21 @@ class FolderRun {
 
  private:
   void tell(const std::string& line) { say(runner_.messages, line + "\n"); }
+
+  /// What became of the results of other versions of this study.
+  void say_versions() {
+    const auto results = [](int count) { return fmt::format("{} result{}", count, count == 1 ? "" : "s"); };
+    const int back = store_.returned(), aside = store_.aside();
+    if (back > 0)
+      tell(fmt::format("{} that {} kept aside {} back", results(back), back == 1 ? "was" : "were",
+                       back == 1 ? "is" : "are"));
+    if (aside > 0)
+      tell(
+          fmt::format("{} of an earlier version {} kept aside: {} back when the study (and its plugins) are again as "
+                      "they were, and {} with --fresh",
+                      results(aside), aside == 1 ? "is" : "are", aside == 1 ? "it comes" : "they come",
+                      aside == 1 ? "goes" : "go"));
+  }
 
   /// The row of a case that was not run to its end.
   void settle(const CaseRecord& record) {

@@ -72,6 +72,14 @@ void read_cases(SQLite::Database& database, StudyResults& results) {
 
 }  // namespace
 
+Environment read_environment(SQLite::Database& database) {
+  Environment environment;
+  SQLite::Statement rows(database, "SELECT name, value FROM environment ORDER BY position");
+  while (rows.executeStep())
+    environment.entries.emplace_back(rows.getColumn(0).getString(), rows.getColumn(1).getString());
+  return environment;
+}
+
 StudyResults read_tables(SQLite::Database& database) {
   StudyResults results;
   SQLite::Transaction transaction(database);
@@ -130,10 +138,7 @@ StudyResults read_tables(SQLite::Database& database) {
              table.values.push_back(series(row.getColumn(6)));
            });
 
-  SQLite::Statement environment(database, "SELECT name, value FROM environment ORDER BY position");
-  while (environment.executeStep())
-    results.environment.entries.emplace_back(environment.getColumn(0).getString(),
-                                             environment.getColumn(1).getString());
+  results.environment = read_environment(database);
   return results;
 }
 

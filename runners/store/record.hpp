@@ -33,6 +33,9 @@ struct CaseRecord {
   bool partial = false;              ///< saved while the case was running: what it had by then
 };
 
+/// The entry of an environment that is the time at which its run began.
+inline constexpr const char* kStarted = "started";
+
 /// Where and with what the figures were made.
 struct Environment {
   std::vector<std::pair<std::string, std::string>>

@@ -18,44 +18,48 @@ namespace ricochet {
 namespace {
 
 // series: IEEE-754 doubles, little-endian, one after the other. axes.value and study.value: JSON text.
-constexpr const char* kTables = R"sql(
+constexpr const char* kStudyTables = R"sql(
 CREATE TABLE study(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE environment(position INTEGER PRIMARY KEY, name TEXT NOT NULL, value TEXT NOT NULL);
 CREATE TABLE cases(
   id TEXT PRIMARY KEY, position INTEGER NOT NULL, fingerprint TEXT NOT NULL,
   status TEXT NOT NULL CHECK(status IN ('done', 'refused', 'diverged', 'failed')), reason TEXT NOT NULL,
   steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
-CREATE TABLE axes(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+)sql";
+
+// What belongs to a case; {0}: the prefix of its tables, {1}: the key of its case.
+constexpr const char* kRowTables = R"sql(
+CREATE TABLE {0}axes(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   name TEXT NOT NULL, value TEXT NOT NULL, PRIMARY KEY(case_id, position));
-CREATE TABLE measures(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+CREATE TABLE {0}measures(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   name TEXT NOT NULL, value REAL NOT NULL, PRIMARY KEY(case_id, position));
-CREATE TABLE left_out(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+CREATE TABLE {0}left_out(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   item TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY(case_id, position));
-CREATE TABLE notes(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+CREATE TABLE {0}notes(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   note TEXT NOT NULL, PRIMARY KEY(case_id, position));
-CREATE TABLE curves(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+CREATE TABLE {0}curves(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   name TEXT NOT NULL, series BLOB NOT NULL, PRIMARY KEY(case_id, position));
 )sql";
 
 // What version 2 adds. case_tables.content: JSON {columns, rows}. motions: references, computed once, by what
 // determines them.
-constexpr const char* kLaterTables = R"sql(
-CREATE TABLE case_tables(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL,
+constexpr const char* kLaterRowTables = R"sql(
+CREATE TABLE {0}case_tables(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL,
   name TEXT NOT NULL, content TEXT NOT NULL, PRIMARY KEY(case_id, position));
-CREATE TABLE motions(key TEXT PRIMARY KEY, content BLOB NOT NULL);
 )sql";
+constexpr const char* kMotionTable = "CREATE TABLE motions(key TEXT PRIMARY KEY, content BLOB NOT NULL);";
 
 // What version 3 adds: one row per column of a table of numbers. words: JSON list where the numbers are indices into
 // one.
 constexpr const char* kNumberTables = R"sql(
-CREATE TABLE case_numbers(
-  case_id TEXT NOT NULL REFERENCES cases(id) ON DELETE CASCADE, position INTEGER NOT NULL, part INTEGER NOT NULL,
+CREATE TABLE {0}case_numbers(
+  case_id TEXT NOT NULL REFERENCES {0}cases({1}) ON DELETE CASCADE, position INTEGER NOT NULL, part INTEGER NOT NULL,
   name TEXT NOT NULL, exported INTEGER NOT NULL, column_name TEXT NOT NULL, words TEXT, series BLOB NOT NULL,
   PRIMARY KEY(case_id, position, part));
 )sql";
@@ -66,6 +70,39 @@ constexpr const char* kBegunTable = R"sql(
 CREATE TABLE begun(
   case_id TEXT PRIMARY KEY, stage TEXT NOT NULL CHECK(stage IN ('plan', 'run')), since TEXT NOT NULL);
 )sql";
+
+// What version 5 adds: the cases of earlier versions of the study, with all that belongs to them, in tables of their
+// own, where the case_id of a row is the fingerprint of its case; and where these cases ran, as JSON [[name, value],
+// …].
+constexpr const char* kAsideTables = R"sql(
+CREATE TABLE aside_environments(id INTEGER PRIMARY KEY, entries TEXT NOT NULL UNIQUE);
+CREATE TABLE aside_cases(
+  fingerprint TEXT PRIMARY KEY, id TEXT NOT NULL, environment INTEGER NOT NULL REFERENCES aside_environments(id),
+  status TEXT NOT NULL, reason TEXT NOT NULL,
+  steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
+)sql";
+
+void create(SQLite::Database& database, const char* tables, const char* prefix = "", const char* key = "id") {
+  database.exec(fmt::format(fmt::runtime(tables), prefix, key));
+}
+
+/// Brings a store from `version` (0: an empty one) to this program's.
+void create_from(SQLite::Database& database, int version) {
+  if (version < 1) {
+    database.exec(kStudyTables);
+    create(database, kRowTables);
+  }
+  if (version < 2) {
+    create(database, kLaterRowTables);
+    database.exec(kMotionTable);
+  }
+  if (version < 3) create(database, kNumberTables);
+  if (version < 4) database.exec(kBegunTable);
+  database.exec(kAsideTables);
+  for (const char* tables : {kRowTables, kLaterRowTables, kNumberTables})
+    create(database, tables, "aside_", "fingerprint");
+  database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
+}
 
 [[noreturn]] void not_ours(const std::filesystem::path& file) {
   throw StoreError(fmt::format(
@@ -126,20 +163,14 @@ void prepare_schema(SQLite::Database& database, const std::filesystem::path& fil
     if (application == 0 && version == 0 && tables == 0) {
       if (!create) throw StoreError(fmt::format("{}: this store is empty: run the study first", file.string()));
       SQLite::Transaction transaction(database);
-      database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};", kStoreApplication, kStoreVersion));
-      database.exec(kTables);
-      database.exec(kLaterTables);
-      database.exec(kNumberTables);
-      database.exec(kBegunTable);
+      database.exec(fmt::format("PRAGMA application_id={};", kStoreApplication));
+      create_from(database, 0);
       transaction.commit();
     } else if (application != kStoreApplication) {
       not_ours(file);
     } else if (version >= 1 && version < kStoreVersion) {
       SQLite::Transaction transaction(database);
-      if (version < 2) database.exec(kLaterTables);
-      if (version < 3) database.exec(kNumberTables);
-      database.exec(kBegunTable);
-      database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
+      create_from(database, version);
       transaction.commit();
     } else if (version != kStoreVersion) {
       throw StoreError(

@@ -10,7 +10,9 @@
 #include <cmath>
 #include <ctime>
 
+#include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/merge_environments.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
@@ -38,6 +40,13 @@ void insert(SQLite::Statement& statement, const Values&... values) {
   int index = 0;
   (statement.bind(++index, values), ...);
   statement.exec();
+}
+
+void remove_curve(const std::filesystem::path& folder, const std::string& id) {
+  const std::filesystem::path file = folder / "curves" / (id + ".csv");
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) throw StoreError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
 }
 
 void bind_series(SQLite::Statement& statement, int index, const std::vector<double>& series) {
@@ -86,21 +95,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
                         file_.string(), stored, study.name));
     }
     name.reset();
-    std::vector<std::string> dropped;
-    SQLite::Statement stored(*database_, "SELECT id, fingerprint FROM cases");
-    while (stored.executeStep()) {
-      const std::string id = stored.getColumn(0).getString();
-      const auto found = expected_.find(id);
-      if (found != expected_.end() && found->second.first == stored.getColumn(1).getString())
-        kept.insert(id);
-      else
-        dropped.push_back(id);
-    }
-    stored.reset();
-    SQLite::Statement drop(*database_, "DELETE FROM cases WHERE id = ?");
-    for (const std::string& id : dropped) insert(drop, id);
-    SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
-    for (const std::string& id : kept) insert(move, expected_.at(id).second, id);
+    kept = settle_rows();
     SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
     insert(state, "name", text_of(study.name));
     insert(state, "question", text_of(study.question));
@@ -116,14 +111,65 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
   return kept;
 }
 
+std::set<std::string> Store::settle_rows() {
+  std::set<std::string> kept;
+  std::vector<std::string> aside, dropped, back;
+  SQLite::Statement stored(*database_, "SELECT id, fingerprint, status FROM cases");
+  while (stored.executeStep()) {
+    const std::string id = stored.getColumn(0).getString(), fingerprint = stored.getColumn(1).getString();
+    const auto found = expected_.find(id);
+    if (found != expected_.end() && found->second.first == fingerprint)
+      kept.insert(id);
+    else if (fingerprint.empty() || stored.getColumn(2).getString() == "refused")
+      dropped.push_back(id);  // not finished, or nothing that was computed
+    else
+      aside.push_back(id);
+  }
+  stored.reset();
+  for (const auto& [id, expected] : expected_)
+    if (kept.count(id) == 0 && is_aside(*database_, expected.first)) back.push_back(id);
+
+  // Before the rows: a run that is killed here misses a file, which is written anew, and never has that of another row.
+  for (const auto& ids : {aside, dropped, back})
+    for (const std::string& id : ids) remove_curve(file_.parent_path(), id);
+  SQLite::Statement drop(*database_, "DELETE FROM cases WHERE id = ?");
+  for (const std::string& id : dropped) insert(drop, id);
+  Environment environment = read_environment(*database_);
+  set_aside(*database_, aside, environment);
+  SQLite::Statement move(*database_, "UPDATE cases SET position = ? WHERE id = ?");
+  for (const std::string& id : kept) insert(move, expected_.at(id).second, id);
+
+  bool any = !kept.empty();  // of whose environment something is left
+  for (const std::string& id : back) {
+    const Environment earlier = bring_back(*database_, expected_.at(id).first, expected_.at(id).second);
+    environment = any ? merge_environments(environment, earlier) : earlier;
+    any = true;
+  }
+  if (!back.empty()) write_environment(environment);
+  returned_ = static_cast<int>(back.size());
+  kept.insert(back.begin(), back.end());
+  return kept;
+}
+
+int Store::aside() const {
+  const std::lock_guard guard(mutex_);
+  int count = 0;
+  guarded(file_, database_.get(), [&] { count = count_aside(*database_); });
+  return count;
+}
+
+void Store::write_environment(const Environment& environment) {
+  database_->exec("DELETE FROM environment");
+  SQLite::Statement add(*database_, "INSERT INTO environment(position, name, value) VALUES(?, ?, ?)");
+  int position = 0;
+  for (const auto& [name, value] : environment.entries) insert(add, position++, name, value);
+}
+
 void Store::save_environment(const Environment& environment) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
     SQLite::Transaction transaction(*database_);
-    database_->exec("DELETE FROM environment");
-    SQLite::Statement add(*database_, "INSERT INTO environment(position, name, value) VALUES(?, ?, ?)");
-    int position = 0;
-    for (const auto& [name, value] : environment.entries) insert(add, position++, name, value);
+    write_environment(environment);
     transaction.commit();
   });
 }

@@ -34,9 +34,14 @@ class Store {
   Store(const std::filesystem::path& folder, bool fresh);
 
   /// States the study (name, question, kind, study, columns, expected_cases of `study`) and its cases. Stored cases
-  /// that are no longer expected, or whose fingerprint changed, are dropped. Returns the ids of those that are kept.
-  /// Refuses a store of another study.
+  /// that are not expected with their fingerprint are set aside, those that were and are expected now come back; what
+  /// was refused or not finished is dropped. The curves/ID.csv of all these are removed. Returns the ids of the cases
+  /// that need not run. Refuses a store of another study.
   std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected);
+  /// How many of them begin() brought back.
+  int returned() const { return returned_; }
+  /// How many cases of earlier versions of the study are kept aside.
+  int aside() const;
 
   /// Replaces the environment.
   void save_environment(const Environment& environment);
@@ -69,6 +74,8 @@ class Store {
   StudyResults load() const;
 
  private:
+  std::set<std::string> settle_rows();
+  void write_environment(const Environment& environment);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
@@ -77,6 +84,7 @@ class Store {
   FolderLock lock_;
   std::unique_ptr<SQLite::Database> database_;
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
+  int returned_ = 0;
   mutable std::mutex mutex_;
 };
 

@@ -7,6 +7,7 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/store/store.hpp"
+#include "runners/store/store_error.hpp"
 #include "tests/runners/run/fake_study.hpp"
 
 using namespace ricochet;
@@ -64,7 +65,63 @@ TEST_CASE("run: a changed plugin runs again the cases that use it, and only thos
   CHECK(run.runs == 2);
 }
 
-TEST_CASE("run: a changed study runs what changed, and forgets what left") {
+TEST_CASE("run: an edited study keeps the results of what it was, and has them again when the edit is undone") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const RunOptions options{scratch / "out", 1, false};
+  REQUIRE(run(fake_study(4), options) == 0);
+  CHECK_THAT(run.messages, !Contains("aside"));
+  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/0000abc001.csv";
+  const std::string before = read_text(options.out / curve);
+  Study edited = fake_study(4);
+  for (StudyCase& one : edited.cases) one.samples = 30;  // the same ids
+  edited.cases[3].excluded = "not now";
+  REQUIRE(run(edited, options) == 0);
+  CHECK(run.runs == 3);
+  CHECK_THAT(run.messages, Contains("4 results of an earlier version are kept aside") && Contains("--fresh"));
+  CHECK(read_store(options.out).cases.size() == 4);
+  CHECK(read_text(options.out / curve) != before);
+
+  SECTION("undone") {
+    REQUIRE(run(fake_study(4), options) == 0);
+    CHECK(run.runs == 0);
+    CHECK_THAT(run.messages, Contains("4 results that were kept aside are back") && Contains("4 finished before") &&
+                                 Contains("3 results of an earlier version are kept aside"));
+    CHECK(read_text(options.out / "cases.csv") == cases);
+    CHECK(read_text(options.out / curve) == before);
+  }
+  SECTION("fresh") {
+    REQUIRE(run(edited, {options.out, 1, true}) == 0);
+    CHECK_THAT(run.messages, !Contains("aside"));
+    REQUIRE(run(fake_study(4), options) == 0);
+    CHECK(run.runs == 4);
+  }
+}
+
+TEST_CASE("run: a run that ends between two versions loses neither, and no curve is that of another row") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const RunOptions options{scratch / "out", 1, false};
+  REQUIRE(run(fake_study(4), options) == 0);
+  const std::string cases = read_text(options.out / "cases.csv"), curve = "curves/0000abc000.csv";
+  const std::string before = read_text(options.out / curve);
+  Study edited = fake_study(4);
+  for (StudyCase& one : edited.cases) one.samples = 30;
+  // Two cases of the edited study finish; nothing is written but the store.
+  run.runner.render = [](const StudyResults&) -> std::string { throw StoreError("the program ends here"); };
+  REQUIRE(run(edited, options) == 5);
+  CHECK_FALSE(read_text(options.out / curve) == before);
+  run.runner.render = FakeRun(scratch).runner.render;
+  REQUIRE(run(fake_study(4), options) == 0);
+  CHECK(run.runs == 0);
+  CHECK(read_text(options.out / "cases.csv") == cases);
+  CHECK(read_text(options.out / curve) == before);
+  REQUIRE(run(edited, options) == 0);
+  CHECK(run.runs == 0);
+  CHECK_FALSE(read_text(options.out / curve) == before);
+}
+
+TEST_CASE("run: a changed study runs what changed, and shows nothing of what left") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
   const RunOptions options{scratch / "out", 1, false};

@@ -118,7 +118,7 @@ TEST_CASE("store: cases are in the study's order, whatever the order they finish
   CHECK(seen.cases[0].id == kExpected[0].id);
 }
 
-TEST_CASE("store: kept are the cases whose fingerprint is the same; others and strangers are dropped") {
+TEST_CASE("store: kept are the cases whose fingerprint is the same; others and strangers are no longer there") {
   const ScratchFolder folder;
   fill(folder.path());
   Store store(folder.path(), false);
@@ -135,12 +135,102 @@ TEST_CASE("store: kept are the cases whose fingerprint is the same; others and s
     CHECK(kept == std::set<std::string>{"abcdefabcd"});
     CHECK(store.load().cases.front().id == "abcdefabcd");
   }
-  SECTION("a dropped case leaves nothing in any table") {
+  SECTION("a case that is set aside, or dropped, leaves nothing in any table") {
     store.begin(sample_results(), {});
     for (const char* table :
          {"cases", "axes", "measures", "left_out", "notes", "curves", "case_tables", "case_numbers"})
       CHECK(count(folder.path(), table) == 0);
   }
+}
+
+TEST_CASE("store: what an edit no longer asks for is set aside, and comes back whole when it is asked for again") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  const std::vector<ExpectedCase> edited = {{"0123456789", "g1"}, {"abcdefabcd", "g2"}};
+  StudyResults after = sample_results();
+  after.cases[0].measures = {{"impacts", 3}};
+  {
+    Store store(folder.path(), false);
+    CHECK(store.begin(sample_results(), edited).empty());
+    CHECK(store.aside() == 1);  // nothing was computed for the refused one
+    CHECK(store.returned() == 0);
+    CHECK(store.load().cases.empty());
+    store.save(after.cases);
+  }
+  SECTION("undone") {
+    Store store(folder.path(), false);
+    CHECK(store.begin(sample_results(), kExpected) == std::set<std::string>{"0123456789"});
+    CHECK(store.returned() == 1);
+    CHECK(store.aside() == 1);  // that of the edited study now
+    const StudyResults back = store.load();
+    REQUIRE(back.cases.size() == 1);
+    check_equal(back.cases[0], sample_results().cases[0]);
+    CHECK(store.begin(sample_results(), edited) == std::set<std::string>{"0123456789"});
+    check_equal(store.load().cases[0], after.cases[0]);
+    // As if nothing had been aside: the order of the study, too.
+    CHECK(store.begin(sample_results(), {{"other", "o"}, {"0123456789", "f1"}}).size() == 1);
+    CHECK(count(folder.path(), "cases WHERE position = 1") == 1);
+  }
+  SECTION("fresh") {
+    Store store(folder.path(), true);
+    CHECK(store.begin(sample_results(), kExpected).empty());
+    CHECK(store.aside() == 0);
+  }
+  SECTION("begun again with the same edit: nothing moves") {
+    Store store(folder.path(), false);
+    CHECK(store.begin(after, edited).size() == 2);
+    CHECK(store.aside() == 1);
+    CHECK(store.returned() == 0);
+  }
+}
+
+TEST_CASE("store: failed cases are kept aside, refused and unfinished ones are not") {
+  const ScratchFolder folder;
+  StudyResults results = sample_results();
+  results.cases[1].status = "failed";
+  Store store(folder.path(), false);
+  store.begin(results, kExpected);
+  store.save_partial(results.cases[0]);
+  store.save({results.cases.data() + 1, 1});
+  store.begin(results, {});
+  CHECK(store.aside() == 1);
+  CHECK(store.begin(results, kExpected) == std::set<std::string>{"abcdefabcd"});
+  CHECK(store.failed() == std::set<std::string>{"abcdefabcd"});
+}
+
+TEST_CASE("store: an environment goes with its cases") {
+  const ScratchFolder folder;
+  using Entries = std::vector<std::pair<std::string, std::string>>;
+  const Entries old = sample_results().environment.entries, now = {{"program", "newer"}, {"cores", "2"}};
+  fill(folder.path());
+  Store store(folder.path(), false);
+  store.begin(sample_results(), {{"0123456789", "g1"}, {"abcdefabcd", "g2"}});
+  store.save(sample_results().cases);
+  store.save_environment({now});
+  store.begin(sample_results(), kExpected);
+  CHECK(store.load().environment.entries == old);
+  // One case of each.
+  store.begin(sample_results(), {{"0123456789", "f1"}, {"abcdefabcd", "f2"}});
+  store.save(sample_results().cases);
+  store.begin(sample_results(), {{"0123456789", "g1"}, {"abcdefabcd", "f2"}});
+  CHECK(store.load().environment.entries ==
+        Entries{{"program", "ricochet"}, {"cores", "2"}, {"program (earlier cases)", "newer"}});
+}
+
+TEST_CASE("store: the curve file of a case goes with its row, before another takes its place") {
+  const ScratchFolder folder;
+  fill(folder.path());
+  std::filesystem::create_directory(folder / "curves");
+  const auto file = folder / "curves/0123456789.csv";
+  write_text(file, "old");
+  Store store(folder.path(), false);
+  store.begin(sample_results(), kExpected);
+  CHECK(std::filesystem::exists(file));
+  store.begin(sample_results(), {{"0123456789", "g1"}});
+  CHECK_FALSE(std::filesystem::exists(file));
+  write_text(file, "new");
+  store.begin(sample_results(), kExpected);
+  CHECK_FALSE(std::filesystem::exists(file));
 }
 
 TEST_CASE("store: fresh forgets") {
@@ -168,7 +258,7 @@ TEST_CASE("store: another version is refused with what was found, expected and t
   SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
   using Catch::Contains;
   CHECK_THAT(open_error(folder.path()),
-             Contains("results.sqlite") && Contains("version 99") && Contains("version 4") && Contains("--fresh"));
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 5") && Contains("--fresh"));
   CHECK_THROWS_AS(read_store(folder.path()), StoreError);
   CHECK(open_error(folder.path(), true).empty());
 }
@@ -176,10 +266,13 @@ TEST_CASE("store: another version is refused with what was found, expected and t
 TEST_CASE("store: what earlier versions wrote is read, and gets the tables that came later") {
   const ScratchFolder folder;
   fill(folder.path());
-  const int version = GENERATE(1, 2, 3);
+  const int version = GENERATE(1, 2, 3, 4);
   {
     SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
-    database.exec("DROP TABLE begun");
+    for (const char* table :
+         {"axes", "measures", "left_out", "notes", "curves", "case_tables", "case_numbers", "cases", "environments"})
+      database.exec(std::string("DROP TABLE aside_") + table);
+    if (version < 4) database.exec("DROP TABLE begun");
     if (version < 3) database.exec("DROP TABLE case_numbers");
     if (version < 2) database.exec("DROP TABLE case_tables; DROP TABLE motions");
     database.exec("PRAGMA user_version=" + std::to_string(version));
