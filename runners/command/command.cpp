@@ -50,10 +50,12 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
   const std::string& first = arguments.front();
   const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
   if (first == "--help" || first == "-h" || first == "help") {
-    if (first == "help" && !rest.empty())
-      out << help_text(find_command(rest.front()));
-    else
+    if (first != "help" || rest.empty())
       out << overview();
+    else if (rest.front() == "help")
+      out << "Usage: ricochet help [COMMAND]\n\nShow the commands, or what one of them takes and its options.\n";
+    else
+      out << help_text(find_command(rest.front()));
     return exit_done;
   }
   if (first == "--version") {
@@ -82,10 +84,10 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
     err << error.what() << "\n";
     return exit_bad_input;
   } catch (const InputError& error) {
-    err << (error.pointer().empty() ? "" : error.pointer() + ": ") << error.what() << "\n";
+    err << "ricochet: " << (error.pointer().empty() ? "" : "at " + error.pointer() + ": ") << error.what() << "\n";
     return exit_bad_input;
   } catch (const PluginError& error) {
-    err << "ricochet: plugin error: " << error.what() << "\n";
+    err << "ricochet: " << error.what() << "\n";
     return exit_plugin;
   } catch (const StoreError& error) {
     err << "ricochet: " << error.what() << "\n";
@@ -112,11 +114,11 @@ const std::vector<Subcommand>& subcommands() {
        {"out", "jobs", "fresh", "table", "plugin"},
        command_run},
       {"plan",
-       "STUDY.json",
-       "Show the combinations, what is refused and why, what is left out, the predicted cost. Nothing runs.",
+       "STUDY.json [--cases]",
+       "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
        1,
        1,
-       {"plugin"},
+       {"cases", "plugin"},
        command_plan},
       {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {"plugin"}, command_list},
       {"describe",

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <map>
 #include <ostream>
-#include <set>
 #include <thread>
 
 #include "runners/command/command.hpp"
-#include "runners/command/plain.hpp"
+#include "runners/command/plan_physics.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/run/plan_cases.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {
@@ -17,10 +17,15 @@ namespace {
 
 using Grouped = std::map<std::string, int>;  // sentence → number of cases
 
-Json axis_value(const StudyCase& study_case, const std::string& axis) {
+// As tables of results write it; null (an absent stop) is none.
+std::string shown(const Json& value) {
+  return value.is_null() ? "none" : cell_of(value).text();
+}
+
+std::string shown(const StudyCase& study_case, const std::string& axis) {
   for (const auto& [name, value] : study_case.axes)
-    if (name == axis) return value;
-  return {};
+    if (name == axis) return shown(value);
+  return "";
 }
 
 bool has_axis(const StudyCase& study_case, const std::string& axis) {
@@ -28,25 +33,59 @@ bool has_axis(const StudyCase& study_case, const std::string& axis) {
                      [&](const auto& item) { return item.first == axis; });
 }
 
-// Axes with more than one value become columns; the others are said once.
-void split_axes(const Study& study, std::vector<std::string>& varying, std::string& same) {
-  for (const std::string& axis : study.columns) {
-    std::set<std::string> values;
-    bool everywhere = true;
-    Json value;
+/// An axis of the study and the values that its cases have on it.
+struct AxisValues {
+  std::string name;
+  std::vector<std::string> values;
+  bool everywhere = true;
+};
+
+std::vector<AxisValues> axis_values(const Study& study) {
+  std::vector<AxisValues> all;
+  for (const std::string& name : study.columns) {
+    AxisValues axis{name, {}};
     for (const StudyCase& study_case : study.cases) {
-      if (!has_axis(study_case, axis)) {
-        everywhere = false;
+      if (!has_axis(study_case, name)) {
+        axis.everywhere = false;
         continue;
       }
-      value = axis_value(study_case, axis);
-      values.insert(value.dump());
+      const std::string value = shown(study_case, name);
+      if (std::find(axis.values.begin(), axis.values.end(), value) == axis.values.end()) axis.values.push_back(value);
     }
-    if (values.size() > 1)
-      varying.push_back(axis);
-    else
-      same += (same.empty() ? "" : ", ") + axis + " " + plain(value) + (everywhere ? "" : " (where it applies)");
+    all.push_back(std::move(axis));
   }
+  return all;
+}
+
+void print_axes(const std::vector<AxisValues>& axes, std::ostream& out) {
+  constexpr std::size_t most = 12;
+  std::string same;
+  for (const AxisValues& axis : axes) {
+    const std::string where = axis.everywhere ? "" : " (where it applies)";
+    if (axis.values.size() == 1) {
+      same += (same.empty() ? "" : ", ") + axis.name + " " + axis.values.front() + where;
+      continue;
+    }
+    const std::vector<std::string> first(
+        axis.values.begin(), axis.values.begin() + static_cast<std::ptrdiff_t>(std::min(most, axis.values.size())));
+    out << fmt::format("  {}{}: {}{}\n", axis.name, where, fmt::join(first, ", "),
+                       axis.values.size() > most ? fmt::format(" and {} more", axis.values.size() - most) : "");
+  }
+  if (!same.empty()) out << "the same throughout: " << same << "\n";
+}
+
+/// What keeps cases from running, each reason with its number of cases, the most frequent first.
+void print_reasons(const Grouped& reasons, std::ostream& out) {
+  if (reasons.empty()) return;
+  constexpr std::size_t most = 10;
+  std::vector<std::pair<int, std::string>> sorted;
+  for (const auto& [reason, count] : reasons) sorted.emplace_back(-count, reason);
+  std::sort(sorted.begin(), sorted.end());
+  out << "\nnot run:\n";
+  for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i)
+    out << fmt::format("  {} case{}, {}\n", -sorted[i].first, sorted[i].first == -1 ? "" : "s", sorted[i].second);
+  if (sorted.size() > most)
+    out << fmt::format("  and {} more reasons: --cases shows the reason of every case\n", sorted.size() - most);
 }
 
 void print_grouped(const char* title, const Grouped& grouped, std::size_t all, std::ostream& out) {
@@ -64,8 +103,7 @@ struct Costs {
 };
 
 void print_costs(const Costs& costs, std::ostream& out) {
-  out << "\n"
-      << fmt::format("{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
+  out << fmt::format("\n{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
@@ -75,21 +113,69 @@ void print_costs(const Costs& costs, std::ostream& out) {
   out << "\n";
 }
 
-void print_unopened(const Catalogue& catalogue, std::ostream& out) {
-  std::set<std::string> files;
-  for (const Provided& method : catalogue.provided())
-    if (std::find(catalogue.opened().begin(), catalogue.opened().end(), method.file) == catalogue.opened().end())
-      files.insert(method.file.filename().string());
-  if (files.empty()) return;
-  out << "\nplugin libraries found and not opened, as the study does not name them:\n ";
-  for (const std::string& file : files) out << " " << file;
-  out << "\n";
-}
-
 void print_warnings(const std::vector<std::string>& warnings, std::ostream& out) {
   if (warnings.empty()) return;
   out << "\nplugins:\n";
   for (const std::string& warning : warnings) out << "  " << warning << "\n";
+}
+
+/// Every case of a study planned, and what is said of them together.
+struct StudyPlan {
+  std::vector<PlannedCase> runnable;
+  Grouped reasons, left_out, notes;
+  Costs costs;
+  std::map<std::string, std::string> why_not;  // id → reason
+};
+
+StudyPlan plan_study(const Study& study, CasePlanner& planner) {
+  StudyPlan all;
+  for (const StudyCase& study_case : study.cases) {
+    std::string& why = all.why_not[study_case.id];
+    if (study_case.excluded) {
+      ++all.costs.excluded;
+      why = "excluded: " + *study_case.excluded;
+    } else {
+      auto [plan, failure] = planner.plan(study_case);
+      if (!failure.empty()) {
+        ++all.costs.failed;
+        why = "fails: " + failure;
+      } else if (!plan.refusal.empty()) {
+        ++all.costs.refused;
+        why = "refused: " + plan.refusal;
+      } else {
+        ++all.costs.runnable;
+        all.costs.total += plan.predicted_seconds;
+        all.costs.longest = std::max(all.costs.longest, plan.predicted_seconds);
+        for (const auto& [item, reason] : plan.left_out) ++all.left_out[item + ": " + reason];
+        for (const std::string& note : plan.notes) ++all.notes[note];
+        all.runnable.push_back({&study_case, std::move(plan)});
+      }
+    }
+    if (!why.empty()) ++all.reasons[why];
+  }
+  return all;
+}
+
+std::string table_of_plans(const Study& study, const StudyPlan& all, const std::vector<AxisValues>& axes) {
+  std::vector<std::string> header = {"id"};
+  for (const AxisValues& axis : axes)
+    if (axis.values.size() > 1) header.push_back(axis.name);
+  header.insert(header.end(), {"steps", "operator", "predicted", "not run because"});
+  std::map<std::string, const CasePlan*> plans;
+  for (const PlannedCase& one : all.runnable) plans[one.study_case->id] = &one.plan;
+  TextTable table(header);
+  for (const StudyCase& study_case : study.cases) {
+    std::vector<std::string> row = {study_case.id};
+    for (const AxisValues& axis : axes)
+      if (axis.values.size() > 1) row.push_back(shown(study_case, axis.name));
+    if (const auto found = plans.find(study_case.id); found != plans.end())
+      row.insert(row.end(), {fmt::format("{}", found->second->steps), found->second->operator_name,
+                             duration_text(found->second->predicted_seconds), ""});
+    else
+      row.insert(row.end(), {"", "", "", all.why_not.at(study_case.id)});
+    table.add(std::move(row));
+  }
+  return table.text();
 }
 
 }  // namespace
@@ -97,58 +183,28 @@ void print_warnings(const std::vector<std::string>& warnings, std::ostream& out)
 int command_plan(const Arguments& arguments, std::ostream& out) {
   return with_study(arguments, [&](const OpenStudy& open) -> int {
     const Study& study = open.study;
-    std::vector<std::string> varying;
-    std::string same;
-    split_axes(study, varying, same);
-    std::vector<std::string> header = {"id"};
-    header.insert(header.end(), varying.begin(), varying.end());
-    header.insert(header.end(), {"steps", "operator", "time", "not run because"});
-
-    TextTable table(header);
-    Grouped left_out, notes;
-    Costs costs;
     CasePlanner planner(study, open.catalogue, open.registry);
-    for (const StudyCase& study_case : study.cases) {
-      std::vector<std::string> row = {study_case.id};
-      for (const std::string& axis : varying)
-        row.push_back(has_axis(study_case, axis) ? plain(axis_value(study_case, axis)) : "");
-      if (study_case.excluded) {
-        ++costs.excluded;
-        row.insert(row.end(), {"", "", "", "excluded: " + *study_case.excluded});
-        table.add(std::move(row));
-        continue;
-      }
-      const auto [plan, failure] = planner.plan(study_case);
-      if (!failure.empty()) {
-        ++costs.failed;
-        row.insert(row.end(), {"", "", "", "fails: " + failure});
-      } else if (!plan.refusal.empty()) {
-        ++costs.refused;
-        row.insert(row.end(), {"", "", "", "refused: " + plan.refusal});
-      } else {
-        ++costs.runnable;
-        costs.total += plan.predicted_seconds;
-        costs.longest = std::max(costs.longest, plan.predicted_seconds);
-        row.insert(row.end(),
-                   {fmt::format("{}", plan.steps), plan.operator_name, duration_text(plan.predicted_seconds), ""});
-        for (const auto& [item, reason] : plan.left_out) ++left_out[item + ": " + reason];
-        for (const std::string& note : plan.notes) ++notes[note];
-      }
-      table.add(std::move(row));
-    }
+    const StudyPlan all = plan_study(study, planner);
+    const std::vector<AxisValues> axes = axis_values(study);
+    const auto runnable = static_cast<std::size_t>(all.costs.runnable);
 
     out << study.name << (study.question.empty() ? "" : ": " + study.question) << "\n"
         << fmt::format("kind {}, {} case{}{}\n", study.kind, study.cases.size(), study.cases.size() == 1 ? "" : "s",
                        study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
                                                         : std::string());
-    if (!same.empty()) out << "the same throughout: " << same << "\n";
-    out << "\n" << table.text();
-    print_grouped("left out:", left_out, static_cast<std::size_t>(costs.runnable), out);
-    print_grouped("notes:", notes, static_cast<std::size_t>(costs.runnable), out);
-    print_costs(costs, out);
-    print_unopened(open.catalogue, out);
+    print_axes(axes, out);
+    print_costs(all.costs, out);
+    print_reasons(all.reasons, out);
+    if (const std::string physics = physics_text(all.runnable, planner, open.registry); !physics.empty())
+      out << "\nphysics:\n" << physics;
+    print_grouped("left out:", all.left_out, runnable, out);
+    print_grouped("notes:", all.notes, runnable, out);
     print_warnings(plugin_warnings(open), out);
-    return costs.failed > 0 ? exit_some_failed : exit_done;
+    if (arguments.cases) out << "\n" << table_of_plans(study, all, axes);
+    if (runnable > 0) return all.costs.failed > 0 ? exit_some_failed : exit_done;
+    out << "\nnothing would run: " << (all.costs.failed > 0 ? "no case can be planned" : "every case is refused")
+        << "; the reasons above say what to change\n";
+    return exit_some_failed;
   });
 }
 

@@ -27,7 +27,7 @@ int command_report(const Arguments& arguments, std::ostream&) {
 }
 
 int command_export(const Arguments& arguments, std::ostream&) {
-  if (!arguments.to) throw UsageError("ricochet export: expected --to CSVDIR, the folder that receives the tables");
+  if (!arguments.to) throw UsageError("export expects --to CSVDIR, the folder that receives the tables");
   return export_tables(arguments.operands.front(), *arguments.to);
 }
 

@@ -21,6 +21,7 @@ po::options_description described(const Subcommand& command) {
     add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", "print a line for every case");
+  if (has("cases")) add("cases", "also print a line for every case");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
@@ -64,7 +65,7 @@ po::variables_map parse(const Subcommand& command, const po::options_description
     std::string name = error.get_option_name();
     if (!name.starts_with("-")) name = "--" + name;
     const std::string nearest = nearest_name(name, option_names(named));
-    throw UsageError("ricochet " + command.name + " has no option " + name +
+    throw UsageError(command.name + " has no option " + name +
                      (nearest.empty() ? "" : "; did you mean " + nearest + "?") + see_help(command));
   } catch (const po::invalid_option_value& error) {
     const char* wanted = error.get_option_name() == "--parameter" ? "; expected a number" : "; expected a whole number";
@@ -102,6 +103,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.to = path_of(values, "to");
   arguments.fresh = values.count("fresh") > 0;
   arguments.table = values.count("table") > 0;
+  arguments.cases = values.count("cases") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000;
   arguments.jobs = count_of(values, "jobs", most_jobs);
   arguments.periods = count_of(values, "periods", most_samples);
@@ -114,9 +116,9 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
       arguments.plugins.emplace_back(file);
   if (values.count("operand")) arguments.operands = values["operand"].as<std::vector<std::string>>();
   if (arguments.operands.size() < command.fewest)
-    throw UsageError("ricochet " + command.name + ": an argument is missing" + see_help(command));
+    throw UsageError("an argument of " + command.name + " is missing" + see_help(command));
   if (arguments.operands.size() > command.most)
-    throw UsageError("ricochet " + command.name + " does not expect \"" + arguments.operands[command.most] + "\"" +
+    throw UsageError(command.name + " does not expect \"" + arguments.operands[command.most] + "\"" +
                      see_help(command));
   return arguments;
 }

@@ -29,6 +29,7 @@ struct Arguments {
   int jobs = 0;                                  ///< --jobs; 0: all processors
   bool fresh = false;                            ///< --fresh
   bool table = false;                            ///< --table
+  bool cases = false;                            ///< --cases
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
   std::string cell;                              ///< --cell; "": none given
@@ -43,7 +44,7 @@ struct Subcommand {
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
   std::vector<std::string>
-      options;  ///< of plugin, out, to, jobs, fresh, table, parameter, start, cell, periods, samples
+      options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell, periods, samples
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 

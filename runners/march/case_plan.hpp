@@ -11,6 +11,7 @@ struct CasePlan {
   std::string operator_name;  ///< diagonal, modal, band, sparse
   long long steps = 0;
   double predicted_seconds = 0;
+  double coarsest_step = 0, finest_step = 0;  ///< s, of those that the case takes; 0 where it is refused
   std::vector<std::pair<std::string, std::string>> left_out;  ///< item, reason
   std::vector<std::string> notes;
 };

@@ -1,12 +1,16 @@
 #include "runners/run/outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <fstream>
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/store_error.hpp"
 #include "runners/table/csv_text.hpp"
 #include "runners/table/dictionary.hpp"
 
@@ -91,6 +95,26 @@ void write_results(TableFolder& tables, const StudyResults& results) {
   tables.write_numbers(results);
 }
 
+void write_study(const std::filesystem::path& folder, const StudyResults& results) {
+  constexpr int indent = 2;
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  write_file(folder / "study.json", results.study.dump(indent, ' ', false, replace) + '\n');
+}
+
+/// Tables of another study are not mixed with these: study.json says whose they are.
+void refuse_foreign_tables(const std::filesystem::path& folder, const StudyResults& results) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / "cases.csv", ignored) && !std::filesystem::exists(folder / "curves", ignored))
+    return;
+  std::ifstream stream(folder / "study.json");
+  const auto there = nlohmann::ordered_json::parse(stream, nullptr, false);
+  if (there == results.study || (there.is_object() && there.value("name", "") == results.name)) return;
+  const std::string whose = there.is_object() && there.contains("name") ? "of the study " + there["name"].dump()
+                                                                        : "of a study that it does not name";
+  throw StoreError(fmt::format("{}: this folder holds tables {}, not of \"{}\"; choose an empty or a new folder",
+                               folder.string(), whose, results.name));
+}
+
 /// failures/ID.json, one study per case that went wrong; files of cases that do no longer are removed.
 void write_failures(const std::filesystem::path& folder, const StudyResults& results) {
   constexpr int indent = 2;
@@ -118,9 +142,7 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
 
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
                    const std::set<std::string>* changed) {
-  constexpr int indent = 2;
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  write_file(folder / "study.json", results.study.dump(indent, ' ', false, replace) + '\n');
+  write_study(folder, results);
   write_curves(folder / "curves", results, changed);
   remove_stale_curves(folder / "curves", results);
   TableFolder tables(folder);
@@ -131,8 +153,11 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
 }
 
 void write_tables(const std::filesystem::path& folder, const StudyResults& results) {
+  refuse_foreign_tables(folder, results);
   make_folder(folder);
+  write_study(folder, results);
   write_curves(folder / "curves", results, nullptr);
+  remove_stale_curves(folder / "curves", results);
   TableFolder tables(folder);
   write_results(tables, results);
   tables.write(measures_table());

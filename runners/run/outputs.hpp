@@ -17,8 +17,8 @@ using RenderReport = std::function<std::string(const StudyResults&)>;
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
                    const std::set<std::string>* changed = nullptr);
 
-/// Writes the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each means),
-/// left_out, notes, environment, dictionary. Throws StoreError.
+/// Writes study.json and the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each
+/// means), left_out, notes, environment, dictionary. Throws StoreError, also for a folder with tables of another study.
 void write_tables(const std::filesystem::path& folder, const StudyResults& results);
 
 }  // namespace ricochet

@@ -23,7 +23,8 @@ std::array<Method, 3> methods_of(const StudyCase& study_case) {
 
 std::string to_text(const CasePlan& plan) {
   return Json{{"refusal", plan.refusal},           {"operator", plan.operator_name}, {"steps", plan.steps},
-              {"seconds", plan.predicted_seconds}, {"left_out", plan.left_out},      {"notes", plan.notes}}
+              {"seconds", plan.predicted_seconds}, {"left_out", plan.left_out},      {"notes", plan.notes},
+              {"coarsest", plan.coarsest_step},    {"finest", plan.finest_step}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -36,6 +37,8 @@ CasePlan from_text(const Json& json) {
   if (json.at("seconds").is_number()) json.at("seconds").get_to(plan.predicted_seconds);
   json.at("left_out").get_to(plan.left_out);
   json.at("notes").get_to(plan.notes);
+  json.at("coarsest").get_to(plan.coarsest_step);
+  json.at("finest").get_to(plan.finest_step);
   return plan;
 }
 
@@ -59,6 +62,18 @@ PlanOutcome CasePlanner::plan(const StudyCase& study_case) {
     return {{}, "not enough memory"};
   } catch (const std::exception& error) {
     return {{}, error.what()};
+  }
+}
+
+std::string CasePlanner::ask(const StudyCase& study_case, const std::function<std::string()>& question) const {
+  if (uses_foreign(study_case)) {
+    const ChildOutcome outcome = run_in_child(question, longest_plan);
+    return outcome.ok() ? outcome.text : "";
+  }
+  try {
+    return question();
+  } catch (const std::exception&) {
+    return "";
   }
 }
 

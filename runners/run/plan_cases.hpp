@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
@@ -22,6 +23,9 @@ class CasePlanner {
   CasePlanner(const Study& study, const Catalogue& catalogue, const Registry& registry)
       : study_(study), catalogue_(catalogue), registry_(registry) {}
   PlanOutcome plan(const StudyCase& study_case);
+  /// What `question` answers, which calls the methods of this case: in a child process where one of them is foreign. ""
+  /// where they go wrong.
+  std::string ask(const StudyCase& study_case, const std::function<std::string()>& question) const;
 
  private:
   PlanOutcome plan_in_child(const StudyCase& study_case);

@@ -14,8 +14,10 @@ namespace {
 
 constexpr double kLineEverySeconds = 2;
 constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
-// A case in flight counts as its prediction says, but never as finished.
-constexpr double kAlmost = 0.95;
+// A case in flight that should have ended is expected to take so much more of what it took.
+constexpr double kOverrun = 0.1;
+// s that a case takes beside its march before any was seen: a transaction of the store on a usual disk.
+constexpr double kFirstGuess = 0.02;
 // s beyond twice the prediction after which a case is waited for.
 constexpr double kPatience = 5;
 
@@ -31,6 +33,39 @@ int terminal_width(std::FILE* out) {
 
 }  // namespace
 
+CaseCost::CaseCost() {
+  note(0, kFirstGuess, 1);
+}
+
+void CaseCost::note(double predicted, double measured, double weight) {
+  w_ += weight;
+  wx_ += weight * predicted;
+  wy_ += weight * measured;
+  wxx_ += weight * predicted * predicted;
+  wxy_ += weight * predicted * measured;
+}
+
+void CaseCost::add(double predicted, double measured) {
+  // Relative to what was measured, no shorter than what a clock and a disk tell.
+  constexpr double shortest = 1e-3;
+  const double scale = kFirstGuess / std::max(measured, shortest);
+  note(predicted, measured, scale * scale);
+}
+
+double CaseCost::seconds(double predicted, int cases) const {
+  const double spread = w_ * wxx_ - wx_ * wx_;
+  double factor = 1, constant = wy_ / w_;
+  if (spread > 1e-9 * w_ * wxx_) {
+    factor = std::max((w_ * wxy_ - wx_ * wy_) / spread, 0.0);
+    constant = (wy_ - factor * wx_) / w_;
+    if (constant < 0) {
+      constant = 0;
+      factor = wxy_ / wxx_;
+    }
+  }
+  return factor * predicted + constant * cases;
+}
+
 double progress_fraction(const ProgressState& state) {
   if (state.total == 0 || state.done >= state.total) return 1;
   if (state.work_total > 0) return std::clamp(state.work_done / state.work_total, 0.0, 1.0);
@@ -45,8 +80,10 @@ std::string progress_text(const ProgressState& state) {
     text += rate >= 1 ? fmt::format(", {:.1f} cases/s", rate) : fmt::format(", {:.1f} cases/min", 60 * rate);
   }
   if (!state.waits_for.empty()) return text + ", waiting for " + state.waits_for;
-  if (fraction > 0 && fraction < 1 && state.elapsed > 1)
-    text += fmt::format(", {} left", duration_text(state.elapsed * (1 - fraction) / fraction));
+  if (fraction > 0 && fraction < 1 && state.elapsed > 1) {
+    const double left = state.elapsed * (1 - fraction) / fraction;
+    text += fmt::format(", {} left", left < 1 ? "less than 1 s" : duration_text(left));
+  }
   return text;
 }
 
@@ -60,7 +97,7 @@ std::string progress_bar(const ProgressState& state, int width) {
 }
 
 Progress::Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop)
-    : out_(out), terminal_(terminal), stop_(stop), total_(total), work_total_(predicted_seconds) {
+    : out_(out), terminal_(terminal), stop_(stop), total_(total), waiting_(predicted_seconds) {
   refresher_ = std::thread([this] { refresh(); });
 }
 
@@ -77,14 +114,16 @@ Progress::~Progress() {
 void Progress::started(const std::string& id, double predicted_seconds) {
   const std::lock_guard guard(mutex_);
   in_flight_[id] = {Clock::now(), predicted_seconds};
+  waiting_ -= predicted_seconds;
 }
 
 void Progress::finished(const std::string& id) {
   const std::lock_guard guard(mutex_);
   const auto found = in_flight_.find(id);
   if (found != in_flight_.end()) {
-    work_done_ += found->second.predicted;
-    measured_ += seconds_since(found->second.since);
+    const double took = seconds_since(found->second.since);
+    cost_.add(found->second.predicted, took);
+    measured_ += took;
     in_flight_.erase(found);
   }
   ++done_;
@@ -108,11 +147,11 @@ void Progress::waiting(std::map<std::string, std::string> calls) {
 }
 
 // The case that is most beyond what was predicted of it, "" where none is by far.
-std::string Progress::overdue(double slowness) const {
+std::string Progress::overdue() const {
   double most = kPatience;
   std::string text;
   for (const auto& [id, flight] : in_flight_) {
-    const double seconds = seconds_since(flight.since), predicted = slowness * flight.predicted;
+    const double seconds = seconds_since(flight.since), predicted = cost_.seconds(flight.predicted);
     if (seconds - 2 * predicted < most) continue;
     most = seconds - 2 * predicted;
     const auto call = calls_.find(id);
@@ -123,12 +162,16 @@ std::string Progress::overdue(double slowness) const {
 }
 
 ProgressState Progress::state() const {
-  // Predictions are in seconds of another machine at worst: what finished says by how much they are off.
-  const double slowness = work_done_ > 0 ? std::max(measured_ / work_done_, 1e-6) : 1.0;
-  double flying = 0;
-  for (const auto& [id, flight] : in_flight_)
-    flying += std::min(seconds_since(flight.since) / slowness, kAlmost * flight.predicted);
-  return {done_, total_, work_done_ + flying, work_total_, seconds_since(begin_), overdue(slowness)};
+  double done = measured_, left = 0;
+  for (const auto& [id, flight] : in_flight_) {
+    const double took = seconds_since(flight.since);
+    done += took;
+    left += std::max(cost_.seconds(flight.predicted) - took, kOverrun * took);
+  }
+  // Differences of sums: what is left of it when none waits is round-off.
+  const int waiting = total_ - done_ - static_cast<int>(in_flight_.size());
+  if (waiting > 0) left += cost_.seconds(std::max(waiting_, 0.0), waiting);
+  return {done_, total_, done, done + left, seconds_since(begin_), overdue()};
 }
 
 void Progress::draw() {

@@ -10,19 +10,33 @@
 
 namespace ricochet {
 
-/// What a progress line says; times in seconds, work in predicted seconds.
+/// What a progress line says; times in seconds.
 struct ProgressState {
   int done = 0, total = 0;  ///< cases
-  double work_done = 0;     ///< includes the cases in flight
+  double work_done = 0;     ///< s of work, includes what the cases in flight have taken
   double work_total = 0;
   double elapsed = 0;
   std::string waits_for;  ///< a case that takes far longer than predicted; then no time is promised
 };
 
+/// What a case costs, learnt from those that finished: a predicted seconds and b, for being a case at all (its rows are
+/// written, its report is drawn). Least squares of relative errors; until anything is known, as predicted and a little.
+class CaseCost {
+ public:
+  CaseCost();
+  void add(double predicted, double measured);
+  /// Seconds of `cases` cases that were predicted to take so long together.
+  double seconds(double predicted, int cases = 1) const;
+
+ private:
+  void note(double predicted, double measured, double weight);
+  double w_ = 0, wx_ = 0, wy_ = 0, wxx_ = 0, wxy_ = 0;
+};
+
 /// Fraction of the work done, in [0, 1]; by cases where no cost was predicted.
 double progress_fraction(const ProgressState& state);
 
-/// "12/48 cases, 25 %, 3.1 cases/s, 12 s left".
+/// "12/48 cases, 25 %, 3.1 cases/s, 12 s left"; no time below a second is told.
 std::string progress_text(const ProgressState& state);
 
 /// "[######------] " and the text, at most `width` characters.
@@ -51,7 +65,7 @@ class Progress {
     double predicted;
   };
   ProgressState state() const;
-  std::string overdue(double slowness) const;
+  std::string overdue() const;
   void draw();
   void erase();
   void refresh();
@@ -60,7 +74,9 @@ class Progress {
   bool terminal_;
   const std::atomic<bool>& stop_;
   int done_ = 0, total_;
-  double work_done_ = 0, work_total_, measured_ = 0;
+  double waiting_;       // predicted s of the cases that have not begun
+  double measured_ = 0;  // s that the finished ones took
+  CaseCost cost_;
   Clock::time_point begin_ = Clock::now(), last_line_ = begin_;
   std::map<std::string, InFlight> in_flight_;
   std::map<std::string, std::string> calls_;

@@ -30,7 +30,7 @@
 namespace ricochet {
 namespace {
 
-constexpr int kStoreUnusable = 5;
+constexpr int kNothingRan = 3, kStoreUnusable = 5;
 
 /// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
 void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
@@ -300,13 +300,17 @@ class FolderRun {
   int finish() {
     const StudyResults results = with_tables(store_.load());
     write_outputs(folder_, results, runner_.render, &fresh_);
-    const int code = results_exit_code(results);
+    const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
+                                     [](const CaseRecord& one) { return one.status == "refused"; });
+    const int code = nothing ? kNothingRan : results_exit_code(results);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     say(runner_.out,
         fmt::format("{}{}\n{} ({} run now in {}, {} kept)\n{}report: {}\n", table_ ? case_table(results) + "\n" : "",
                     answer_text(results), totals_text(results), fresh_.size(), duration_text(seconds), kept_.size(),
                     extremes_text(results), (folder_ / "report.html").string()));
-    if (code != 0)
+    if (nothing)
+      say(runner_.out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
+    else if (code != 0)
       say(runner_.out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
                            ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
                                          "a study of each alone\n",
@@ -352,7 +356,7 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
   } catch (const Interrupted&) {
     return ended(kInterrupted);
   } catch (const StoreError& error) {
-    say(runner.messages, fmt::format("error: {}\n", error.what()));
+    say(runner.messages, fmt::format("ricochet: {}\n", error.what()));
     return ended(kStoreUnusable);
   }
 }
@@ -367,7 +371,7 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
     return 0;
   } catch (const StoreError& error) {
-    say(stderr, fmt::format("error: {}\n", error.what()));
+    say(stderr, fmt::format("ricochet: {}\n", error.what()));
     return kStoreUnusable;
   }
 }
@@ -378,7 +382,7 @@ int export_tables(const std::filesystem::path& folder, const std::filesystem::pa
     say(stdout, fmt::format("tables: {}\n", to.string()));
     return 0;
   } catch (const StoreError& error) {
-    say(stderr, fmt::format("error: {}\n", error.what()));
+    say(stderr, fmt::format("ricochet: {}\n", error.what()));
     return kStoreUnusable;
   }
 }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <set>
 
+#include "runners/study/json_fault.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -21,6 +23,11 @@ TextPosition position_of(const std::string& text, std::size_t offset) {
     }
   }
   return where;
+}
+
+// What is said to readers and to editors alone.
+bool is_remark(const std::string& key) {
+  return key.starts_with("//") || key == "$schema";
 }
 
 // One past the closing quote of the string that opens at `begin`.
@@ -73,7 +80,7 @@ void scan(const std::string& text, const std::function<bool(const std::string&, 
         const auto key = Json::parse(text.substr(i, end - i)).get<std::string>();
         top.member = pointer_to(top.pointer, key);
         top.key_next = false;
-        go_on = visit(top.member, i, !top.keys.insert(key).second);
+        go_on = visit(top.member, i, !top.keys.insert(key).second && !is_remark(key));
       } else {
         value_pointer(i, go_on);
       }
@@ -108,18 +115,28 @@ std::size_t depth(const std::string& text, std::size_t& offset) {
   return most;
 }
 
-// "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error …" without what we say ourselves.
-std::string plain_reason(const std::string& what) {
-  std::string reason = what;
-  for (const char* before : {"] ", "parse error at line "}) {
-    const auto at = reason.find(before);
-    if (at == std::string::npos) continue;
-    if (std::string_view(before) == "] ")
-      reason.erase(0, at + 2);
-    else if (const auto colon = reason.find(": ", at); colon != std::string::npos)
-      reason.erase(0, colon + 2);
+// UTF-16 has a zero in every other byte of what people write, or begins with a mark.
+bool is_utf16(const std::string& text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || text.find('\0') < 4;
+}
+
+[[noreturn]] void refuse_text(const std::string& text, std::size_t stopped_at) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw SyntaxError({}, "the file is empty; expected a study, a JSON object");
+  if (is_utf16(text)) throw SyntaxError({}, "not valid JSON: the file is UTF-16; save it as UTF-8");
+  if (const auto fault = find_json_fault(text))
+    throw SyntaxError(position_of(text, fault->at),
+                      "not valid JSON: " + fault->message + "\n" + shown_line(text, fault->at));
+  throw SyntaxError(position_of(text, stopped_at), "not valid JSON: this byte is no UTF-8; save the file as UTF-8");
+}
+
+void drop_remarks(Json& value) {
+  if (value.is_object()) {
+    for (auto member = value.begin(); member != value.end();)
+      member = is_remark(member.key()) ? value.erase(member) : std::next(member);
   }
-  return reason;
+  if (value.is_structured())
+    for (Json& inside : value) drop_remarks(inside);
 }
 
 }  // namespace
@@ -158,10 +175,7 @@ Json parse_json(const std::string& text) {
   try {
     result = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-      throw SyntaxError({}, "the file is empty; expected a study, a JSON object");
-    throw SyntaxError(position_of(text, error.byte > 0 ? error.byte - 1 : 0),
-                      "not valid JSON: " + plain_reason(error.what()));
+    refuse_text(text, error.byte > 0 ? error.byte - 1 : 0);
   } catch (const Json::out_of_range& error) {
     const std::string what = error.what();
     const auto open = what.find('\''), close = what.rfind('\'');
@@ -175,6 +189,7 @@ Json parse_json(const std::string& text) {
     return !repeated;
   });
   if (!twice.empty()) throw InputError(twice, "this key is given twice in the same object");
+  drop_remarks(result);
   return result;
 }
 

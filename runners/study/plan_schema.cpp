@@ -10,6 +10,9 @@ Json described(Json schema, const char* text) {
   return schema;
 }
 
+Json reference(const char* name) {
+  return {{"$ref", std::string("#/$defs/") + name}};
+}
 Json number() {
   return {{"type", Json::array({"number", "string"})}};
 }
@@ -30,31 +33,39 @@ Json named(const Json& values) {
   return {{"type", "object"}, {"additionalProperties", values}};
 }
 Json closed(const Json& properties, const std::vector<std::string>& required) {
-  Json schema = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+  Json schema = {{"type", "object"}, {"additionalProperties", false}, {"patternProperties", {{"^//", true}}}};
+  schema["properties"] = properties;
   if (!required.empty()) schema["required"] = required;
   return schema;
 }
+/// A string, or what `otherwise` says.
+Json or_formula(Json otherwise) {
+  return {{"if", {{"type", "string"}}}, {"then", true}, {"else", std::move(otherwise)}};
+}
 Json combination() {
-  return {{"anyOf", Json::array({{{"type", "string"}}, named(number())})}};
+  return reference("plan-combination");
 }
 Json matrices() {
-  return {
-      {"anyOf", Json::array({{{"type", "string"}}, closed({{"M", number()}, {"C", number()}, {"K", number()}}, {})})}};
+  return reference("plan-matrices");
+}
+
+Json reading() {
+  return closed({{"displacement", described(combination(), "g, where the law sees the contact point.")},
+                 {"bound", described(named(number()), "Levels of the stop in g; derived when left out.")},
+                 {"rate", described(combination(), "u, for laws with damping.")},
+                 {"rate_bound", described(named(number()), "Levels of the stop's rate.")},
+                 {"effort", described(list(number()), "π₀, π₁, …")},
+                 {"impulse", described(number(), "ι of R w = ι Hᵀp; 1 when left out.")},
+                 {"before", described(combination(), "g⁻, the displacement one step before.")},
+                 {"before_bound", described(named(number()), "Levels of the stop in g⁻.")}},
+                {"displacement"});
 }
 
 Json compliance() {
-  const Json one = closed({{"displacement", described(combination(), "g, where the law sees the contact point.")},
-                           {"bound", described(named(number()), "Levels of the stop in g; derived when left out.")},
-                           {"rate", described(combination(), "u, for laws with damping.")},
-                           {"rate_bound", described(named(number()), "Levels of the stop's rate.")},
-                           {"effort", described(list(number()), "π₀, π₁, …")},
-                           {"impulse", described(number(), "ι of R w = ι Hᵀp; 1 when left out.")},
-                           {"before", described(combination(), "g⁻, the displacement one step before.")},
-                           {"before_bound", described(named(number()), "Levels of the stop in g⁻.")}},
-                          {"displacement"});
   Json all = Json::object();
   for (int k = 0; k < evaluations; ++k)
-    all[evaluation_word(static_cast<Evaluation>(k))] = described(one, "What laws that read so are given.");
+    all[evaluation_word(static_cast<Evaluation>(k))] =
+        described(reference("plan-reading"), "What laws that read so are given.");
   return closed(all, {});
 }
 
@@ -134,9 +145,9 @@ Json plan() {
                  {"let", described(named(let), "Named formulas, each may use those before it.")},
                  {"refuse", described(list(refusal), "When the scheme does not apply.")},
                  {"slots", described(named(pair), "Weights of q₀ and v₀ before the start.")},
-                 {"start", described(list(stage()), "Stages applied once.")},
+                 {"start", described(list(reference("plan-stage")), "Stages applied once.")},
                  {"start_advances", described(truth(), "Whether the start moves time by h.")},
-                 {"stages", described(list(stage()), "Of a step.")},
+                 {"stages", described(list(reference("plan-stage")), "Of a step.")},
                  {"energy", described(list(term("of", "What is squared, slots after the step.")), "Of the scheme.")},
                  {"velocity", described(combination(), "Of slots after the step; the slot v when left out.")},
                  {"facts", described(facts, "What the scheme declares of itself.")}},
@@ -153,11 +164,17 @@ Json entry(const Json& properties, const std::vector<std::string>& required, con
 
 }  // namespace
 
-Json stated_plan_schema() {
-  const Json file = {{"name", {{"enum", {"plan"}}}}, {"file", text()}};
-  const Json inside = {{"name", text()}, {"plan", plan()}};
-  return {{"anyOf", Json::array({entry(file, {"name", "file"}, "A scheme stated in a file, relative to the study."),
-                                 entry(inside, {"name", "plan"}, "A scheme stated here.")})}};
+StatedPlanSchema stated_plan_schema() {
+  StatedPlanSchema schema;
+  schema.in_file = entry({{"name", {{"enum", {"plan"}}}}, {"file", text()}}, {"name", "file"},
+                         "A scheme stated in a file, relative to the study.");
+  schema.here = entry({{"name", text()}, {"plan", reference("plan")}}, {"name", "plan"}, "A scheme stated here.");
+  schema.definitions = {{"plan", plan()},
+                        {"plan-stage", stage()},
+                        {"plan-reading", reading()},
+                        {"plan-combination", or_formula(named(number()))},
+                        {"plan-matrices", or_formula(closed({{"M", number()}, {"C", number()}, {"K", number()}}, {}))}};
+  return schema;
 }
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include "runners/study/study_schema.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "runners/study/field.hpp"
 #include "runners/study/plan_schema.hpp"
@@ -14,56 +15,85 @@ class SchemaWriter {
  public:
   explicit SchemaWriter(const Registry& registry) : registry_(registry) {}
 
-  // One schema per way through the variants; more than one way: exactly one of them.
+  // Every key that some form of the object has is known here, so that a misspelt one is the first thing a validator
+  // tells; which of them belong together, conditions on the discriminator say.
   Json object(const ObjectForm& form) {
-    Json ways = Json::array();
-    collect(form, {}, Json::array(), ways);
-    if (ways.size() == 1) return ways.front();
-    return {{"type", "object"}, {"oneOf", ways}};
+    Json properties = Json::object(), required = Json::array();
+    add_fields(form, properties, required);
+    for (const std::string& key : keys_of(form))
+      if (!properties.contains(key)) properties[key] = true;
+    Json schema = {{"type", "object"}, {"additionalProperties", false}, {"patternProperties", remarks()}};
+    schema["properties"] = std::move(properties);
+    if (!required.empty()) schema["required"] = std::move(required);
+    add_conditions(form, schema);
+    return schema;
   }
+
+  /// What is referred to by "#/$defs/NAME".
+  Json definitions() { return std::move(definitions_); }
 
  private:
-  void collect(const ObjectForm& form, std::vector<const Field*> fields, Json conditions, Json& ways) {
-    for (const Field& field : form.fields) fields.push_back(&field);
-    for (const ObjectForm& way : form.ways) collect(way, fields, conditions, ways);
-    if (!form.ways.empty()) return;
-    if (form.discriminator.empty()) {
-      ways.push_back(closed(fields, conditions));
-      return;
-    }
-    for (const Variant& variant : form.variants) {
-      Json further = conditions;
-      further.push_back(condition(form.discriminator, variant.words));
-      collect(variant.keys, fields, std::move(further), ways);
+  static Json remarks() { return {{"^(//|\\$schema$)", true}}; }
+  static Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
+  static Json either(const char* type, Json then, Json otherwise) {
+    return {{"if", {{"type", type}}}, {"then", std::move(then)}, {"else", std::move(otherwise)}};
+  }
+
+  void add_fields(const ObjectForm& form, Json& properties, Json& required) {
+    for (const Field& field : form.fields) {
+      properties[field.key()] = value(field);
+      if (field.required()) required.push_back(field.key());
     }
   }
 
-  // That the word at `path` is one of `words`.
+  /// Of the form and of all that it may become.
+  static std::set<std::string> keys_of(const ObjectForm& form) {
+    std::set<std::string> keys;
+    for (const Field& field : form.fields) keys.insert(field.key());
+    for (const Variant& variant : form.variants) keys.merge(keys_of(variant.keys));
+    for (const ObjectForm& way : form.ways) keys.merge(keys_of(way));
+    return keys;
+  }
+
+  /// What an object is in one of several forms: it has these keys, and none of the others'.
+  Json one_of(const ObjectForm& form, const std::set<std::string>& of_all) {
+    Json properties = Json::object(), required = Json::array();
+    add_fields(form, properties, required);
+    const std::set<std::string> own = keys_of(form);
+    for (const std::string& key : of_all)
+      if (own.count(key) == 0) properties[key] = false;
+    Json schema = Json::object();
+    if (!properties.empty()) schema["properties"] = std::move(properties);
+    if (!required.empty()) schema["required"] = std::move(required);
+    add_conditions(form, schema);
+    return schema;
+  }
+
+  void add_conditions(const ObjectForm& form, Json& schema) {
+    std::set<std::string> of_all;
+    for (const Variant& variant : form.variants) of_all.merge(keys_of(variant.keys));
+    for (const ObjectForm& way : form.ways) of_all.merge(keys_of(way));
+    for (const Variant& variant : form.variants)
+      schema["allOf"].push_back(
+          {{"if", condition(form.discriminator, variant.words)}, {"then", one_of(variant.keys, of_all)}});
+    for (const ObjectForm& way : form.ways) schema["oneOf"].push_back(one_of(way, of_all));
+  }
+
+  // That there is a word at `path`, and that it is one of `words`.
   static Json condition(const std::string& path, const std::vector<std::string>& words) {
     if (path.empty()) return {{"enum", words}};
     const auto end = std::min(path.find('/', 1), path.size());
     const std::string key = path.substr(1, end - 1);
-    return {{"properties", {{key, condition(path.substr(end), words)}}}};
-  }
-
-  Json closed(const std::vector<const Field*>& fields, const Json& conditions) {
-    Json properties = Json::object(), required = Json::array();
-    for (const Field* field : fields) {
-      properties[field->key()] = value(*field);
-      if (field->required()) required.push_back(field->key());
-    }
-    Json schema = {{"type", "object"}, {"properties", properties}};
-    if (!required.empty()) schema["required"] = required;
-    schema["additionalProperties"] = false;
-    if (!conditions.empty()) schema["allOf"] = conditions;
-    return schema;
+    return {{"properties", {{key, condition(path.substr(end), words)}}}, {"required", {key}}};
   }
 
   Json value(const Field& field) {
     Json schema = single(field);
     if (field.axis) {
+      // A list of positions is one value of "at", and also looks like a list of values.
       const Json list = {{"type", "array"}, {"items", schema}, {"minItems", 1}, {"uniqueItems", true}};
-      schema = {{"anyOf", Json::array({schema, list})}};
+      schema = field.form == Field::Form::places ? Json{{"anyOf", Json::array({schema, list})}}
+                                                 : either("array", list, schema);
     }
     std::string text = field.spec.text;
     if (!field.spec.unit.empty() && field.spec.unit != "1") text += " Unit: " + field.spec.unit + ".";
@@ -76,8 +106,7 @@ class SchemaWriter {
   Json single(const Field& field) {
     switch (field.form) {
       case Field::Form::scalar:
-        if (field.nullable) return {{"anyOf", Json::array({scalar(field.spec), {{"type", "null"}}})}};
-        return scalar(field.spec);
+        return or_null(field, scalar(field.spec));
       case Field::Form::text:
         return {{"type", "string"}};
       case Field::Form::formula:
@@ -87,8 +116,7 @@ class SchemaWriter {
         return {{"anyOf", Json::array({{{"enum", {"nodes", "tip"}}},
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
       case Field::Form::object:
-        if (field.nullable) return {{"anyOf", Json::array({object(field.nested.front()), {{"type", "null"}}})}};
-        return object(field.nested.front());
+        return or_null(field, object(field.nested.front()));
       case Field::Form::objects:
         return {{"type", "array"},
                 {"items", object(field.nested.front())},
@@ -96,12 +124,10 @@ class SchemaWriter {
                 {"maxItems", field.count}};
       case Field::Form::numbers:
         return one_or_list(scalar(field.spec));
-      case Field::Form::words: {
-        const Json words = one_or_list(scalar(field.spec));
-        return field.nullable ? Json{{"anyOf", Json::array({words, {{"type", "null"}}})}} : words;
-      }
+      case Field::Form::words:
+        return or_null(field, one_or_list(scalar(field.spec)));
       case Field::Form::starts:
-        return one_or_list({{"anyOf", Json::array({scalar(field.spec), object(field.nested.front())})}});
+        return one_or_list(either("object", object(field.nested.front()), scalar(field.spec)));
       case Field::Form::methods:
         return methods(field.role, field.marched);
       case Field::Form::excludes:
@@ -110,8 +136,12 @@ class SchemaWriter {
     return excludes();
   }
 
+  static Json or_null(const Field& field, Json schema) {
+    return field.nullable ? either("null", true, std::move(schema)) : schema;
+  }
+
   static Json one_or_list(const Json& one) {
-    return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}, {"uniqueItems", true}}})}};
+    return either("array", {{"items", one}, {"minItems", 1}, {"uniqueItems", true}}, one);
   }
 
   static Json scalar(const ParameterSpec& spec) {
@@ -131,44 +161,57 @@ class SchemaWriter {
   }
 
   Json methods(Role role, bool marched) {
-    Json plain = Json::array(), ways = Json::array();
+    const std::string role_word = role_name(role);
+    if (!definitions_.contains(role_word)) define_method(role, marched);
+    return either("array", {{"items", reference(role_word)}, {"minItems", 1}}, reference(role_word));
+  }
+
+  /// One method of a role: a bare name, where its parameters all have defaults, or an object.
+  void define_method(Role role, bool marched) {
+    const std::string role_word = role_name(role);
+    Json plain = Json::array(), by_name = Json::array();
     if (marched) plain.push_back(marched_reference);
     for (const std::string& name : registry_.names(role)) {
       const PluginManual& manual = *registry_.manual(role, name);
-      const ObjectForm form = method_form(manual);
-      Json way = object(form);
-      way["title"] = name;
-      way["description"] = manual.summary + " " + manual.text;
-      ways.push_back(std::move(way));
+      Json& method = definitions_[role_word + "-" + name] = object(method_form(manual));
+      method["description"] = manual.summary;
+      by_name.push_back({{"if", condition("/name", {name})}, {"then", reference(role_word + "-" + name)}});
       bool complete = true;
       for (const ParameterSpec& spec : manual.parameters) complete = complete && spec.fallback.has_value();
       if (complete) plain.push_back(name);
     }
-    if (role == Role::time) ways.push_back(stated_plan_schema());
-    // A bare name stands for a method whose parameters all have defaults.
-    if (!plain.empty()) ways.insert(ways.begin(), Json{{"enum", plain}});
-    if (ways.empty()) ways.push_back({{"type", Json::array({"string", "object"})}});
-    const Json one = {{"anyOf", ways}};
-    return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}}})}};
+    if (by_name.empty()) {
+      definitions_[role_word] = {{"type", Json::array({"string", "object"})}};
+      return;
+    }
+    Json object = condition("/name", registry_.names(role));
+    object["allOf"] = std::move(by_name);
+    if (role == Role::time) {
+      const StatedPlanSchema stated = stated_plan_schema();
+      definitions_.update(stated.definitions);
+      object = {{"if", {{"required", {"plan"}}}}, {"then", stated.here}, {"else", std::move(object)}};
+      object = {{"if", {{"required", {"file"}}}}, {"then", stated.in_file}, {"else", std::move(object)}};
+    }
+    definitions_[role_word] =
+        either("object", std::move(object), plain.empty() ? Json{{"type", "object"}} : Json{{"enum", plain}});
   }
 
   Json excludes() {
-    const Json text = {{"type", "string"}, {"minLength", 1}, {"description", "The reason; the report shows it."}};
     Json properties = {
-        {"why", text}, {"elements", Json::object()}, {"step", Json::object()}, {"steps_per_period", Json::object()}};
+        {"why", {{"type", "string"}, {"minLength", 1}, {"description", "The reason; the report shows it."}}},
+        {"elements", true},
+        {"step", true},
+        {"steps_per_period", true}};
     for (const Role role : {Role::mass, Role::contact, Role::time}) {
       properties[role_name(role)] = {{"description", "Name of a method, or a list of names."}};
       for (const std::string& name : registry_.names(role))
         for (const ParameterSpec& spec : registry_.manual(role, name)->parameters)
-          properties[std::string(role_name(role)) + "." + spec.key] = {{"description", spec.text}};
+          properties[std::string(role_name(role)) + "." + spec.key] = true;
     }
     for (const Field& field : study_form().fields)
       if (field.key() == "scene") scene_axes(field.nested.front(), "", properties);
-    const Json entry = {{"type", "object"},
-                        {"properties", properties},
-                        {"required", {"why"}},
-                        {"minProperties", 2},
-                        {"additionalProperties", false}};
+    const Json entry = {{"type", "object"},   {"additionalProperties", false}, {"patternProperties", remarks()},
+                        {"minProperties", 2}, {"properties", properties},      {"required", {"why"}}};
     return {{"type", "array"}, {"items", entry}};
   }
 
@@ -179,19 +222,22 @@ class SchemaWriter {
       if (field.form == Field::Form::object)
         scene_axes(field.nested.front(), here, properties);
       else if (field.axis)
-        properties[here] = {{"description", field.spec.text}};
+        properties[here] = true;
     }
     for (const Variant& variant : form.variants) scene_axes(variant.keys, path, properties);
   }
 
   const Registry& registry_;
+  Json definitions_ = Json::object();
 };
 
 }  // namespace
 
 Json study_schema(const Registry& registry) {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Ricochet study"}};
-  schema.update(SchemaWriter(registry).object(study_form()));
+  SchemaWriter writer(registry);
+  schema.update(writer.object(study_form()));
+  schema["$defs"] = writer.definitions();
   return schema;
 }
 

@@ -139,7 +139,7 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
                                  installed.run(here.path(), "run study.json --plugin '" + file + "'")}) {
         INFO(name << ": " << run.out << run.err);
         CHECK(run.code == 4);
-        CHECK_THAT(run.err, StartsWith("ricochet: plugin error: ") && Contains(file + ": ") && Contains(reason));
+        CHECK_THAT(run.err, StartsWith("ricochet: ") && Contains(file + ": ") && Contains(reason));
         for (const auto& [other, ignored] : broken)
           if (other != name) CHECK_THAT(run.err, !Contains(installed.plugin(other).string()));
         CHECK_FALSE(fs::exists(here / "results"));

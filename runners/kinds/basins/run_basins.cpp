@@ -269,6 +269,13 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   if (!possible) return out;
   out.refusal.clear();
   describe_march(out, scenes.scenes(), study_case);
+  const GridAxis &x = scenes.axes()[0], &y = scenes.axes()[1];
+  for (const auto& [at_x, at_y] : {std::pair(x.values.front(), y.values.front()), {x.values.back(), y.values.back()}}) {
+    try {
+      widen_steps(out, with_parameters(study_case, {{x.pointer, at_x}, {y.pointer, at_y}}));
+    } catch (const InputError&) {  // not marched in this corner
+    }
+  }
   const bool refine = refines(study_case);
   const std::size_t first = GridRefinement::first_cells(columns, rows, refine);
   const std::size_t cells = first + (columns * rows - first) / 4;

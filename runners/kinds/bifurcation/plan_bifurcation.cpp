@@ -26,6 +26,12 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   if (representative < 0) return out;
   out.refusal.clear();
   describe_march(out, scenes, study_case);
+  for (const double value : {values.front(), values.back()}) {
+    try {
+      widen_steps(out, with_parameter(study_case, pointer, value));
+    } catch (const InputError&) {  // not marched at this end
+    }
+  }
   const Json& settings = study_case.settings;
   // Measured on diagrams of the shaken beam: about half of the orbits wait for the cap of the transient, and contacts
   // cost 0.7 of free flight on top of it.

@@ -41,6 +41,8 @@ CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
     out.refusal = refusal->sentence;
     return out;
   }
+  out.coarsest_step = std::max(steps.front(), steps.back());
+  out.finest_step = std::min(steps.front(), steps.back());
   const auto n = static_cast<double>(problem.dofs());
   // Eigenvalues of a step with the contact closed, per step of the range and for the bisection.
   out.predicted_seconds = 1e-8 * n * n * n * static_cast<double>(std::min<std::size_t>(steps.size(), 40) + 20);

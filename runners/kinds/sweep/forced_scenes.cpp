@@ -1,5 +1,6 @@
 #include "runners/kinds/sweep/forced_scenes.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -77,6 +78,12 @@ std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScen
   if (study_case.settings.value("exponents", 0) > 0)
     std::erase_if(pairs, [](const auto& pair) { return pair.first == "tangent columns"; });
   return pairs;
+}
+
+void widen_steps(CasePlan& plan, const StudyCase& study_case) {
+  const double step = 2 * std::numbers::pi / forcing_pulsation(study_case.scene) / study_case.steps_per_period;
+  plan.coarsest_step = std::max(plan.coarsest_step, step);
+  plan.finest_step = plan.finest_step > 0 ? std::min(plan.finest_step, step) : step;
 }
 
 }  // namespace ricochet

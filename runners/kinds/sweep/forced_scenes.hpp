@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "runners/march/case_plan.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -61,6 +62,9 @@ class ForcedScenes {
 /// for.
 std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScenes& scenes,
                                                                 const StudyCase& study_case);
+
+/// Makes room in a plan for the step of a case that steps by the forcing period.
+void widen_steps(CasePlan& plan, const StudyCase& study_case);
 
 /// What a plan or a record says of the march of a case: its operator, what it does without, notes.
 template <class PlanOrRecord>

@@ -145,6 +145,7 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.steps = prepared.steps;
   plan.notes = prepared.notes;
   if (!prepared.program) return plan;
+  plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
   plan.predicted_seconds =

@@ -237,7 +237,7 @@ TEST_CASE("interruption: a store that may not grow keeps its finished cases and 
   constexpr rlim_t limit = 40000000;
   Child child("large", out, scratch / "messages", limit);
   CHECK(child.wait() == 5);
-  CHECK_THAT(child.messages(), Contains("error: ") && Contains("results.sqlite") && Contains("File too large") &&
+  CHECK_THAT(child.messages(), Contains("ricochet: ") && Contains("results.sqlite") && Contains("File too large") &&
                                    Contains("run the same command again"));
   CHECK(stored(out) == 2);
   CHECK(integrity(out) == "ok");

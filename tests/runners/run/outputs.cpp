@@ -40,6 +40,27 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
   CHECK(read_text(folder / "export/points.csv") == points);
 }
 
+TEST_CASE("outputs: tables of one study are not written over those of another") {
+  const ScratchFolder folder;
+  StudyResults one = results_with_points(), other = results_with_points();
+  one.study = {{"name", "sweep"}};
+  one.cases[0].curve = {{"t"}, {{0, 1}}};
+  other.name = "other";
+  other.study = {{"name", "other"}};
+  std::filesystem::create_directory(folder / "tables");
+  write_text(folder / "tables/notes.txt", "what somebody keeps there");
+  write_tables(folder / "tables", one);
+  CHECK_THROWS_WITH(write_tables(folder / "tables", other),
+                    Catch::Contains("of the study \"sweep\", not of \"other\"") && Catch::Contains("folder"));
+  CHECK(std::filesystem::exists(folder / "tables/curves/0123456789.csv"));
+  // The same study again, with fewer cases: none of what it had before stays.
+  one.cases.clear();
+  write_tables(folder / "tables", one);
+  CHECK_FALSE(std::filesystem::exists(folder / "tables/curves/0123456789.csv"));
+  std::filesystem::remove(folder / "tables/study.json");
+  CHECK_THROWS_WITH(write_tables(folder / "tables", one), Catch::Contains("that it does not name"));
+}
+
 TEST_CASE("outputs: a sweep that went wrong leaves a study of that case alone, which is that case") {
   using namespace ricochet::tests;
   const ScratchFolder folder;

@@ -13,6 +13,21 @@ TEST_CASE("progress: what is said") {
   CHECK(progress_text({4, 4, 10, 10, 20, ""}) == "4/4 cases, 100 %, 12.0 cases/min");
 }
 
+TEST_CASE("progress: no time is told that stands still before the end") {
+  CHECK(progress_text({99, 100, 9.99, 10, 30, ""}) == "99/100 cases, 99 %, 3.3 cases/s, less than 1 s left");
+}
+
+TEST_CASE("progress: many short cases after a few long ones cost what a case costs, not what their march does") {
+  CaseCost cost;
+  CHECK(cost.seconds(1) == Approx(1.02));
+  for (int i = 0; i < 5; ++i) cost.add(2, 4);  // a machine half as fast
+  CHECK(cost.seconds(2) == Approx(4).epsilon(0.05));
+  for (int i = 0; i < 10; ++i) cost.add(1e-3, 0.05);
+  // 700 of them are 35 s, where their marches alone are 1.4 s.
+  CHECK(cost.seconds(0.7, 700) == Approx(35).epsilon(0.05));
+  CHECK(cost.seconds(2) == Approx(4).epsilon(0.1));
+}
+
 TEST_CASE("progress: a case that takes far longer than predicted is named, and no time is promised") {
   CHECK(progress_text({1, 4, 9.9, 10, 30, "case a, 12 s so far, 0.5 s predicted"}) ==
         "1/4 cases, 99 %, 2.0 cases/min, waiting for case a, 12 s so far, 0.5 s predicted");

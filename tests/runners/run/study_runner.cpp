@@ -261,7 +261,7 @@ TEST_CASE("run: a folder without write permission") {
   write_text(scratch / "file", "in the way");
   CHECK(run(fake_study(2), {scratch / "file", 1, false}) == 5);
   CHECK(run.runs == 0);
-  CHECK_THAT(run.messages, Contains("error: ") && Contains((scratch / "file").string()));
+  CHECK_THAT(run.messages, Contains("ricochet: ") && Contains((scratch / "file").string()));
 }
 
 TEST_CASE("run: results of another study in the folder are an error, not a loss") {

@@ -26,6 +26,18 @@ class Validator {
     valijson::Validator validator(valijson::Validator::kStrongTypes);
     return validator.validate(schema_, valijson::adapters::NlohmannJsonAdapter(plain), nullptr);
   }
+  /// The first thing it says: "<root>[scene][structure]: …".
+  std::string says(const Json& study) {
+    const nlohmann::json plain = study;
+    valijson::Validator validator(valijson::Validator::kStrongTypes);
+    valijson::ValidationResults results;
+    validator.validate(schema_, valijson::adapters::NlohmannJsonAdapter(plain), &results);
+    valijson::ValidationResults::Error error;
+    if (!results.popError(error)) return "";
+    std::string text;
+    for (const std::string& part : error.context) text += part;
+    return text + ": " + error.description;
+  }
 
  private:
   nlohmann::json text_;
@@ -104,6 +116,50 @@ TEST_CASE("The schema and the reader agree on what is a study") {
     CHECK_FALSE(refusal(study).empty());
     CHECK_FALSE(validator.accepts(study));
   }
+}
+
+TEST_CASE("The first thing that a validator says of a misspelt key is that key, where it stands") {
+  Validator validator(stand_ins());
+  const std::vector<std::pair<std::string, std::string>> all = {
+      {"", "sttep"},
+      {"/scene", "laod"},
+      {"/scene/structure", "lenght"},
+      {"/scene/structure/section", "diametre"},
+      {"/scene/structure/damping", "stifness"},
+      {"/mesh", "element"},
+  };
+  for (const auto& [pointer, key] : all) {
+    std::string where = "<root>";
+    for (std::size_t at = 1; at < pointer.size();) {
+      const std::size_t end = std::min(pointer.find('/', at), pointer.size());
+      where += "[" + pointer.substr(at, end - at) + "]";
+      at = end + 1;
+    }
+    Json study = small_study();
+    study["scene"]["structure"]["damping"]["stiffness"] = 1e-4;
+    CHECK(validator.says(study).empty());
+    study[Json::json_pointer(pointer + "/" + key)] = 1;
+    INFO(pointer << "/" << key);
+    using Catch::Matchers::Contains;
+    CHECK_THAT(validator.says(study), Catch::Matchers::StartsWith(where + ": ") && Contains(key));
+  }
+}
+
+TEST_CASE("The schema and the reader take remarks and $schema, at any level") {
+  const Registry registry = stand_ins();
+  Validator validator(registry);
+  Json study = small_study();
+  study["$schema"] = "./schema.json";
+  study["//"] = "from the drawing of 12 May";
+  study["scene"]["structure"]["// young"] = "certificate 4711";
+  study["methods"]["contact"] = {{"name", "spring"}, {"stiffness", 1}, {"//", "a guess"}};
+  CHECK(validator.accepts(study));
+  const Study read = parse(study);
+  CHECK(read.resolved.dump().find("//") == std::string::npos);
+  CHECK(read.resolved.dump().find("$schema") == std::string::npos);
+  study["methods"]["contact"].erase("//");
+  study.erase("$schema");
+  CHECK(parse(study).cases.front().id == read.cases.front().id);
 }
 
 TEST_CASE("The schema accepts plans, by file and as they are written") {

@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// \file
+/// What a structure is before any step is chosen, so that a slip of units is seen.
+namespace ricochet {
+
+/// A number of the structure, in SI units.
+struct PhysicalNumber {
+  const char* symbol;
+  double value = 0;
+  const char* unit;
+};
+
+struct StructurePhysics {
+  std::string structure;                ///< "beam", "oscillator", "bar"
+  std::vector<PhysicalNumber> numbers;  ///< EI, ρS, L; k, m; EA, ρA, L; α, η where not zero
+  int elements = 0;                     ///< of the mesh whose modes these are
+  std::vector<double> pulsations;  ///< ω_i of M φ ω² = K φ, open, slowest first, rad/s; Ker M has no part in them
+  Damping damping;                 ///< α, η
+
+  /// ζ_i = (αω_i + η/ω_i)/2 of C = αK + ηM; nothing where nothing is damped, or for a rigid motion.
+  std::optional<double> damping_ratio(std::size_t mode) const;
+  /// How many modes have `steps_per_period` or more steps of h in their period, 2π/(ω h).
+  int resolved(double h, double steps_per_period) const;
+};
+
+/// The structure of a scene on `elements` elements, or on fewer where modes would cost more than looking at a plan may.
+/// A mass that does not apply is a Refusal. Throws as discretise() does.
+std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene, int elements,
+                                                          const MassStrategy& mass);
+
+}  // namespace ricochet

@@ -1,0 +1,162 @@
+#include "runners/command/plan_physics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <ricochet/measure/stability/structure_physics.hpp>
+
+#include "runners/store/fingerprint.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/plain_text.hpp"
+
+namespace ricochet {
+namespace {
+
+using Group = std::vector<const PlannedCase*>;
+
+// So many steps of a period are told apart from the motion itself by any scheme of order two: its phase is then off by
+// less than (2π/20)²/12 = 0.8 %.
+constexpr double enough_steps = 20;
+constexpr std::size_t most_structures = 3, most_modes = 3, most_contacts = 4;
+
+/// Coarsest and finest step of a study; one where all are the same.
+std::vector<double> steps_of(const Group& group) {
+  double coarsest = 0, finest = 0;
+  for (const PlannedCase* one : group) {
+    if (one->plan.finest_step <= 0) continue;
+    coarsest = std::max(coarsest, one->plan.coarsest_step);
+    finest = finest > 0 ? std::min(finest, one->plan.finest_step) : one->plan.finest_step;
+  }
+  if (coarsest == 0) return {};
+  return coarsest == finest ? std::vector<double>{coarsest} : std::vector<double>{coarsest, finest};
+}
+
+/// As tables of results write it, unless that has more digits than a person reads.
+std::string seconds(double h) {
+  constexpr std::size_t longest = 7;
+  const std::string text = Cell(h).text();
+  return (text.size() > longest ? fmt::format("{:.4g}", h) : text) + " s";
+}
+
+/// Three digits and no exponent, up to a million.
+std::string rounded(double value) {
+  return value >= 1000 && value < 1e6 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+std::string resolved_text(const StructurePhysics& physics, double h) {
+  const int count = physics.resolved(h, enough_steps);
+  const auto all = static_cast<int>(physics.pulsations.size());
+  if (count == 0) return fmt::format("h = {} resolves no mode", seconds(h));
+  const std::string highest =
+      rounded(physics.pulsations[static_cast<std::size_t>(count - 1)] / (2 * std::numbers::pi)) + " Hz";
+  if (all == 1) return fmt::format("h = {} resolves it", seconds(h));
+  if (count == all) return fmt::format("h = {} resolves all {} modes of this mesh, to {}", seconds(h), all, highest);
+  return fmt::format("h = {} resolves mode{} of {}, to {}", seconds(h),
+                     count == 1 ? " 1" : fmt::format("s 1 to {}", count), all, highest);
+}
+
+std::string modes_text(const StructurePhysics& physics, const std::vector<double>& steps) {
+  const std::size_t shown = std::min(most_modes, physics.pulsations.size());
+  std::vector<std::string> header = {"mode"}, hertz = {"frequency"}, pulsation = {"pulsation"},
+                           damping = {"damping ratio"};
+  std::vector<std::vector<std::string>> periods;
+  bool damped = false;
+  for (const double h : steps) periods.push_back({fmt::format("steps per period, h = {}", seconds(h))});
+  for (std::size_t i = 0; i < shown; ++i) {
+    const double omega = physics.pulsations[i];
+    header.push_back(std::to_string(i + 1));
+    hertz.push_back(omega > 0 ? rounded(omega / (2 * std::numbers::pi)) + " Hz" : "0 (rigid motion)");
+    pulsation.push_back(omega > 0 ? fmt::format("{:.4g} rad/s", omega) : "");
+    const std::optional<double> ratio = physics.damping_ratio(i);
+    damped = damped || ratio;
+    damping.push_back(
+        !ratio ? "" : fmt::format("{} %", *ratio < 1 ? fmt::format("{:.2g}", 100 * *ratio) : rounded(100 * *ratio)));
+    for (std::size_t s = 0; s < steps.size(); ++s)
+      periods[s].push_back(omega > 0 ? rounded(2 * std::numbers::pi / omega / steps[s]) : "");
+  }
+  TextTable table(header);
+  for (const auto& row : {hertz, pulsation}) table.add(row);
+  if (damped) table.add(damping);
+  for (const auto& row : periods) table.add(row);
+  std::string text = table.text(4);
+  if (steps.empty()) return text;
+  text += fmt::format("    with {} steps per period or more,", enough_steps);
+  for (std::size_t s = 0; s < steps.size(); ++s) text += (s > 0 ? "; " : " ") + resolved_text(physics, steps[s]);
+  return text + "\n";
+}
+
+/// The first case of the first mass matrix, on the finest mesh it has.
+const StudyCase& representative(const Group& group) {
+  const PlannedCase* found = group.front();
+  for (const PlannedCase* one : group)
+    if (one->study_case->mass.name == found->study_case->mass.name &&
+        one->study_case->elements > found->study_case->elements)
+      found = one;
+  return *found->study_case;
+}
+
+std::string structure_text(const StudyCase& one, const std::vector<double>& steps, const Registry& registry) {
+  const auto mass = registry.mass(one.mass.name)->make(one.mass.parameters);
+  const auto answer = structure_physics(one.scene, one.elements, *mass);
+  const auto* physics = std::get_if<StructurePhysics>(&answer);
+  if (!physics) return "";
+  std::string text = "  " + physics->structure + ":";
+  for (const PhysicalNumber& number : physics->numbers)
+    text += fmt::format("{} {} {:.4g} {}", &number == physics->numbers.data() ? "" : ",", number.symbol, number.value,
+                        number.unit);
+  text += std::holds_alternative<OscillatorSpec>(one.scene.structure)
+              ? "\n"
+              : fmt::format("; modes with mass {} on {} elements\n", one.mass.name, physics->elements);
+  return text + modes_text(*physics, steps);
+}
+
+/// Half a period of an oscillator that a linear law holds at its stop, π√(m/(k + κ)): as long as a short contact lasts.
+std::string contact_text(const StudyCase& one, const std::vector<double>& steps, const Registry& registry) {
+  const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure);
+  if (!oscillator) return "";
+  const auto law = registry.contact(one.contact.name)->make(one.contact.parameters);
+  if (law->absent()) return "";
+  law->prepare(1, {&one.contact.parameters, 1});
+  const std::optional<double> stiffness = law->constant_stiffness(0);
+  if (!stiffness) return "";
+  const double half = std::numbers::pi * std::sqrt(oscillator->mass / (oscillator->stiffness + *stiffness));
+  std::string text = fmt::format("    against {} of {:.4g} N/m, half a period lasts {}:", one.contact.name, *stiffness,
+                                 duration_text(half));
+  for (const double h : steps)
+    text += fmt::format("{} {} steps of {}", h == steps.front() ? "" : ",", rounded(half / h), seconds(h));
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
+  std::vector<std::pair<std::string, Group>> groups;
+  for (const PlannedCase& one : cases)
+    in_order_met(groups, one.study_case->scene_json.at("structure").dump()).push_back(&one);
+  std::string text;
+  for (std::size_t g = 0; g < std::min(most_structures, groups.size()); ++g) {
+    const Group& group = groups[g].second;
+    const std::vector<double> steps = steps_of(group);
+    const StudyCase& one = representative(group);
+    text += planner.ask(one, [&] { return structure_text(one, steps, registry); });
+    std::vector<std::pair<std::string, Group>> contacts;
+    for (const PlannedCase* planned : group)
+      in_order_met(contacts, content_of(planned->study_case->contact).dump()).push_back(planned);
+    std::size_t told = 0;
+    for (const auto& [content, with] : contacts) {
+      if (told == most_contacts) break;
+      const StudyCase& first = *with.front()->study_case;
+      const std::string line = planner.ask(first, [&] { return contact_text(first, steps_of(with), registry); });
+      text += line;
+      told += line.empty() ? 0 : 1;
+    }
+  }
+  if (groups.size() > most_structures)
+    text += fmt::format("  and {} more structures\n", groups.size() - most_structures);
+  return text;
+}
+
+}  // namespace ricochet

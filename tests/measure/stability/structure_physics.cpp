@@ -1,0 +1,80 @@
+// What a plan says of a structure, against closed forms.
+#include <catch2/catch.hpp>
+#include <numbers>
+#include <ricochet/measure/stability/structure_physics.hpp>
+
+#include "tests/marching.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace structure_physics_tests {
+
+namespace {
+
+StructurePhysics physics_of(const SceneSpec& scene, int elements, const char* mass = "consistent") {
+  return std::get<StructurePhysics>(structure_physics(scene, elements, *make(registry().mass(mass), {mass})));
+}
+
+}  // namespace
+
+TEST_CASE("physics: the frequencies of a cantilever are β²√(EI/ρSL⁴), whatever the mass matrix") {
+  SceneSpec scene;
+  BeamSpec beam;
+  beam.length = 1.501;
+  beam.young = 2e11;
+  beam.density = 8000;
+  beam.section = {.type = Section::Type::tube, .outer_diameter = 0.01, .wall = 0.0005};
+  beam.damping = {.stiffness = 1e-4, .mass = 0.5};
+  scene.structure = beam;
+  const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
+  const double scale = std::sqrt(section.EI / section.rhoS) / beam.length / beam.length;
+  for (const char* mass : {"consistent", "singular"}) {
+    INFO(mass);
+    const StructurePhysics physics = physics_of(scene, 40, mass);
+    CHECK(physics.structure == "beam");
+    CHECK(physics.numbers[0].value == section.EI);
+    CHECK(physics.numbers[1].value == section.rhoS);
+    const double roots[] = {1.8751040687, 4.6940911330, 7.8547574382};  // of cos β cosh β = −1
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double omega = physics.pulsations[i];
+      CHECK(omega == Approx(roots[i] * roots[i] * scale).epsilon(1e-3));  // 40 elements, order 2 at worst
+      CHECK(*physics.damping_ratio(i) == Approx((1e-4 * omega + 0.5 / omega) / 2));
+    }
+  }
+}
+
+TEST_CASE("physics: a step resolves the modes that have so many steps in their period") {
+  SceneSpec scene;
+  scene.structure = BarSpec{};  // ω_i = (i − ½)π
+  const StructurePhysics physics = physics_of(scene, 100);
+  CHECK_FALSE(physics.damping_ratio(0).has_value());
+  const double h = 0.01;
+  const int count = physics.resolved(h, 20);
+  REQUIRE(count > 0);
+  CHECK(2 * std::numbers::pi / physics.pulsations[static_cast<std::size_t>(count - 1)] >= 20 * h);
+  CHECK(2 * std::numbers::pi / physics.pulsations[static_cast<std::size_t>(count)] < 20 * h);
+  CHECK(count == 10);  // (i − ½)π ≤ 10π
+  CHECK(physics.resolved(100, 20) == 0);
+}
+
+TEST_CASE(
+    "physics: an oscillator has one mode, a bar held nowhere a rigid one, and a fine mesh is looked at on fewer") {
+  SceneSpec scene;
+  scene.structure = OscillatorSpec{.mass = 100, .stiffness = 1e4, .damping = 200, .force = {}};
+  const StructurePhysics one = physics_of(scene, 1);
+  REQUIRE(one.pulsations.size() == 1);
+  CHECK(one.pulsations[0] == Approx(10));
+  CHECK(*one.damping_ratio(0) == Approx(200 / (2 * std::sqrt(1e4 * 100))));  // c/2√(km)
+  BarSpec bar;
+  bar.fixed = BarSpec::Fixed::none;
+  bar.damping.stiffness = 1e-3;
+  scene.structure = bar;
+  const StructurePhysics free = physics_of(scene, 1000);
+  CHECK(free.elements < 1000);
+  CHECK(free.pulsations[0] == 0);
+  CHECK_FALSE(free.damping_ratio(0).has_value());
+  CHECK(free.pulsations[1] == Approx(std::numbers::pi).epsilon(1e-3));
+}
+
+}  // namespace structure_physics_tests
