@@ -21,8 +21,8 @@ std::string overview() {
     text += fmt::format("  {:<9} {:<46} {}\n", command.name, command.usage, command.summary);
   text +=
       "\n  ricochet help COMMAND shows the options of one command; ricochet --version the version.\n\n"
-      "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed, 4 plugin missing or incompatible,\n"
-      "5 store unusable, 130 interrupted (resumable).\n";
+      "Exit codes: 0 all done, 2 bad study or usage, 3 some cases failed or none could run,\n"
+      "4 plugin missing or incompatible, 5 store unusable, 130 interrupted (resumable).\n";
   return text;
 }
 
@@ -123,7 +123,8 @@ const std::vector<Subcommand>& subcommands() {
       {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {"plugin"}, command_list},
       {"describe",
        "NAME|PLAN.json",
-       "Show the manual of a method: text, parameters, source, facts; or of a scheme stated in a file.",
+       "Show the manual of a method, a structure, a kind of study, a measure or an error; or of a scheme stated in a "
+       "file.",
        1,
        1,
        {"plugin"},

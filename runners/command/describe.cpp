@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "runners/command/command.hpp"
+#include "runners/command/describe_words.hpp"
 #include "runners/command/plain.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/study/check_object.hpp"
@@ -17,40 +18,11 @@
 namespace ricochet {
 namespace {
 
-const char* type_name(const ParameterSpec& spec) {
-  switch (spec.type) {
-    case ParameterSpec::Type::real:
-      return "number";
-    case ParameterSpec::Type::integer:
-      return "whole number";
-    case ParameterSpec::Type::boolean:
-      return "true or false";
-    case ParameterSpec::Type::word:
-      break;
-  }
-  return "word";
-}
-
-std::string admissible(const ParameterSpec& spec) {
-  switch (spec.type) {
-    case ParameterSpec::Type::real:
-    case ParameterSpec::Type::integer:
-      return spec.range.text();
-    case ParameterSpec::Type::boolean:
-      return "true, false";
-    case ParameterSpec::Type::word:
-      break;
-  }
-  std::string words;
-  for (const std::string& word : spec.words) words += (words.empty() ? "" : ", ") + word;
-  return words;
-}
-
 std::string parameter_table(const PluginManual& manual) {
   TextTable table({"parameter", "type", "unit", "default", "range", "meaning"});
   for (const ParameterSpec& spec : manual.parameters)
-    table.add({spec.key, type_name(spec), spec.unit, spec.fallback ? plain(to_json(*spec.fallback)) : "required",
-               admissible(spec), spec.text + (spec.per_lane ? " (may differ between lanes)" : "")});
+    table.add({spec.key, type_word(spec), spec.unit, spec.fallback ? plain(to_json(*spec.fallback)) : "required",
+               admissible_values(spec), spec.text + (spec.per_lane ? " (may differ between lanes)" : "")});
   return table.text(2);
 }
 
@@ -273,12 +245,22 @@ int command_describe(const Arguments& arguments, std::ostream& out) {
     found = true;
     sound = print_manual(role, *registry.manual(role, name), catalogue, registry, out) && sound;
   }
+  std::ostringstream words;
+  if (describe_word(name, words)) {
+    out << (found ? "\n----\n\n" : "") << words.str();
+    found = true;
+  }
   if (found) return sound ? exit_done : exit_some_failed;
   for (const Role role : all_roles)
     if (const Unusable* file = catalogue.unusable_provider(role, name))
       throw PluginError(file->file.string() + ": " + file->reason);
-  std::string message =
-      "no method is called \"" + name + "\"" + did_you_mean(name, names) + " (found: " + quoted_list(names) + ")";
+  const std::vector<std::string> studies = words_of_studies(), results = words_of_results();
+  std::vector<std::string> all = names;
+  all.insert(all.end(), studies.begin(), studies.end());
+  all.insert(all.end(), results.begin(), results.end());
+  std::string message = "no method, structure, kind, measure or error is called \"" + name + "\"" +
+                        did_you_mean(name, all) + " (methods: " + quoted_list(names) +
+                        "; of studies: " + quoted_list(studies) + "; measures: the columns of cases.csv)";
   for (const Unusable& file : catalogue.unusable())
     message += "\n  cannot serve: " + file.file.string() + ": " + file.reason;
   throw UsageError(message);

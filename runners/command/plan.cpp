@@ -17,6 +17,8 @@ namespace {
 
 using Grouped = std::map<std::string, int>;  // sentence → number of cases
 
+constexpr const char* fails = "fails: ";
+
 // As tables of results write it; null (an absent stop) is none.
 std::string shown(const Json& value) {
   return value.is_null() ? "none" : cell_of(value).text();
@@ -74,7 +76,8 @@ void print_axes(const std::vector<AxisValues>& axes, std::ostream& out) {
   if (!same.empty()) out << "the same throughout: " << same << "\n";
 }
 
-/// What keeps cases from running, each reason with its number of cases, the most frequent first.
+/// What keeps cases from running, each reason with its number of cases, the most frequent first. What fails is told in
+/// full, of other reasons the first ones.
 void print_reasons(const Grouped& reasons, std::ostream& out) {
   if (reasons.empty()) return;
   constexpr std::size_t most = 10;
@@ -82,10 +85,15 @@ void print_reasons(const Grouped& reasons, std::ostream& out) {
   for (const auto& [reason, count] : reasons) sorted.emplace_back(-count, reason);
   std::sort(sorted.begin(), sorted.end());
   out << "\nnot run:\n";
-  for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i)
-    out << fmt::format("  {} case{}, {}\n", -sorted[i].first, sorted[i].first == -1 ? "" : "s", sorted[i].second);
-  if (sorted.size() > most)
-    out << fmt::format("  and {} more reasons: --cases shows the reason of every case\n", sorted.size() - most);
+  std::size_t told = 0, untold = 0;
+  for (const auto& [count, reason] : sorted) {
+    if (!reason.starts_with(fails) && told++ >= most)
+      ++untold;
+    else
+      out << fmt::format("  {} case{}, {}\n", -count, count == -1 ? "" : "s", reason);
+  }
+  if (untold > 0)
+    out << fmt::format("  and {} more reason{}: --cases shows that of every case\n", untold, untold == 1 ? "" : "s");
 }
 
 void print_grouped(const char* title, const Grouped& grouped, std::size_t all, std::ostream& out) {
@@ -138,7 +146,7 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
       auto [plan, failure] = planner.plan(study_case);
       if (!failure.empty()) {
         ++all.costs.failed;
-        why = "fails: " + failure;
+        why = fails + failure;
       } else if (!plan.refusal.empty()) {
         ++all.costs.refused;
         why = "refused: " + plan.refusal;

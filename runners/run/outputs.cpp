@@ -77,7 +77,15 @@ class TableFolder {
     if (!curves.columns.empty()) remember(curves);
   }
   /// Last, when every table is known.
-  void write_dictionary() { write(dictionary_of(heads_)); }
+  void write_dictionary() {
+    Table dictionary = dictionary_of(heads_);
+    dictionary.rows.push_back(
+        {"v_cases", "", "",
+         "A view in results.sqlite: the finished cases, with the columns of cases by the same names, truth values as 0 "
+         "and 1. Curves and long tables are packed there (little-endian doubles), which SQL cannot read: take theirs "
+         "from the files of this folder."});
+    write(dictionary);
+  }
 
  private:
   std::filesystem::path file(const Table& table) const { return folder_ / (table.name + ".csv"); }

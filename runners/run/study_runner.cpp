@@ -299,6 +299,7 @@ class FolderRun {
 
   int finish() {
     const StudyResults results = with_tables(store_.load());
+    store_.make_views(results);
     write_outputs(folder_, results, runner_.render, &fresh_);
     const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                      [](const CaseRecord& one) { return one.status == "refused"; });

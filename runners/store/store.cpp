@@ -17,6 +17,7 @@
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store_error.hpp"
+#include "runners/store/views.hpp"
 
 namespace ricochet {
 namespace {
@@ -340,6 +341,11 @@ void Store::save_motion(const std::string& key, const std::string& content) {
     if (!content.empty()) change.bindNoCopy(2, content.data(), static_cast<int>(content.size()));
     change.exec();
   });
+}
+
+void Store::make_views(const StudyResults& results) {
+  const std::lock_guard guard(mutex_);
+  guarded(file_, database_.get(), [&] { ricochet::make_views(*database_, results); });
 }
 
 StudyResults Store::load() const {

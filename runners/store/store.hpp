@@ -70,6 +70,9 @@ class Store {
   std::string motion(const std::string& key) const;
   void save_motion(const std::string& key, const std::string& content);
 
+  /// Makes the views of these results anew (views.hpp): for who reads the store with SQL.
+  void make_views(const StudyResults& results);
+
   /// Everything the store holds.
   StudyResults load() const;
 

@@ -208,9 +208,10 @@ class Reader {
   }
 
   [[noreturn]] void ended() const {
-    if (open_.empty()) fail(text_.size(), "the text ends where a value is expected");
+    const std::size_t end = text_.find_last_not_of(" \t\r\n") + 1;
+    if (open_.empty()) fail(end, "the text ends where a value is expected");
     const std::size_t open = open_.back();
-    fail(text_.size(), fmt::format("the text ends before the {} of line {} is closed", text_[open], line_of(open)));
+    fail(end, fmt::format("the text ends before the {} of line {} is closed", text_[open], line_of(open)));
   }
 
   void object() {

@@ -194,6 +194,32 @@ TEST_CASE("Plugins are listed and described from their own manuals") {
              Contains("restitution") && Contains("order ") && Contains("stability") && Contains("stage 1: S z = b"));
 }
 
+TEST_CASE("What a study and its results call by a name has a manual too, and the nearest name is one of all") {
+  const Folder here;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> all = {
+      {"beam", {"/scene/structure/type", "length", "section.outer_diameter", "young", "Pa", "required"}},
+      {"tube", {"/scene/structure/section/type", "wall"}},
+      {"trajectory", {"/kind", "duration", "samples", "step", "or a list"}},
+      {"basins", {"/kind", "axes.pointer"}},
+      {"impulse", {"impulse (a measure of a case, in N s): ", "error.impulse"}},
+      {"tip-l2", {"error.tip-l2 (a measure of a case, in m): Root mean square"}},
+      {"error.tip-l2", {"Root mean square"}},
+  };
+  for (const auto& [name, parts] : all) {
+    const Outcome outcome = here.run("describe " + name);
+    INFO(name << outcome.err);
+    CHECK(outcome.code == 0);
+    for (const std::string& part : parts) CHECK_THAT(outcome.out, Contains(part));
+  }
+  for (const auto& [wrong, right] : std::vector<std::pair<std::string, std::string>>{
+           {"baem", "beam"}, {"trajectroy", "trajectory"}, {"impluse", "impulse"}, {"tip-l3", "tip-l2"}}) {
+    const Outcome outcome = here.run("describe " + wrong);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.err, StartsWith("ricochet: no method, structure, kind, measure or error is called") &&
+                                Contains("did you mean \"" + right + "\"?"));
+  }
+}
+
 TEST_CASE("A plan shows cases, refusals with reasons and cost, and runs nothing") {
   const Folder here;
   nlohmann::ordered_json study = tiny();

@@ -1,11 +1,13 @@
 #include "runners/run/study_runner.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <ricochet/contract/errors.hpp>
 
+#include "runners/store/record_tables.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 #include "tests/runners/run/fake_study.hpp"
@@ -288,6 +290,39 @@ TEST_CASE("run: the environment says when kept cases were computed elsewhere") {
   CHECK(read_store(options.out).environment.entries == expected);
   REQUIRE(run(fake_study(3), options) == 0);  // nothing ran: nothing to say
   CHECK(read_store(options.out).environment.entries == expected);
+}
+
+TEST_CASE("run: the view of the store is cases.csv") {
+  const ScratchFolder scratch;
+  FakeRun run(scratch);
+  const auto out = scratch / "out";
+  run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
+    CaseRecord record = fake_result(one);
+    if (one.id.back() == '1') record.measures.emplace_back("a \"quoted\" name", 0.5);
+    return record;
+  };
+  Study study = fake_study(3);
+  study.columns.push_back("it's");
+  study.cases[2].axes.emplace_back("it's", nullptr);
+  study.cases[1].axes.emplace_back("it's", "so");
+  REQUIRE(run(study, {out, 1, false}) == 0);
+  const Table cases = cases_table(read_store(out));
+  SQLite::Database database((out / "results.sqlite").string());
+  SQLite::Statement view(database, "SELECT * FROM v_cases");
+  REQUIRE(view.getColumnCount() == static_cast<int>(cases.columns.size()));
+  for (const Row& row : cases.rows) {
+    REQUIRE(view.executeStep());
+    for (int c = 0; c < view.getColumnCount(); ++c) {
+      const Cell& cell = row[static_cast<std::size_t>(c)];
+      INFO(cases.columns[static_cast<std::size_t>(c)].name);
+      CHECK(view.getColumnName(c) == cases.columns[static_cast<std::size_t>(c)].name);
+      if (const auto number = cell.number())
+        CHECK(view.getColumn(c).getDouble() == *number);
+      else
+        CHECK(view.getColumn(c).getString() == cell.text());
+    }
+  }
+  CHECK_FALSE(view.executeStep());
 }
 
 TEST_CASE("report and export: from the store alone") {

@@ -1,0 +1,183 @@
+#include "runners/command/describe_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <ostream>
+
+#include "runners/command/plain.hpp"
+#include "runners/store/record.hpp"
+#include "runners/study/field.hpp"
+#include "runners/study/study_kind.hpp"
+#include "runners/table/plain_text.hpp"
+
+namespace ricochet {
+namespace {
+
+/// A word of the study format on which the keys of an object depend.
+struct FormWord {
+  std::string name, place;  ///< place: pointer of the key that has it as its value
+  const Field* key;
+  const ObjectForm* form;  ///< the keys that come with it
+};
+
+void collect(const ObjectForm& form, const std::string& place, std::vector<FormWord>& words) {
+  const auto key = std::find_if(form.fields.begin(), form.fields.end(),
+                                [&](const Field& field) { return "/" + field.key() == form.discriminator; });
+  for (const Variant& variant : form.variants) {
+    if (key != form.fields.end())
+      for (const std::string& word : variant.words)
+        words.push_back({word, place + form.discriminator, &*key, &variant.keys});
+    collect(variant.keys, place, words);
+  }
+  for (const Field& field : form.fields)
+    for (const ObjectForm& nested : field.nested) collect(nested, place + "/" + field.key(), words);
+}
+
+std::vector<FormWord> form_words() {
+  std::vector<FormWord> words;
+  collect(study_form(), "", words);
+  return words;
+}
+
+std::string type_of(const Field& field) {
+  const std::string list = field.axis ? ", or a list" : "";
+  switch (field.form) {
+    case Field::Form::scalar:
+      return type_word(field.spec) + list;
+    case Field::Form::text:
+      return "text";
+    case Field::Form::formula:
+      return "number or formula in " + std::string(field.variables == "xt" ? "x and t" : field.variables) + list;
+    case Field::Form::places:
+      return "word or positions" + list;
+    case Field::Form::object:
+      return "object";
+    case Field::Form::objects:
+      return fmt::format("list of {} objects", field.count);
+    case Field::Form::methods:
+      return "method, or a list";
+    case Field::Form::numbers:
+      return "number, or a list";
+    case Field::Form::words:
+      return "word, or a list";
+    case Field::Form::starts:
+      return "word or object, or a list";
+    case Field::Form::excludes:
+      break;
+  }
+  return "list";
+}
+
+std::string default_of(const Field& field) {
+  constexpr std::size_t longest = 30;
+  if (field.required()) return "required";
+  const std::string text = plain(*field.fallback);
+  return text.size() > longest ? "see below" : text;
+}
+
+/// A row per key, those of nested objects by their path; `when`: the words under which it is there.
+void add_keys(const ObjectForm& form, const std::string& path, const std::string& when, TextTable& table,
+              std::string& below) {
+  for (const Field& field : form.fields) {
+    const std::string name = path + field.key();
+    const bool listed = field.form == Field::Form::scalar || field.form == Field::Form::numbers;
+    const bool number = listed && field.spec.type != ParameterSpec::Type::word;
+    table.add({name, type_of(field), field.spec.unit, default_of(field), number ? admissible_values(field.spec) : "",
+               field.spec.text + when});
+    if (default_of(field) == "see below") below += fmt::format("    {}: {}\n", name, plain(*field.fallback));
+    for (const ObjectForm& nested : field.nested) add_keys(nested, name + ".", when, table, below);
+  }
+  for (const Variant& variant : form.variants)
+    add_keys(variant.keys, path, fmt::format(" (with {})", fmt::join(variant.words, ", ")), table, below);
+  for (const ObjectForm& way : form.ways) add_keys(way, path, " (one way)", table, below);
+}
+
+void print(const FormWord& word, std::ostream& out) {
+  const StudyKind* kind = word.place == "/kind" ? find_study_kind(word.name) : nullptr;
+  out << fmt::format("{} (a value of {}): {}\n", word.name, word.place, kind ? kind->text : word.key->spec.text);
+  TextTable table({"key", "type", "unit", "default", "range", "meaning"});
+  std::string below;
+  add_keys(*word.form, "", "", table, below);
+  out << (word.form->fields.empty() ? "\nno keys of its own\n" : "\nkeys\n" + table.text(2));
+  if (!below.empty()) out << "\n  long defaults\n" << below;
+}
+
+/// Whether a measure is called so, in full or by what follows its last dot ("error.tip-l2").
+bool is_called(const MeasureInfo& measure, const std::string& name) {
+  const std::string own = measure.name;
+  return own == name || own.ends_with("." + name);
+}
+
+void print(const MeasureInfo& measure, std::ostream& out) {
+  out << fmt::format("{} (a measure of a case, {}): {}\n", measure.name,
+                     std::string(measure.unit) == "1" ? "a ratio or a count" : std::string("in ") + measure.unit,
+                     measure.text);
+}
+
+}  // namespace
+
+const char* type_word(const ParameterSpec& spec) {
+  switch (spec.type) {
+    case ParameterSpec::Type::real:
+      return "number";
+    case ParameterSpec::Type::integer:
+      return "whole number";
+    case ParameterSpec::Type::boolean:
+      return "true or false";
+    case ParameterSpec::Type::word:
+      break;
+  }
+  return "word";
+}
+
+std::string admissible_values(const ParameterSpec& spec) {
+  switch (spec.type) {
+    case ParameterSpec::Type::real:
+    case ParameterSpec::Type::integer:
+      return spec.range.text();
+    case ParameterSpec::Type::boolean:
+      return "true, false";
+    case ParameterSpec::Type::word:
+      break;
+  }
+  return fmt::format("{}", fmt::join(spec.words, ", "));
+}
+
+bool describe_word(const std::string& name, std::ostream& out) {
+  bool found = false;
+  const auto next = [&] {
+    if (found) out << "\n";
+    found = true;
+  };
+  for (const FormWord& word : form_words())
+    if (word.name == name) {
+      next();
+      print(word, out);
+    }
+  for (const MeasureInfo& measure : all_measures())
+    if (is_called(measure, name)) {
+      next();
+      print(measure, out);
+    }
+  return found;
+}
+
+std::vector<std::string> words_of_studies() {
+  std::vector<std::string> names;
+  for (const FormWord& word : form_words()) names.push_back(word.name);
+  return names;
+}
+
+std::vector<std::string> words_of_results() {
+  std::vector<std::string> names;
+  for (const MeasureInfo& measure : all_measures()) {
+    const std::string name = measure.name;
+    names.push_back(name);
+    if (const auto dot = name.rfind('.'); dot != std::string::npos) names.push_back(name.substr(dot + 1));
+  }
+  return names;
+}
+
+}  // namespace ricochet
