@@ -162,8 +162,8 @@ TEST_CASE("a method that cannot be made is told, and nothing is written") {
   write_text(here / "file", "");
   const std::vector<std::string> before = names_in(here.path());
   const std::vector<std::pair<std::string, std::string>> wrong = {
-      {"new", "an argument is missing"},
-      {"new time", "an argument is missing"},
+      {"new", "an argument of new is missing"},
+      {"new time", "an argument of new is missing"},
       {"new time a b", "does not expect \"b\""},
       {"new tine mine", "did you mean \"time\"?"},
       {"new law mine", "roles: \"mass\", \"contact\", \"time\", \"reference\""},

@@ -55,7 +55,7 @@ Table stability_answers(const StudyResults& results) {
     if (!record || rows.truth(row, "counted") != true || rows.truth(row, "closed") == true) continue;
     SchemeLimits& scheme = in_order_met(schemes, view.name(*record, columns));
     ++scheme.ranges;
-    scheme.unlimited += rows.text(row, "prediction") == "none";
+    scheme.unlimited += !rows.text(row, "prediction").empty() && !rows.number(row, "first_unstable");
     if (const auto limit = rows.number(row, "predicted")) {
       scheme.least = std::min(scheme.least.value_or(*limit), *limit);
       scheme.most = std::max(scheme.most.value_or(*limit), *limit);
