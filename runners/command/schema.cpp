@@ -11,7 +11,7 @@ int command_schema(const Arguments& arguments, std::ostream& out) {
   Catalogue catalogue = standard_catalogue(arguments.plugins);
   Registry registry;
   catalogue.open_all(registry);
-  out << study_schema(registry).dump(1) << "\n";
+  out << study_schema(registry).dump() << "\n";
   return exit_done;
 }
 

@@ -1,6 +1,10 @@
 #include "runners/study/study_schema.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "runners/study/field.hpp"
@@ -39,6 +43,16 @@ class SchemaWriter {
     return {{"if", {{"type", type}}}, {"then", std::move(then)}, {"else", std::move(otherwise)}};
   }
 
+  /// What stands in many places, once: a reference to it. Beside a reference, a validator may ignore what else is said.
+  Json shared(const std::string& what, const Json& schema) {
+    int number = 1;
+    std::string name;
+    for (; definitions_.contains(name = fmt::format("{}-{}", what, number)); ++number)
+      if (definitions_[name] == schema) break;
+    definitions_[name] = schema;
+    return {{"allOf", Json::array({reference(name)})}};
+  }
+
   void add_fields(const ObjectForm& form, Json& properties, Json& required) {
     for (const Field& field : form.fields) {
       properties[field.key()] = value(field);
@@ -61,7 +75,7 @@ class SchemaWriter {
     add_fields(form, properties, required);
     const std::set<std::string> own = keys_of(form);
     for (const std::string& key : of_all)
-      if (own.count(key) == 0) properties[key] = false;
+      if (own.count(key) == 0) properties[key] = {{"not", Json::object()}};
     Json schema = Json::object();
     if (!properties.empty()) schema["properties"] = std::move(properties);
     if (!required.empty()) schema["required"] = std::move(required);
@@ -93,7 +107,7 @@ class SchemaWriter {
       // A list of positions is one value of "at", and also looks like a list of values.
       const Json list = {{"type", "array"}, {"items", schema}, {"minItems", 1}, {"uniqueItems", true}};
       schema = field.form == Field::Form::places ? Json{{"anyOf", Json::array({schema, list})}}
-                                                 : either("array", list, schema);
+                                                 : shared("axis", value_or_list(schema, list));
     }
     std::string text = field.spec.text;
     if (!field.spec.unit.empty() && field.spec.unit != "1") text += " Unit: " + field.spec.unit + ".";
@@ -136,6 +150,16 @@ class SchemaWriter {
     return excludes();
   }
 
+  /// Bounds speak of numbers alone and `items` of lists alone: where a type is named, one schema says both.
+  static Json value_or_list(const Json& one, const Json& list) {
+    if (!one.contains("type")) return either("array", list, one);
+    Json both = one, types = one["type"].is_array() ? one["type"] : Json::array({one["type"]});
+    types.push_back("array");
+    both.update(list);
+    both["type"] = std::move(types);
+    return both;
+  }
+
   static Json or_null(const Field& field, Json schema) {
     return field.nullable ? either("null", true, std::move(schema)) : schema;
   }
@@ -173,9 +197,11 @@ class SchemaWriter {
     if (marched) plain.push_back(marched_reference);
     for (const std::string& name : registry_.names(role)) {
       const PluginManual& manual = *registry_.manual(role, name);
-      Json& method = definitions_[role_word + "-" + name] = object(method_form(manual));
-      method["description"] = manual.summary;
-      by_name.push_back({{"if", condition("/name", {name})}, {"then", reference(role_word + "-" + name)}});
+      Json method = object(method_form(manual));
+      // What the condition has said already.
+      method.erase("type");
+      method["properties"]["name"] = {{"description", manual.summary}};
+      by_name.push_back({{"if", condition("/name", {name})}, {"then", std::move(method)}});
       bool complete = true;
       for (const ParameterSpec& spec : manual.parameters) complete = complete && spec.fallback.has_value();
       if (complete) plain.push_back(name);
@@ -231,6 +257,42 @@ class SchemaWriter {
   Json definitions_ = Json::object();
 };
 
+using See = std::function<void(Json& schema, const std::string& key)>;
+
+/// Every schema inside of a schema, outer ones first, with the key whose values it describes.
+void each(Json& schema, const std::string& key, const See& see) {
+  if (!schema.is_object()) return;
+  see(schema, key);
+  for (const char* keyed : {"properties", "$defs"})
+    if (schema.contains(keyed))
+      for (const auto& member : schema[keyed].items()) each(member.value(), member.key(), see);
+  for (const char* one : {"items", "if", "then", "else", "additionalProperties"})
+    if (schema.contains(one)) each(schema[one], key, see);
+  for (const char* list : {"allOf", "anyOf", "oneOf"})
+    if (schema.contains(list))
+      for (Json& one : schema[list]) each(one, key, see);
+}
+
+/// Schemas that stand in several places stand in $defs once: an editor reads a schema at every key.
+void share_repeated(Json& schema) {
+  constexpr std::size_t shortest = 60;
+  std::map<std::string, int> counts;
+  each(schema, "", [&](Json& one, const std::string&) { ++counts[one.dump()]; });
+  std::map<std::string, std::string> names;
+  Json definitions = Json::object();
+  each(schema, "", [&](Json& one, const std::string& key) {
+    const std::string text = one.dump();
+    if (text.size() < shortest || counts[text] < 2) return;
+    auto known = names.find(text);
+    if (known == names.end()) {
+      known = names.emplace(text, fmt::format("{}-{}", key, names.size() + 1)).first;
+      definitions[known->second] = one;
+    }
+    one = {{"$ref", "#/$defs/" + known->second}};
+  });
+  schema["$defs"].update(definitions);
+}
+
 }  // namespace
 
 Json study_schema(const Registry& registry) {
@@ -238,6 +300,7 @@ Json study_schema(const Registry& registry) {
   SchemaWriter writer(registry);
   schema.update(writer.object(study_form()));
   schema["$defs"] = writer.definitions();
+  share_repeated(schema);
   return schema;
 }
 
