@@ -34,7 +34,8 @@ int terminal_width(std::FILE* out) {
 }  // namespace
 
 CaseCost::CaseCost() {
-  note(0, kFirstGuess, 1);
+  constexpr double little = 0.1;  // the first cases that are seen outweigh the guess
+  note(0, kFirstGuess, little);
 }
 
 void CaseCost::note(double predicted, double measured, double weight) {

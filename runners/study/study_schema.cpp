@@ -257,30 +257,30 @@ class SchemaWriter {
   Json definitions_ = Json::object();
 };
 
-using See = std::function<void(Json& schema, const std::string& key)>;
+using SeeSchema = std::function<void(Json& schema, const std::string& key)>;
 
 /// Every schema inside of a schema, outer ones first, with the key whose values it describes.
-void each(Json& schema, const std::string& key, const See& see) {
+void each_schema(Json& schema, const std::string& key, const SeeSchema& see) {
   if (!schema.is_object()) return;
   see(schema, key);
   for (const char* keyed : {"properties", "$defs"})
     if (schema.contains(keyed))
-      for (const auto& member : schema[keyed].items()) each(member.value(), member.key(), see);
+      for (const auto& member : schema[keyed].items()) each_schema(member.value(), member.key(), see);
   for (const char* one : {"items", "if", "then", "else", "additionalProperties"})
-    if (schema.contains(one)) each(schema[one], key, see);
+    if (schema.contains(one)) each_schema(schema[one], key, see);
   for (const char* list : {"allOf", "anyOf", "oneOf"})
     if (schema.contains(list))
-      for (Json& one : schema[list]) each(one, key, see);
+      for (Json& one : schema[list]) each_schema(one, key, see);
 }
 
 /// Schemas that stand in several places stand in $defs once: an editor reads a schema at every key.
 void share_repeated(Json& schema) {
   constexpr std::size_t shortest = 60;
   std::map<std::string, int> counts;
-  each(schema, "", [&](Json& one, const std::string&) { ++counts[one.dump()]; });
+  each_schema(schema, "", [&](Json& one, const std::string&) { ++counts[one.dump()]; });
   std::map<std::string, std::string> names;
   Json definitions = Json::object();
-  each(schema, "", [&](Json& one, const std::string& key) {
+  each_schema(schema, "", [&](Json& one, const std::string& key) {
     const std::string text = one.dump();
     if (text.size() < shortest || counts[text] < 2) return;
     auto known = names.find(text);

@@ -22,7 +22,7 @@ TEST_CASE("progress: many short cases after a few long ones cost what a case cos
   CHECK(cost.seconds(1) == Approx(1.02));
   for (int i = 0; i < 5; ++i) cost.add(2, 4);  // a machine half as fast
   CHECK(cost.seconds(2) == Approx(4).epsilon(0.05));
-  for (int i = 0; i < 10; ++i) cost.add(1e-3, 0.05);
+  for (int i = 0; i < 20; ++i) cost.add(1e-3, 0.05);
   // 700 of them are 35 s, where their marches alone are 1.4 s.
   CHECK(cost.seconds(0.7, 700) == Approx(35).epsilon(0.05));
   CHECK(cost.seconds(2) == Approx(4).epsilon(0.1));
