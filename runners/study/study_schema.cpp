@@ -37,7 +37,7 @@ class SchemaWriter {
   Json definitions() { return std::move(definitions_); }
 
  private:
-  static Json remarks() { return {{"^(//|\\$schema$)", true}}; }
+  static Json remarks() { return {{"^//|^[$]schema$", true}}; }
   static Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
   static Json either(const char* type, Json then, Json otherwise) {
     return {{"if", {{"type", type}}}, {"then", std::move(then)}, {"else", std::move(otherwise)}};
@@ -112,7 +112,8 @@ class SchemaWriter {
     std::string text = field.spec.text;
     if (!field.spec.unit.empty() && field.spec.unit != "1") text += " Unit: " + field.spec.unit + ".";
     Json described = {{"description", text}};
-    if (field.fallback) described["default"] = *field.fallback;
+    if (field.fallback)
+      described["default"] = field.fallback->is_number() ? bound(field.fallback->get<double>()) : *field.fallback;
     described.update(schema);
     return described;
   }
@@ -168,6 +169,11 @@ class SchemaWriter {
     return either("array", {{"items", one}, {"minItems", 1}, {"uniqueItems", true}}, one);
   }
 
+  static Json bound(double value) {
+    constexpr double largest = 1e15;
+    return std::floor(value) == value && std::abs(value) < largest ? Json(static_cast<long long>(value)) : Json(value);
+  }
+
   static Json scalar(const ParameterSpec& spec) {
     switch (spec.type) {
       case ParameterSpec::Type::boolean:
@@ -179,8 +185,10 @@ class SchemaWriter {
         break;
     }
     Json schema = {{"type", spec.type == ParameterSpec::Type::integer ? "integer" : "number"}};
-    if (std::isfinite(spec.range.low)) schema[spec.range.low_open ? "exclusiveMinimum" : "minimum"] = spec.range.low;
-    if (std::isfinite(spec.range.high)) schema[spec.range.high_open ? "exclusiveMaximum" : "maximum"] = spec.range.high;
+    if (std::isfinite(spec.range.low))
+      schema[spec.range.low_open ? "exclusiveMinimum" : "minimum"] = bound(spec.range.low);
+    if (std::isfinite(spec.range.high))
+      schema[spec.range.high_open ? "exclusiveMaximum" : "maximum"] = bound(spec.range.high);
     return schema;
   }
 
@@ -200,8 +208,9 @@ class SchemaWriter {
       Json method = object(method_form(manual));
       // What the condition has said already.
       method.erase("type");
+      if (method["required"].size() == 1) method.erase("required");
       method["properties"]["name"] = {{"description", manual.summary}};
-      by_name.push_back({{"if", condition("/name", {name})}, {"then", std::move(method)}});
+      by_name.push_back({{"if", {{"properties", {{"name", {{"enum", {name}}}}}}}}, {"then", std::move(method)}});
       bool complete = true;
       for (const ParameterSpec& spec : manual.parameters) complete = complete && spec.fallback.has_value();
       if (complete) plain.push_back(name);

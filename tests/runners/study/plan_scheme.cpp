@@ -255,7 +255,8 @@ TEST_CASE("a plan is checked when it is read, and every error has its place", "[
   CHECK(message("\"mine\"", "\"plan\"").find("at /name: expected a name of its own") != std::string::npos);
   CHECK(message("{theta}", "{thetas}").find("/refuse/0/because: unknown name \"thetas\"") != std::string::npos);
   CHECK(message("{theta}", "{theta").find("none closes it") != std::string::npos);
-  CHECK(message("\"mine\",", "\"mine\"").starts_with("mine.json:3:"));
+  CHECK_THAT(message("\"mine\",", "\"mine\""), Catch::Matchers::StartsWith("mine.json:2:") &&
+                                                   Catch::Matchers::Contains("a comma is missing after \"mine\""));
 }
 
 TEST_CASE("names of a plan are told apart, and those that formulas know are taken", "[plan-file]") {
