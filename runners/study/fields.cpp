@@ -87,7 +87,7 @@ Field budget() {
 
 Field observe(std::vector<std::string> measures) {
   Field field = of_form(Field::Form::words, "observe", std::nullopt,
-                        "The measures that the answer is made of; null: those that the kind asks for.");
+                        "Measures that the answer is made of; null: the kind chooses.");
   field.spec = word_parameter("observe", std::move(measures), std::nullopt, field.spec.text.c_str());
   return optional(std::move(field));
 }
