@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runners/report/answer_lines.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/effects.hpp"
@@ -13,7 +14,6 @@
 #include "runners/report/table_view.hpp"
 #include "runners/report/tables.hpp"
 #include "runners/report/template.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace report {
@@ -78,21 +78,15 @@ std::string script(const std::string& attributes, const std::string& content) {
 
 /// What the rows of `answers` say, the weightiest first.
 std::string answer_sentences(const StudyResults& results) {
-  const Table* answers = find_table(results.derived, "answers");
-  if (!answers) return "";
-  constexpr size_t most = 8;
-  const TableReader rows(*answers);
-  const size_t column = rows.column("sentence");
-  std::string out, rest;
-  size_t count = 0;
-  for (size_t row = 0; row < rows.size(); ++row)
-    if (const std::string text = rows.text(row, column); !text.empty())
-      (count++ < most ? out : rest) += "<li>" + escape(text) + "</li>\n";
-  if (count == 0) return "";
-  out = "<ul class=\"answer lead\">\n" + out + "</ul>\n";
+  const std::vector<std::string> lines = answer_lines(results);
+  if (lines.empty()) return "";
+  std::string out = "<ul class=\"answer lead\">\n", rest;
+  for (size_t k = 0; k < lines.size(); ++k)
+    (k < most_answer_lines ? out : rest) += "<li>" + escape(lines[k]) + "</li>\n";
+  out += "</ul>\n";
   if (!rest.empty())
-    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n", count - most,
-                       rest);
+    out += fmt::format("<details><summary>{} more</summary><ul class=\"answer\">\n{}</ul></details>\n",
+                       lines.size() - most_answer_lines, rest);
   return out;
 }
 

@@ -13,7 +13,6 @@
 #include "runners/run/choice_effects.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -26,7 +25,7 @@ struct Said {
   std::string verdict, depends_on;
   double median = 0, largest = 0;       ///< effects, over the scale
   std::optional<double> step, mesh;     ///< median of what they leave open
-  const GroupEffect* widest = nullptr;  ///< the group with the largest effect of those that decide
+  const GroupEffect* widest = nullptr;  ///< the group with the largest effect
   std::string clause;                   ///< of a sentence about the choice
 };
 
@@ -39,16 +38,11 @@ std::string of_scale(const ChoiceEffects& effects, double share) {
   return percent(share) + (effects.scale.empty() ? "" : " " + effects.scale);
 }
 
-/// The group whose effect stands in the middle, so that its figures belong together.
-double median_of(std::vector<double> values) {
-  return lower_median(values);
-}
-
 std::optional<double> median_open(const ChoiceEffects& effects, std::optional<double> ResolvedEffect::*move) {
   std::vector<double> known;
   for (const GroupEffect& group : effects.groups)
     if (group.found.*move) known.push_back(*(group.found.*move));
-  return known.empty() ? std::nullopt : std::optional(median_of(known));
+  return known.empty() ? std::nullopt : std::optional(lower_median(known));
 }
 
 /// The other choice that tells the groups that decide from those that do not; "" where none does.
@@ -57,7 +51,7 @@ std::string separating_choice(const StudyResults& results, const ChoiceEffects& 
   for (const GroupEffect& group : effects.groups) labels.push_back(static_cast<int>(group.found.verdict));
   std::vector<ChoiceAxis> axes;
   for (const std::string& column : results.columns) {
-    if (column == "step" || column == "elements" || axis_role(column) == effects.choice) continue;
+    if (refines(column) || axis_role(column) == effects.choice) continue;
     ChoiceAxis axis_levels{column, {}};
     for (const GroupEffect& group : effects.groups)
       axis_levels.levels.push_back(axis(*group.levels.front(), column).text());
@@ -108,35 +102,35 @@ std::string next_sizes(const std::vector<const Said*>& same) {
   return out.empty() ? "" : "; " + out + " (if what is open falls with them)";
 }
 
+/// What the groups come to: the word of a verdict, or "depends".
+std::string verdict_of(const ChoiceEffects& effects) {
+  const std::size_t observed = effects.groups.size() - effects.count(EffectVerdict::not_observed);
+  if (observed == 0) return effect_word(EffectVerdict::not_observed);
+  const auto share = [&](EffectVerdict verdict) {
+    return static_cast<double>(effects.count(verdict)) / static_cast<double>(observed);
+  };
+  if (share(EffectVerdict::untold) > 0.5) return effect_word(EffectVerdict::untold);
+  for (const EffectVerdict verdict : {EffectVerdict::decides, EffectVerdict::no_matter})
+    if (share(verdict) >= nearly_all) return effect_word(verdict);
+  if (share(EffectVerdict::decides) == 0 || share(EffectVerdict::unresolved) + share(EffectVerdict::untold) > 0.5)
+    return effect_word(EffectVerdict::unresolved);
+  return "depends";
+}
+
 Said said_of(const StudyResults& results, const ChoiceEffects& effects) {
   Said out;
   out.effects = &effects;
   std::vector<double> sizes;
-  for (const GroupEffect& group : effects.groups) sizes.push_back(group.found.effect);
-  out.median = median_of(sizes);
-  out.largest = *std::max_element(sizes.begin(), sizes.end());
+  for (const GroupEffect& group : effects.groups) {
+    sizes.push_back(group.found.effect);
+    if (!out.widest || group.found.effect > out.widest->found.effect) out.widest = &group;
+  }
+  out.median = lower_median(sizes);
+  out.largest = out.widest->found.effect;
   out.step = median_open(effects, &ResolvedEffect::step);
   out.mesh = median_open(effects, &ResolvedEffect::mesh);
-  for (const GroupEffect& group : effects.groups)
-    if (!out.widest || group.found.effect > out.widest->found.effect) out.widest = &group;
-  const std::size_t observed = effects.groups.size() - effects.count(EffectVerdict::not_observed);
-  const auto share = [&](EffectVerdict verdict) {
-    return static_cast<double>(effects.count(verdict)) / static_cast<double>(observed);
-  };
-  EffectVerdict verdict = EffectVerdict::not_observed;
-  if (observed == 0)
-    verdict = EffectVerdict::not_observed;
-  else if (share(EffectVerdict::untold) > 0.5)
-    verdict = EffectVerdict::untold;
-  else if (share(EffectVerdict::decides) >= nearly_all)
-    verdict = EffectVerdict::decides;
-  else if (share(EffectVerdict::no_matter) >= nearly_all)
-    verdict = EffectVerdict::no_matter;
-  else if (share(EffectVerdict::decides) == 0 || share(EffectVerdict::unresolved) + share(EffectVerdict::untold) > 0.5)
-    verdict = EffectVerdict::unresolved;
-  else
-    out.depends_on = separating_choice(results, effects);
-  out.verdict = verdict == EffectVerdict::not_observed && observed > 0 ? "depends" : effect_word(verdict);
+  out.verdict = verdict_of(effects);
+  if (out.verdict == "depends") out.depends_on = separating_choice(results, effects);
   return out;
 }
 
@@ -253,17 +247,6 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
 Table answers_table(const StudyResults& results) {
   const Kind* kind = find_kind(results.kind);
   return kind && kind->answers ? kind->answers(results) : choices_said(results);
-}
-
-std::vector<std::string> answer_lines(const StudyResults& results) {
-  std::vector<std::string> lines;
-  const Table* table = find_table(results.derived, "answers");
-  if (!table) return lines;
-  const TableReader rows(*table);
-  const std::size_t column = rows.column("sentence");
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (std::string text = rows.text(row, column); !text.empty()) lines.push_back(std::move(text));
-  return lines;
 }
 
 }  // namespace ricochet

@@ -10,9 +10,6 @@ namespace ricochet {
 /// rows; else one row per choice and observed measure.
 Table answers_table(const StudyResults& results);
 
-/// The sentences of that table, a few at most.
-std::vector<std::string> answer_lines(const StudyResults& results);
-
 /// The measures that a study observes: its key "observe", else what its kind asks of such results; those that some
 /// finished case has.
 std::vector<std::string> observed_measures(const StudyResults& results);

@@ -2,47 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "runners/report/html.hpp"
+#include "runners/run/measure_scale.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet {
 namespace {
 
-bool refines(const std::string& column) {
-  return column == "step" || column == "elements";
-}
-
 double number_on(const CaseRecord& record, const char* column) {
   return axis(record, column).number().value_or(0);
 }
 
-/// A measure over its scale; what has none is scaled by the group later.
-struct Scaling {
-  explicit Scaling(const std::string& measure_name) : name(measure_name) {
-    const MeasureInfo* info = measure_info(name);
-    scale = info ? info->scale : "";
-    share = scale == "1";
-    if (share) scale.clear();
-  }
-  std::optional<double> of(const CaseRecord& record) const {
-    const auto value = measure(record, name);
-    if (!value || scale.empty()) return value;
-    const auto size = measure(record, scale);
-    return size && *size > 0 ? std::optional(*value / *size) : std::nullopt;
-  }
-  /// Whether values of a group still are to be divided by the largest of them.
-  bool own() const { return scale.empty() && !share; }
-  std::string words() const {
-    if (own()) return "of the larger";
-    if (share) return "";
-    std::string text = scale;
-    std::replace(text.begin(), text.end(), '_', ' ');
-    return "of the " + text;
-  }
-  std::string name, scale;
-  bool share = false;
-};
+/// A measure over its scale; what has none is scaled by its group later.
+std::optional<double> scaled(const CaseRecord& record, const std::string& name, const MeasureScale& scale) {
+  const auto value = measure(record, name);
+  if (!value || scale.own()) return value;
+  const auto size = scale.of(record);
+  return size && *size > 0 ? std::optional(*value / *size) : std::nullopt;
+}
+
+std::string scale_words(const MeasureScale& scale) {
+  if (scale.share()) return "";
+  return scale.own() ? "of the larger" : "of the " + report::in_words(scale.name());
+}
 
 /// One level: its cases with a value, and the finest of them.
 struct FinestLevel {
@@ -93,13 +76,17 @@ GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
     if (out.step == 0 || (step > 0 && step < out.step)) out.step = step;
     values.push_back({level.value(best), level.last_move("step", "elements"), level.last_move("elements", "step")});
     // A measure that is its own scale is known to all its digits, but for those that a run loses.
-    if (!own_scale) floor = std::max(floor, 0x1p-52 * static_cast<double>(best->steps));
+    if (!own_scale) floor = std::max(floor, round_off(*best));
   }
   out.found = resolved_effect(values, answer_threshold, floor);
   return out;
 }
 
 }  // namespace
+
+bool refines(const std::string& column) {
+  return column == "step" || column == "elements";
+}
 
 std::size_t ChoiceEffects::count(EffectVerdict verdict) const {
   return static_cast<std::size_t>(std::count_if(
@@ -121,17 +108,17 @@ std::vector<ChoiceEffects> choice_effects(const StudyResults& results, const std
       if (!refines(column)) (axis_role(column) == choice ? own : others).push_back(column);
     const std::vector<Cases> groups = groups_of(done, others);
     for (const std::string& name : measures) {
-      const Scaling scaling(name);
-      ChoiceEffects effects{choice, name, scaling.words(), {}};
+      const MeasureScale scale(name);
+      ChoiceEffects effects{choice, name, scale_words(scale), {}};
       for (const Cases& group : groups) {
         std::vector<FinestLevel> levels;
         for (const Cases& cases : groups_of(group, own)) {
           FinestLevel level;
           for (const CaseRecord* record : cases)
-            if (const auto value = scaling.of(*record)) level.cases.emplace_back(record, *value);
+            if (const auto value = scaled(*record, name, scale)) level.cases.emplace_back(record, *value);
           if (!level.cases.empty()) levels.push_back(std::move(level));
         }
-        if (levels.size() > 1) effects.groups.push_back(group_effect(levels, scaling.own()));
+        if (levels.size() > 1) effects.groups.push_back(group_effect(levels, scale.own()));
       }
       if (!effects.groups.empty()) out.push_back(std::move(effects));
     }

@@ -12,6 +12,9 @@ namespace ricochet {
 /// A difference below this share of its scale is said not to matter.
 inline constexpr double answer_threshold = 0.01;
 
+/// Whether a column is refined rather than chosen: the step, the mesh.
+bool refines(const std::string& column);
+
 /// The levels of one choice with all other choices the same, each by its finest case.
 struct GroupEffect {
   ResolvedEffect found;  ///< in units of the scale

@@ -6,6 +6,7 @@
 #include <ricochet/measure/statistics/effects.hpp>
 #include <set>
 
+#include "runners/run/measure_scale.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -35,16 +36,14 @@ bool absent_by_level(const StudyResults& results, const std::vector<Factor>& fac
 
 /// Whether what the finished cases differ by is more than round-off makes of the measure: 2⁻⁵² × steps of its scale.
 bool beyond_round_off(const StudyResults& results, const std::string& name) {
-  const MeasureInfo* info = measure_info(name);
-  const std::string scale = info ? info->scale : "";
+  const MeasureScale scale(name);
   double low = std::numeric_limits<double>::infinity(), high = -low, floor = 0;
   for (const CaseRecord& record : results.cases) {
     const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
     if (!value) continue;
     low = std::min(low, *value);
     high = std::max(high, *value);
-    const double size = scale == "1" ? 1.0 : scale.empty() ? std::abs(*value) : measure(record, scale).value_or(0);
-    floor = std::max(floor, 0x1p-52 * static_cast<double>(record.steps) * size);
+    floor = std::max(floor, round_off(record) * scale.of(record).value_or(0));
   }
   return high - low > floor;
 }

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/report/answer_lines.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/answers_table.hpp"
-#include "runners/run/reasons_table.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
@@ -50,8 +50,8 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
 }
 
 std::string answer_text(const StudyResults& results) {
-  constexpr std::size_t most = 8;
-  const std::vector<std::string> lines = answer_lines(results);
+  constexpr std::size_t most = report::most_answer_lines;
+  const std::vector<std::string> lines = report::answer_lines(results);
   std::string out = results.question.empty() ? "" : results.question + "\n";
   for (std::size_t k = 0; k < std::min(lines.size(), most); ++k) out += "  " + lines[k] + "\n";
   if (lines.size() > most) out += fmt::format("  {} more in the report\n", lines.size() - most);
@@ -77,9 +77,10 @@ std::string extremes_text(const StudyResults& results) {
         out += fmt::format("{} {}: {:.4g}{} in {} ({})\n", word, report::in_words(observed.front()), value, unit,
                            record->id, view.label(*record));
   }
+  const Table* table = find_table(results.derived, "reasons");
+  if (!table) return out;
   std::map<std::string, std::pair<int, std::string>> reasons;  // by status: cases of the most frequent one
-  const Table table = reasons_table(results);
-  const TableReader rows(table);
+  const TableReader rows(*table);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     auto& [count, reason] = reasons[rows.text(row, "status")];
     const int cases = static_cast<int>(rows.number(row, "cases").value_or(0));

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runners/table/plain_text.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -303,9 +305,7 @@ std::string shown_line(const std::string& text, std::size_t at) {
   std::string line = left + text.substr(begin, end - begin) + right;
   std::replace(line.begin(), line.end(), '\t', ' ');
   const std::string head = left + text.substr(begin, at - begin);
-  const auto width = static_cast<std::size_t>(
-      std::count_if(head.begin(), head.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-  return "  " + line + "\n  " + std::string(width, ' ') + "^";
+  return "  " + line + "\n  " + std::string(shown_width(head), ' ') + "^";
 }
 
 }  // namespace ricochet

@@ -31,18 +31,15 @@ EnergyAudit::EnergyAudit(const Marcher& marcher)
     Lane& state = lanes_.emplace_back(model_.problem().points());
     state.increment.assign(rows, 0.0);
     state.duration = h_;
-  }
-  for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
-  first_.resize(rows);
-  second_.resize(rows);
-  for (int lane = 0; lane < marcher.lanes(); ++lane) {
-    Lane& state = lanes_[static_cast<std::size_t>(lane)];
     state.energy.first = state.energy.last = state.now = initial_energy(marcher, lane);
     // A scheme with an energy of its own has it once its start rule is through.
     state.energy.own_energy = !marcher.program().plan.energy.empty();
     state.has_scheme = !state.energy.own_energy;
     if (state.has_scheme) state.energy.scheme_start = state.now.scheme;
   }
+  for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
+  first_.resize(rows);
+  second_.resize(rows);
 }
 
 void EnergyAudit::combine(const double* const* slots, const double* z, const Combination& c, int lane,

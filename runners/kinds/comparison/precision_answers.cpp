@@ -1,20 +1,13 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
-
-std::string time_text(double seconds) {
-  return seconds < 1e-3 ? report::number_text(1e6 * seconds, 2) + " µs"
-         : seconds < 1  ? report::number_text(1e3 * seconds, 2) + " ms"
-                        : report::number_text(seconds, 2) + " s";
-}
 
 /// "singular · newmark at h = 5e-5 s (0.7 ms)".
 std::string how(const report::CaseView& view, const CaseRecord& record, double seconds) {
@@ -25,7 +18,7 @@ std::string how(const report::CaseView& view, const CaseRecord& record, double s
   std::string at;
   if (view.varies("step")) at = fmt::format(" at h = {} s", report::CaseView::text(record, "step"));
   if (view.varies("elements")) at += fmt::format(" on {} elements", report::CaseView::text(record, "elements"));
-  return fmt::format("{}{} ({})", view.name(record, methods), at, time_text(seconds));
+  return fmt::format("{}{} ({})", view.name(record, methods), at, duration_text(seconds));
 }
 
 }  // namespace
@@ -35,9 +28,7 @@ void say_precision(const StudyResults& results, Table& answers) {
   if (!targets || targets->rows.empty()) return;
   const TableReader rows(*targets);
   const report::CaseView view(results);
-  std::vector<std::string> scene;
-  for (const std::string& column : view.varying_without({"mass", "contact", "time", "step", "elements"}))
-    scene.push_back(column);
+  const std::vector<std::string> scene = view.varying_without({"mass", "contact", "time", "step", "elements"});
   const std::string error = rows.text(0, "error");
   constexpr std::size_t most = 6;
   std::size_t said = 0;
@@ -55,7 +46,7 @@ void say_precision(const StudyResults& results, Table& answers) {
                               how(view, *other, rows.number(row, "other_seconds").value_or(0)));
     }
     answers.rows.push_back(
-        {"", "error." + error, "cheapest", *share, {}, "size_" + error, {}, {}, {}, {}, sentence + "."});
+        {"", "error." + error, "cheapest", *share, {}, "size." + error, {}, {}, {}, {}, sentence + "."});
     ++said;
   }
 }

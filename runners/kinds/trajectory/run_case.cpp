@@ -100,8 +100,8 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
   if (balances || !loads) {
     put("energy_brought_in", brought_in);
     if (brought_in > 0) put("energy_left", end / brought_in);
+    put("largest_step_gain", energy.largest_step_gain);
   }
-  if (balances || !loads) put("largest_step_gain", energy.largest_step_gain);
   if (!balances)
     record.notes.push_back(
         "the scheme declares no work form: the works of damping and loads, what contact dissipates and the balance are "
@@ -114,8 +114,9 @@ void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit
     put("work_of_damping", energy.work_of_damping);
     put("work_of_loads", energy.work_of_loads);
     // What the stops give back (a spring's potential) is not dissipated.
-    put("dissipated_at_contact", -energy.work_of_contact - (energy.last.contact - energy.first.contact));
-    put("stored_at_stops", energy.last.contact - energy.first.contact);
+    const double stored = energy.last.contact - energy.first.contact;
+    put("dissipated_at_contact", -energy.work_of_contact - stored);
+    put("stored_at_stops", stored);
     put("balance_residual", energy.balance_residual());
   }
   put("projection_energy", problem.projection_energy);

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+
+/// What differences of a measure are shares of, as MeasureInfo::scale declares it.
+class MeasureScale {
+ public:
+  explicit MeasureScale(const std::string& measure);
+  /// The measure has no scale but its own largest value.
+  bool own() const { return scale_.empty(); }
+  /// The measure is a share itself.
+  bool share() const { return scale_ == "1"; }
+  /// The measure that is the scale; "" where own() or share().
+  std::string name() const { return share() ? "" : scale_; }
+  /// Its size in a case: 1 of a share, |value| where own(); nothing where the case lacks it.
+  std::optional<double> of(const CaseRecord& record) const;
+
+ private:
+  std::string measure_, scale_;
+};
+
+/// What round-off of a run may make of a value, over its scale: 2⁻⁵² × steps.
+double round_off(const CaseRecord& record);
+
+}  // namespace ricochet
