@@ -8,6 +8,8 @@
 #include "runners/command/command.hpp"
 #include "runners/command/plan_physics.hpp"
 #include "runners/command/study_file.hpp"
+#include "runners/march/prepare_case.hpp"
+#include "runners/run/forecast.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
@@ -106,18 +108,20 @@ void print_grouped(const char* title, const Grouped& grouped, std::size_t all, s
 }
 
 struct Costs {
-  double total = 0, longest = 0;
   int runnable = 0, refused = 0, excluded = 0, failed = 0;
 };
 
-void print_costs(const Costs& costs, std::ostream& out) {
+void print_costs(const Costs& costs, const Forecast& forecast, std::ostream& out) {
   out << fmt::format("\n{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  out << "predicted: " << duration_text(costs.total) << " on 1 core";
+  out << "predicted: " << duration_text(forecast.seconds) << " on 1 core";
   // A case runs on one core: the longest bounds the whole.
-  if (cores > 1) out << ", " << duration_text(std::max(costs.total / cores, costs.longest)) << " on all " << cores;
+  if (cores > 1)
+    out << ", " << duration_text(std::max(forecast.seconds / cores, forecast.longest)) << " on all " << cores;
+  if (forecast.measured > 0)
+    out << fmt::format(" (a part of {} case{} marched)", forecast.measured, forecast.measured == 1 ? "" : "s");
   out << "\n";
 }
 
@@ -143,6 +147,7 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
       ++all.costs.excluded;
       why = "excluded: " + *study_case.excluded;
     } else {
+      const double begin = thread_seconds();
       auto [plan, failure] = planner.plan(study_case);
       if (!failure.empty()) {
         ++all.costs.failed;
@@ -152,11 +157,9 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
         why = "refused: " + plan.refusal;
       } else {
         ++all.costs.runnable;
-        all.costs.total += plan.predicted_seconds;
-        all.costs.longest = std::max(all.costs.longest, plan.predicted_seconds);
         for (const auto& [item, reason] : plan.left_out) ++all.left_out[item + ": " + reason];
         for (const std::string& note : plan.notes) ++all.notes[note];
-        all.runnable.push_back({&study_case, std::move(plan)});
+        all.runnable.push_back({&study_case, std::move(plan), thread_seconds() - begin});
       }
     }
     if (!why.empty()) ++all.reasons[why];
@@ -192,7 +195,8 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
   return with_study(arguments, [&](const OpenStudy& open) -> int {
     const Study& study = open.study;
     CasePlanner planner(study, open.catalogue, open.registry);
-    const StudyPlan all = plan_study(study, planner);
+    StudyPlan all = plan_study(study, planner);
+    const Forecast costs = forecast(study, all.runnable, planner, open.registry);
     const std::vector<AxisValues> axes = axis_values(study);
     const auto runnable = static_cast<std::size_t>(all.costs.runnable);
 
@@ -201,7 +205,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
                        study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
                                                         : std::string());
     print_axes(axes, out);
-    print_costs(all.costs, out);
+    print_costs(all.costs, costs, out);
     print_reasons(all.reasons, out);
     if (const std::string physics = physics_text(all.runnable, planner, open.registry); !physics.empty())
       out << "\nphysics:\n" << physics;

@@ -6,12 +6,6 @@
 
 namespace ricochet {
 
-/// A case that would run, and how.
-struct PlannedCase {
-  const StudyCase* study_case;
-  CasePlan plan;
-};
-
 /// What the structures of these cases are, for a person to see a slip of units at a glance: their numbers, first
 /// frequencies, damping ratios, how many steps the study makes of a period, and which modes its steps resolve. On the
 /// finest mesh with the first mass matrix; at most a few structures. An oscillator that meets linear contacts: the

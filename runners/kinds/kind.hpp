@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runners/march/case_plan.hpp"
+#include "runners/march/march_pace.hpp"
 #include "runners/march/motion_shelf.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/record.hpp"
@@ -51,12 +52,25 @@ class PointRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a forecast of a study's cost rests on.
+struct ForecastContext {
+  const Study& study;
+  const Registry& registry;
+  std::vector<const StudyCase*> cases;                   ///< those that would run
+  std::function<double(const StudyCase&)> step_seconds;  ///< of one marched step of a case
+};
+
 /// A kind of study, all that the program knows of it. Functions that may be empty say so.
 struct Kind {
   StudyKind format;  ///< its name, its keys, and what it adds to a case
 
   /// What would run for a case, decided without running it.
   std::function<CasePlan(const StudyCase&, const Registry&)> plan;
+  /// What watches the steps of a case that marches its scene, once, from start to end: a forecast then rests on its
+  /// measured pace. Empty: on what the plan predicts.
+  MakeObserver watch;
+  /// Processor seconds that a study takes beside the marches of its cases (references, repeats). Empty: none.
+  std::function<double(const ForecastContext&)> beside;
   /// What runs the cases of a study.
   std::function<CaseRunner(const RunContext&)> start;
 

@@ -9,6 +9,13 @@
 
 namespace ricochet {
 
+/// A case that would run, and how.
+struct PlannedCase {
+  const StudyCase* study_case;
+  CasePlan plan;
+  double plan_seconds = 0;  ///< processor time of planning it
+};
+
 /// What planning a case gave.
 struct PlanOutcome {
   CasePlan plan;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <set>
 
 #include "runners/kinds/comparison/references.hpp"
@@ -57,6 +58,25 @@ CaseRunner compare_cases(const RunContext& context) {
     return run_comparison(study_case, registry, **references, stop);
   };
   return runner;
+}
+
+std::shared_ptr<StepObserver> recorded(const Marcher& marcher) {
+  return std::make_shared<ImpactRecorder>(marcher);
+}
+
+double seconds_beside(const ForecastContext& context) {
+  // Reading a motion at 128 places, and measuring it against the reference, for each of its samples; a solved reference
+  // on the beam and on its mesh.
+  constexpr double per_sample = 2e-5, per_solution = 1;
+  const References references(context.study, context.registry, {});
+  double seconds = per_solution * static_cast<double>(references.solutions(context.cases));
+  for (const auto& [study_case, steps, times] : references.marches(context.cases))
+    seconds += steps * times * context.step_seconds(*study_case);
+  for (const StudyCase* one : context.cases) {
+    const double repeats = one->settings.value("repeats", 0.0);
+    seconds += per_sample * (one->samples + 1) + repeats * one->duration / one->step * context.step_seconds(*one);
+  }
+  return seconds;
 }
 
 std::string errors_text(const CaseRecord& record) {

@@ -12,6 +12,11 @@ Json comparison_settings(const Json& resolved);
 /// anything runs.
 CaseRunner compare_cases(const RunContext& context);
 
+/// What watches the march of a case that is compared: its contact.
+std::shared_ptr<StepObserver> recorded(const Marcher& marcher);
+/// References, repeats, and what reading and comparing motions takes.
+double seconds_beside(const ForecastContext& context);
+
 /// "tip-linf 1.23e-04, …": the first errors of a case; without any, what it says as a trajectory.
 std::string errors_text(const CaseRecord& record);
 

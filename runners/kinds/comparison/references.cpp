@@ -10,6 +10,7 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <set>
 
 #include "runners/kinds/comparison/motion_bytes.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
@@ -262,6 +263,32 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
     if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
     return std::make_shared<const KnownReference>(std::move(known));
   });
+}
+
+std::vector<References::Aside> References::marches(const std::vector<const StudyCase*>& cases) const {
+  std::vector<Aside> found;
+  std::set<std::string> known;
+  const bool several = finest_ != coarsest_;
+  for (const StudyCase* one : cases) {
+    for (const MethodChoice& choice : one->references) {
+      if (choice.name != marched_reference || !known.insert(key(*one, choice)).second) continue;
+      const double least = one->duration / smallest_step_, elements = std::max(1, one->elements);
+      found.push_back({one, (4 + 8) * least, several ? 2 * finest_ / elements : 1});
+      if (several) found.push_back({one, 4 * least, finest_ / elements});
+    }
+    const Json twin = {{"scene", one->scene_json}, {"elements", one->elements}};
+    if (!one->settings.contains("horizon") && known.insert(twin.dump()).second)
+      found.push_back({one, 2 * one->duration / one->step, 1});
+  }
+  return found;
+}
+
+std::size_t References::solutions(const std::vector<const StudyCase*>& cases) const {
+  std::set<std::string> known;
+  for (const StudyCase* one : cases)
+    for (const MethodChoice& choice : one->references)
+      if (choice.name != marched_reference) known.insert(key(*one, choice));
+  return known.size();
 }
 
 References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {

@@ -52,6 +52,16 @@ class References {
   /// Throws Interrupted when `stop` became true.
   ReferenceSet of(const StudyCase& study_case, const std::atomic<bool>& stop);
 
+  /// Steps that marching beside the cases takes: those of `self`, once for all that share it, and of the twins that
+  /// tell the horizon; each with the case whose methods make them and what a step of it costs times (a finer mesh).
+  struct Aside {
+    const StudyCase* study_case;
+    double steps, times;
+  };
+  std::vector<Aside> marches(const std::vector<const StudyCase*>& cases) const;
+  /// References that are solved rather than marched, each once for all cases that share it.
+  std::size_t solutions(const std::vector<const StudyCase*>& cases) const;
+
  private:
   struct Twin {
     double horizon;

@@ -21,6 +21,13 @@ namespace {
 // The audit of every step costs about this much more than the step alone.
 constexpr double audit_seconds_per_step = 6e-7;
 
+/// The two observers of a step, the one behind the other.
+struct Audited {
+  EnergyAudit audit;
+  ImpactRecorder recorder;
+  explicit Audited(const Marcher& marcher) : audit(marcher), recorder(marcher, &audit) {}
+};
+
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
 // samples. Passes everything on to the observer behind it.
 class Sampler final : public StepObserver {
@@ -153,6 +160,11 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
       prepared.program->predicted_setup_seconds +
       static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + audit_seconds_per_step);
   return plan;
+}
+
+std::shared_ptr<StepObserver> audited(const Marcher& marcher) {
+  const auto both = std::make_shared<Audited>(marcher);
+  return {both, &both->recorder};
 }
 
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {

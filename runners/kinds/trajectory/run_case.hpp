@@ -1,6 +1,8 @@
 #pragma once
 #include <atomic>
+#include <memory>
 #include <ricochet/contract/registry.hpp>
+#include <ricochet/engine/marcher.hpp>
 
 #include "runners/march/case_plan.hpp"
 #include "runners/store/record.hpp"
@@ -10,6 +12,9 @@ namespace ricochet {
 
 /// What would run for a case that marches its scene once.
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry);
+
+/// What watches the march of a trajectory: energies and contact of every step.
+std::shared_ptr<StepObserver> audited(const Marcher& marcher);
 
 /// Runs one case of kind `trajectory` to its end. Whatever goes wrong in it is the record's status and reason; input
 /// errors that only show on this case's mesh are InputError.

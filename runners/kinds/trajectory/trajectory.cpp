@@ -194,6 +194,7 @@ Kind trajectory_kind() {
   kind.format.check = check_window;
   kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"window", "budget"}); };
   kind.plan = plan_case;
+  kind.watch = audited;
   kind.start = [](const RunContext& context) {
     CaseRunner runner;
     runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {

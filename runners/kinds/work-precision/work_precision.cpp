@@ -27,6 +27,8 @@ Kind work_precision_kind() {
   kind.format.settings = comparison_settings;
   kind.format.check = check_comparison;
   kind.plan = plan_case;
+  kind.watch = recorded;
+  kind.beside = seconds_beside;
   kind.start = [](const RunContext& context) {
     CaseRunner runner = compare_cases(context);
     runner.time = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {

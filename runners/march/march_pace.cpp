@@ -1,0 +1,54 @@
+#include "runners/march/march_pace.hpp"
+
+#include <algorithm>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+// Without the first ones, which meet cold caches.
+constexpr long long few_steps = 400, first_steps = 16, chunk = 32;
+constexpr double long_enough = 0.01;  // s
+
+struct Part {
+  double step_seconds = 0;
+  bool whole = false;  ///< no lane stopped on the way
+};
+
+std::optional<Part> march_part(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe) {
+  Prepared prepared = prepare_case(study_case, registry);
+  if (!prepared.program) return std::nullopt;
+  Marcher marcher(std::move(*prepared.program));
+  const std::shared_ptr<StepObserver> observer = observe ? observe(marcher) : nullptr;
+  marcher.start(observer.get());
+  Part part;
+  if (prepared.steps > few_steps / 2) marcher.march(first_steps, observer.get());
+  const long long before = marcher.step();
+  const double start = thread_seconds();
+  double now = start;
+  while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough) {
+    marcher.march(std::min(chunk, prepared.steps - marcher.step()), observer.get());
+    now = thread_seconds();
+  }
+  part.whole = marcher.any_running();
+  if (marcher.step() > before) part.step_seconds = (now - start) / static_cast<double>(marcher.step() - before);
+  return part;
+}
+
+}  // namespace
+
+std::optional<double> march_pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe) {
+  StudyCase coarse = study_case;
+  coarse.step = std::max(study_case.step, study_case.duration / static_cast<double>(few_steps));
+  std::optional<Part> part = march_part(coarse, registry, observe);
+  if (coarse.step > study_case.step && (!part || !part->whole)) {
+    StudyCase beginning = study_case;
+    beginning.duration = std::min(study_case.duration, study_case.step * static_cast<double>(few_steps));
+    part = march_part(beginning, registry, observe);
+  }
+  if (!part) return std::nullopt;
+  return part->step_seconds;
+}
+
+}  // namespace ricochet
