@@ -15,6 +15,8 @@
 namespace ricochet {
 namespace {
 
+constexpr const char* whole_study = "study";
+
 /// A word of the study format on which the keys of an object depend.
 struct FormWord {
   std::string name, place;  ///< place: pointer of the key that has it as its value
@@ -94,14 +96,28 @@ void add_keys(const ObjectForm& form, const std::string& path, const std::string
   for (const ObjectForm& way : form.ways) add_keys(way, path, " (one way)", table, below);
 }
 
+std::string key_table(const ObjectForm& form) {
+  TextTable table({"key", "type", "unit", "default", "range", "meaning"});
+  std::string below;
+  add_keys(form, "", "", table, below);
+  return table.text(2) + (below.empty() ? "" : "\n  long defaults\n" + below);
+}
+
 void print(const FormWord& word, std::ostream& out) {
   const StudyKind* kind = word.place == "/kind" ? find_study_kind(word.name) : nullptr;
   out << fmt::format("{} (a value of {}): {}\n", word.name, word.place, kind ? kind->text : word.key->spec.text);
-  TextTable table({"key", "type", "unit", "default", "range", "meaning"});
-  std::string below;
-  add_keys(*word.form, "", "", table, below);
-  out << (word.form->fields.empty() ? "\nno keys of its own\n" : "\nkeys\n" + table.text(2));
-  if (!below.empty()) out << "\n  long defaults\n" << below;
+  out << (word.form->fields.empty() ? "\nno keys of its own\n" : "\nkeys\n" + key_table(*word.form));
+}
+
+/// Every key of the study format: those of all studies, then those of each kind.
+void print_study(std::ostream& out) {
+  ObjectForm common = study_form();
+  common.variants.clear();
+  out << "study (a file that asks one question): the keys that every study has\n\n" << key_table(common);
+  for (const StudyKind* kind : study_kinds()) {
+    const ObjectForm own{kind->keys, "", {}};
+    out << fmt::format("\nkind {}: {}\n\n", kind->name, kind->text) << key_table(own);
+  }
 }
 
 /// Whether a measure is called so, in full or by what follows its last dot ("error.tip-l2").
@@ -151,6 +167,10 @@ bool describe_word(const std::string& name, std::ostream& out) {
     if (found) out << "\n";
     found = true;
   };
+  if (name == whole_study) {
+    next();
+    print_study(out);
+  }
   for (const FormWord& word : form_words())
     if (word.name == name) {
       next();
@@ -165,7 +185,7 @@ bool describe_word(const std::string& name, std::ostream& out) {
 }
 
 std::vector<std::string> words_of_studies() {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {whole_study};
   for (const FormWord& word : form_words()) names.push_back(word.name);
   return names;
 }
