@@ -24,10 +24,18 @@ Table answers_head() {
         "What the step leaves open: by how much the measure moved between the two finest steps, over the scale; "
         "median over the combinations. Empty with one step."},
        {"mesh_open", "1", "The same of the two finest meshes."},
+       {"window_open", "1",
+        "Of a mean over a window: half its 95 % interval, over the scale; the widest of the levels, median over the "
+        "combinations."},
        {"combinations", "1", "Combinations of the other choices in which two levels or more finished."},
        {"depends_on", "", "The other choice that tells where this one decides."},
        {"sentence", "", "The rows of one choice and one verdict, said together; empty but in the first of them."}},
       {}};
+}
+
+Row AnswerRow::row() const {
+  return {choice,    measure,   verdict,     effect,       largest,    scale,
+          step_open, mesh_open, window_open, combinations, depends_on, sentence};
 }
 
 }  // namespace ricochet

@@ -104,6 +104,14 @@ struct Kind {
 /// `answers` without rows.
 Table answers_head();
 
+/// A row of `answers`; what a kind does not say stays nothing.
+struct AnswerRow {
+  Cell choice = {}, measure = {}, verdict = {}, effect = {}, largest = {}, scale = {}, step_open = {}, mesh_open = {},
+       window_open = {}, combinations = {}, depends_on = {}, sentence = {};
+  /// In the order of answers_head().
+  Row row() const;
+};
+
 /// The kinds of the program, in the order in which they are told.
 const std::vector<Kind>& kinds();
 /// Adds a kind; to be called before any study is read. Throws std::logic_error for a name that is taken.

@@ -25,6 +25,7 @@ struct Said {
   std::string verdict, depends_on;
   double median = 0, largest = 0;       ///< effects, over the scale
   std::optional<double> step, mesh;     ///< median of what they leave open
+  std::optional<double> sampling;       ///< median of half the intervals
   const GroupEffect* widest = nullptr;  ///< the group with the largest effect
   std::string clause;                   ///< of a sentence about the choice
 };
@@ -66,6 +67,7 @@ std::string against(const Said& said) {
   std::string out;
   if (said.step) out = percent(*said.step) + " from the step";
   if (said.mesh) out += (out.empty() ? "" : " and ") + percent(*said.mesh) + " from the mesh";
+  if (said.sampling) out += (out.empty() ? "" : " and ") + percent(*said.sampling) + " from the length of the window";
   return out.empty() ? "" : "against " + out;
 }
 
@@ -84,7 +86,7 @@ std::string two_digits(double value) {
 
 /// "; refine h to 2e-6 s": where what is open, if it falls with h (or with the element), is a third of the effect.
 std::string next_sizes(const std::vector<const Said*>& same) {
-  double step = 0, elements = 0, open_step = 0, open_mesh = 0;
+  double step = 0, elements = 0, open_step = 0, open_mesh = 0, open_window = 0;
   for (const Said* said : same)
     for (const GroupEffect& group : said->effects->groups) {
       if (group.found.verdict != EffectVerdict::unresolved) continue;
@@ -93,13 +95,17 @@ std::string next_sizes(const std::vector<const Said*>& same) {
       elements = std::max(elements, group.elements);
       open_step = std::max(open_step, group.found.step.value_or(0) / wanted);
       open_mesh = std::max(open_mesh, group.found.mesh.value_or(0) / wanted);
+      open_window = std::max(open_window, group.found.sampling.value_or(0) / wanted);
     }
   std::string out;
   if (open_step > 1 && step > 0)
     out = fmt::format("refine h to {} s", report::number_text(rounded_down(step / open_step), 3));
   if (open_mesh > 1 && elements > 0)
     out += fmt::format("{} the mesh to {} elements", out.empty() ? "refine" : " and", two_digits(elements * open_mesh));
-  return out.empty() ? "" : "; " + out + " (if what is open falls with them)";
+  if (!out.empty()) out = "; " + out + " (if what is open falls with them)";
+  // The interval of a mean falls with the root of its length.
+  if (open_window > 1) out += fmt::format("; a window {} times as long", two_digits(open_window * open_window));
+  return out;
 }
 
 /// What the groups come to: the word of a verdict, or "depends".
@@ -129,6 +135,7 @@ Said said_of(const StudyResults& results, const ChoiceEffects& effects) {
   out.largest = out.widest->found.effect;
   out.step = median_open(effects, &ResolvedEffect::step);
   out.mesh = median_open(effects, &ResolvedEffect::mesh);
+  out.sampling = median_open(effects, &ResolvedEffect::sampling);
   out.verdict = verdict_of(effects);
   if (out.verdict == "depends") out.depends_on = separating_choice(results, effects);
   return out;
@@ -223,8 +230,19 @@ Table choices_said(const StudyResults& results) {
         same.push_back(&said[other]);
     for (const Said* said_here : same) told[static_cast<std::size_t>(said_here - said.data())] = true;
     const Cell line = same.empty() ? Cell() : Cell(sentence_of(same));
-    table.rows.push_back({one.effects->choice, one.effects->measure, one.verdict, one.median, one.largest,
-                          one.effects->scale, one.step, one.mesh, one.effects->groups.size(), one.depends_on, line});
+    table.rows.push_back(AnswerRow{.choice = one.effects->choice,
+                                   .measure = one.effects->measure,
+                                   .verdict = one.verdict,
+                                   .effect = one.median,
+                                   .largest = one.largest,
+                                   .scale = one.effects->scale,
+                                   .step_open = one.step,
+                                   .mesh_open = one.mesh,
+                                   .window_open = one.sampling,
+                                   .combinations = one.effects->groups.size(),
+                                   .depends_on = one.depends_on,
+                                   .sentence = line}
+                             .row());
   }
   return table;
 }

@@ -27,34 +27,36 @@ std::string scale_words(const MeasureScale& scale) {
   return scale.own() ? "of the larger" : "of the " + report::in_words(scale.name());
 }
 
+/// A case with its value, and with half the interval of that where it is a mean over a window.
+struct Reading {
+  const CaseRecord* record;
+  double value;
+  std::optional<double> sampling;
+};
+
 /// One level: its cases with a value, and the finest of them.
 struct FinestLevel {
-  std::vector<std::pair<const CaseRecord*, double>> cases;
+  std::vector<Reading> cases;
 
-  const CaseRecord* finest() const {
-    return std::max_element(
-               cases.begin(), cases.end(),
-               [](const auto& a, const auto& b) {
-                 const double mesh_a = number_on(*a.first, "elements"), mesh_b = number_on(*b.first, "elements");
-                 return mesh_a != mesh_b ? mesh_a < mesh_b : number_on(*a.first, "step") > number_on(*b.first, "step");
-               })
-        ->first;
-  }
-  double value(const CaseRecord* record) const {
-    return std::find_if(cases.begin(), cases.end(), [&](const auto& one) { return one.first == record; })->second;
+  const CaseRecord* finest() const { return best().record; }
+  const Reading& best() const {
+    return *std::max_element(cases.begin(), cases.end(), [](const Reading& a, const Reading& b) {
+      const double mesh_a = number_on(*a.record, "elements"), mesh_b = number_on(*b.record, "elements");
+      return mesh_a != mesh_b ? mesh_a < mesh_b : number_on(*a.record, "step") > number_on(*b.record, "step");
+    });
   }
   /// By how much the value moved from the next coarser size of `refined` to the finest, all else being the same.
   std::optional<double> last_move(const char* refined, const char* other) const {
-    const CaseRecord* best = finest();
+    const Reading& chosen = best();
     const bool step = std::string_view(refined) == "step";
-    const double size = number_on(*best, refined);
+    const double size = number_on(*chosen.record, refined);
     std::optional<double> next, move;
-    for (const auto& [record, own] : cases) {
+    for (const auto& [record, own, sampling] : cases) {
       const double at = number_on(*record, refined);
-      if (number_on(*record, other) != number_on(*best, other) || (step ? at <= size : at >= size)) continue;
+      if (number_on(*record, other) != number_on(*chosen.record, other) || (step ? at <= size : at >= size)) continue;
       if (next && (step ? at >= *next : at <= *next)) continue;
       next = at;
-      move = std::abs(own - value(best));
+      move = std::abs(own - chosen.value);
     }
     return move;
   }
@@ -63,10 +65,13 @@ struct FinestLevel {
 GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
   GroupEffect out;
   double largest = 0, floor = 0;
-  for (const FinestLevel& level : levels) largest = std::max(largest, std::abs(level.value(level.finest())));
+  for (const FinestLevel& level : levels) largest = std::max(largest, std::abs(level.best().value));
   if (own_scale && largest > 0)
     for (FinestLevel& level : levels)
-      for (auto& one : level.cases) one.second /= largest;
+      for (Reading& one : level.cases) {
+        one.value /= largest;
+        if (one.sampling) *one.sampling /= largest;
+      }
   std::vector<LevelValue> values;
   for (const FinestLevel& level : levels) {
     const CaseRecord* best = level.finest();
@@ -74,7 +79,8 @@ GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
     out.elements = std::max(out.elements, number_on(*best, "elements"));
     const double step = number_on(*best, "step");
     if (out.step == 0 || (step > 0 && step < out.step)) out.step = step;
-    values.push_back({level.value(best), level.last_move("step", "elements"), level.last_move("elements", "step")});
+    values.push_back({level.best().value, level.last_move("step", "elements"), level.last_move("elements", "step"),
+                      level.best().sampling});
     // A measure that is its own scale is known to all its digits, but for those that a run loses.
     if (!own_scale) floor = std::max(floor, round_off(*best));
   }
@@ -115,7 +121,8 @@ std::vector<ChoiceEffects> choice_effects(const StudyResults& results, const std
         for (const Cases& cases : groups_of(group, own)) {
           FinestLevel level;
           for (const CaseRecord* record : cases)
-            if (const auto value = scaled(*record, name, scale)) level.cases.emplace_back(record, *value);
+            if (const auto value = scaled(*record, name, scale))
+              level.cases.push_back({record, *value, scaled(*record, "confidence." + name, scale)});
           if (!level.cases.empty()) levels.push_back(std::move(level));
         }
         if (levels.size() > 1) effects.groups.push_back(group_effect(levels, scale.own()));

@@ -35,6 +35,7 @@ ResolvedEffect resolved_effect(const std::vector<LevelValue>& levels, double thr
     if (levels[k].value > levels[out.most].value) out.most = k;
     widen(out.step, levels[k].step_move);
     widen(out.mesh, levels[k].mesh_move);
+    widen(out.sampling, levels[k].sampling);
     largest = std::max(largest, std::abs(levels[k].value));
   }
   out.effect = levels[out.most].value - levels[out.least].value;

@@ -12,6 +12,7 @@ namespace ricochet {
 struct LevelValue {
   double value = 0;
   std::optional<double> step_move, mesh_move;  ///< ≥ 0; none where there is one step, or one mesh
+  std::optional<double> sampling = {};         ///< half the interval of a mean over a window; none of other values
 };
 
 enum class EffectVerdict {
@@ -28,9 +29,10 @@ struct ResolvedEffect {
   EffectVerdict verdict = EffectVerdict::not_observed;
   double effect = 0;                 ///< max v − min v over the levels
   std::optional<double> step, mesh;  ///< largest move over the levels
+  std::optional<double> sampling;    ///< widest half interval of a mean over the levels
   std::size_t least = 0, most = 0;   ///< the levels of min v and max v
-  /// What is open of v: the sum of the two largest moves.
-  double open() const { return step.value_or(0) + mesh.value_or(0); }
+  /// What is open of v: the sum of the two largest moves and of the widest half interval.
+  double open() const { return step.value_or(0) + mesh.value_or(0) + sampling.value_or(0); }
 };
 
 /// With levels v ± o, o what is open of a level (the move of its two finest steps plus that of its two finest meshes:

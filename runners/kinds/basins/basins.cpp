@@ -42,7 +42,7 @@ Kind basins_kind() {
   kind.answers = [](const StudyResults& results) {
     Table table = answers_head();
     for (const std::string& sentence : report::basins_said(report::CaseView(results)))
-      table.rows.push_back({{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, sentence});
+      table.rows.push_back(AnswerRow{.sentence = sentence}.row());
     return table;
   };
   kind.page = report::basins_page;

@@ -21,7 +21,7 @@ std::string with_unit(double value, const report::Quantity& parameter) {
 Table bifurcation_answers(const StudyResults& results) {
   Table out = answers_head();
   const auto add = [&](const std::string& choice, const std::string& verdict, const Cell& share, const Cell& sentence) {
-    out.rows.push_back({choice, "", verdict, share, {}, {}, {}, {}, {}, {}, sentence});
+    out.rows.push_back(AnswerRow{.choice = choice, .verdict = verdict, .effect = share, .sentence = sentence}.row());
   };
   const report::Quantity parameter = report::swept_parameter(results);
   if (const Table* shares = find_table(results.derived, "verdict_shares"); shares && !shares->rows.empty()) {

@@ -85,17 +85,12 @@ void say_orders(const StudyResults& results, Table& answers) {
     bool first = true;
     for (const auto& [name, scheme] : schemes) {
       if (scheme.verdict() != verdict) continue;
-      answers.rows.push_back({name,
-                              "order in the step",
-                              verdict,
-                              {},
-                              {},
-                              {},
-                              {},
-                              {},
-                              scheme.found,
-                              {},
-                              first ? Cell(sentence + ".") : Cell()});
+      answers.rows.push_back(AnswerRow{.choice = name,
+                                       .measure = "order in the step",
+                                       .verdict = verdict,
+                                       .combinations = scheme.found,
+                                       .sentence = first ? Cell(sentence + ".") : Cell()}
+                                 .row());
       first = false;
     }
   }

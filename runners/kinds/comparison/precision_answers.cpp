@@ -45,8 +45,12 @@ void say_precision(const StudyResults& results, Table& answers) {
       sentence += fmt::format("; {} {}", tie ? "not told apart from" : "next",
                               how(view, *other, rows.number(row, "other_seconds").value_or(0)));
     }
-    answers.rows.push_back(
-        {"", "error." + error, "cheapest", *share, {}, "size." + error, {}, {}, {}, {}, sentence + "."});
+    answers.rows.push_back(AnswerRow{.measure = "error." + error,
+                                     .verdict = "cheapest",
+                                     .effect = *share,
+                                     .scale = "size." + error,
+                                     .sentence = sentence + "."}
+                               .row());
     ++said;
   }
 }

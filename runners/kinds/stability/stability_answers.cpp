@@ -62,7 +62,7 @@ Table stability_answers(const StudyResults& results) {
     }
   }
   const auto add = [&](const std::string& verdict, const std::string& sentence) {
-    out.rows.push_back({"time", "", verdict, {}, {}, {}, {}, {}, {}, {}, sentence});
+    out.rows.push_back(AnswerRow{.choice = "time", .verdict = verdict, .sentence = sentence}.row());
   };
   std::vector<std::string> free, limited;
   for (const auto& [name, scheme] : schemes) {

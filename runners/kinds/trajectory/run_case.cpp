@@ -12,6 +12,7 @@
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/force_window.hpp"
+#include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -176,7 +177,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Marcher marcher(std::move(*prepared.program));
   EnergyAudit audit(marcher);
   ImpactRecorder recorder(marcher, &audit);
-  ForceWindow forces(study_case.settings, recorder);
+  WindowMeans means(study_case.settings, audit, recorder);
+  ForceWindow forces(study_case.settings, means);
   Sampler sampler(audit, recorder, forces);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
@@ -213,6 +215,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   fill_measures(record, marcher, audit, *problem);
   add_contact(record, recorder, marcher);
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
+  means.put(record);
   if (forces.told()) {
     put_measure(record, "contact_force_mean", forces.mean());
     put_measure(record, "contact_force_deviation", forces.deviation());

@@ -12,6 +12,7 @@
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/fields.hpp"
 
@@ -90,6 +91,17 @@ std::vector<MeasureInfo> trajectory_measures() {
        "Mean of the contact force over the study's window, summed over the points: times the window it is the impulse. "
        "The instants of a step count by the momentum that an effort of each gives."},
       {"contact_force_deviation", "N", "Standard deviation of the contact force from that mean, over the window."},
+      {"window_power", "W", "Energy lost at the stops in a second: mean over the parts of the study's window."},
+      {"confidence.window_power", "W", "Half the 95 % interval of that mean (stationary block bootstrap of the parts).",
+       Of::computation},
+      {"window_force", "N",
+       "Momentum that the stops give in a second, summed by magnitude over the points: such a mean."},
+      {"confidence.window_force", "N", "Half the 95 % interval of that mean.", Of::computation},
+      {"window_impact_rate", "1/s", "How often a contact point closes in a second: such a mean."},
+      {"confidence.window_impact_rate", "1/s", "Half the 95 % interval of that mean.", Of::computation},
+      {"window_tip_rms", "m", "Root mean square of the tip's absolute displacement: mean over the parts.", Of::motion,
+       false, "largest_tip_displacement"},
+      {"confidence.window_tip_rms", "m", "Half the 95 % interval of that mean.", Of::computation},
       {"complementarity_residual", "m or m/s",
        "Largest complementarity residual of the contact problem over the run, in units of the measure (position or "
        "velocity).",
@@ -152,7 +164,9 @@ Field window_key() {
   using namespace keys;
   ObjectForm window;
   window.fields = {single(real("from", "s", non_negative, std::nullopt, "Where the window begins.")),
-                   single(real("to", "s", positive, std::nullopt, "Where it ends."))};
+                   single(real("to", "s", positive, std::nullopt, "Where it ends.")),
+                   optional(integer("parts", {WindowMeans::fewest_parts, 100000, false, false}, std::nullopt,
+                                    "Equal parts, for means with 95 % intervals; null: none."))};
   return object("window", Json(nullptr), "The interval over which the contact force is measured; null: it is not.",
                 window);
 }
@@ -178,6 +192,10 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   const bool driven = std::any_of(results.cases.begin(), results.cases.end(), [](const CaseRecord& record) {
     return measure(record, "work_of_loads").value_or(0) != 0;
   });
+  // Paths of a chaotic motion part; its means do not.
+  if (std::any_of(results.cases.begin(), results.cases.end(),
+                  [](const CaseRecord& record) { return measure(record, "window_tip_rms").has_value(); }))
+    return {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
   return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
 }
 

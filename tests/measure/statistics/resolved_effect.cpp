@@ -34,3 +34,14 @@ TEST_CASE("the extreme levels are named, and the largest move counts") {
   CHECK(found.step == 0.02);
   CHECK(found.mesh == 0.001);
 }
+
+TEST_CASE("resolved effect: the interval of a mean is open too, and alone it tells nothing of the numerics") {
+  const std::vector<LevelValue> exact = {{0.40, 0.001, {}, 0.002}, {0.46, 0.001, {}, 0.001}};
+  CHECK(resolved_effect(exact, 0.01, 0).verdict == EffectVerdict::decides);
+  const std::vector<LevelValue> short_window = {{0.40, 0.001, {}, 0.002}, {0.46, 0.001, {}, 0.04}};
+  const ResolvedEffect open = resolved_effect(short_window, 0.01, 0);
+  CHECK(open.verdict == EffectVerdict::unresolved);
+  CHECK(open.sampling.value() == 0.04);
+  CHECK(open.open() == Approx(0.041));
+  CHECK(resolved_effect({{0.40, {}, {}, 0.002}, {0.46, {}, {}, 0.002}}, 0.01, 0).verdict == EffectVerdict::untold);
+}

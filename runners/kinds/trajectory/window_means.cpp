@@ -1,0 +1,71 @@
+#include "runners/kinds/trajectory/window_means.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+
+WindowMeans::WindowMeans(const Json& settings, const EnergyAudit& audit, StepObserver& behind)
+    : audit_(audit), behind_(behind) {
+  if (!settings.is_object() || !settings.contains("window")) return;
+  const Json& window = settings.at("window");
+  from_ = window.at("from").get<double>();
+  to_ = window.at("to").get<double>();
+  if (window.contains("parts") && window["parts"].is_number()) parts_ = window["parts"].get<int>();
+  for (std::vector<double>& one : series_) one.reserve(static_cast<std::size_t>(parts_));
+}
+
+WindowMeans::Totals WindowMeans::now(const Marcher& marcher) const {
+  const EnergyTotals& energy = audit_.totals(0);
+  const ContactTotals& contact = audit_.contact(0);
+  // What the stops hold (a spring's potential) is not lost.
+  return {marcher.time(), -energy.work_of_contact - (energy.last.contact - energy.first.contact), contact.impulse,
+          static_cast<double>(contact.impacts)};
+}
+
+void WindowMeans::step_done(Marcher& marcher) {
+  behind_.step_done(marcher);
+  const std::size_t part = series_[tip].size();
+  if (part >= static_cast<std::size_t>(parts_) || !marcher.status(0).running) return;
+  const double half_step = marcher.program().h / 2, t = marcher.time();
+  if (t < from_ + half_step && part == 0 && steps_ == 0) {
+    begin_ = now(marcher);
+    return;
+  }
+  const double displacement = marcher.tip(0);
+  squares_ += displacement * displacement;
+  ++steps_;
+  if (t + half_step < from_ + (to_ - from_) * static_cast<double>(part + 1) / parts_) return;
+  const Totals end = now(marcher);
+  const double length = end.t - begin_.t;
+  series_[power].push_back((end.lost - begin_.lost) / length);
+  series_[force].push_back((end.impulse - begin_.impulse) / length);
+  series_[rate].push_back((end.impacts - begin_.impacts) / length);
+  series_[tip].push_back(std::sqrt(squares_ / static_cast<double>(steps_)));
+  begin_ = end;
+  squares_ = 0;
+  steps_ = 0;
+}
+
+void WindowMeans::put(CaseRecord& record) const {
+  if (parts_ == 0) return;
+  if (series_[tip].size() < static_cast<std::size_t>(parts_)) {
+    record.notes.push_back(
+        fmt::format("no means over the window: the run ended in part {} of {}", series_[tip].size() + 1, parts_));
+    return;
+  }
+  const char* const names[kinds] = {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
+  for (int kind = 0; kind < kinds; ++kind) {
+    // Without a work form it is not known what the stops take.
+    if (kind == power && !audit_.balances()) continue;
+    const Interval mean = block_bootstrap_mean(series_[static_cast<std::size_t>(kind)]);
+    put_measure(record, names[kind], mean.value);
+    put_measure(record, std::string("confidence.") + names[kind],
+                std::max(mean.high - mean.value, mean.value - mean.low));
+  }
+}
+
+}  // namespace ricochet
