@@ -141,6 +141,10 @@
   const makers = [];
   // Registers a figure: `make` takes the page's data and returns its figures, none where the results have nothing of the kind.
   ricochet.figure = (name, make) => makers.push([name, make]);
+  // Names figures that show a kind's answer, the best first: the first that a study has stands beside its answer.
+  const answers = [];
+  ricochet.answeredBy = (...ids) => { answers.push(...ids.filter((id) => !answers.includes(id))); };
+  ricochet.answerAmong = (figures) => answers.map((id) => figures.find((figure) => figure.id === id)).find(Boolean);
   ricochet.makeFigures = (data) => makers.flatMap(([, make]) => make(data));
   ricochet.Figure = Figure;
 }

@@ -28,7 +28,7 @@
       const values = subject.values.map((value) => ({ value, frames: framesOf(value) })).filter(({ frames }) => frames.some((frame) => !frame.range.empty));
       if (!values.length) return null;
       const charts = this.curves.charts((facet, f) => values.map(({ value, frames }) => this.chart(value, facet, frames[f])));
-      return { id: subject.id + "-" + ricochet.slug(this.column), title: subject.title + " against " + this.x[0], caption: subject.caption, views: values.map(({ value }) => value.view), charts, legend: this.curves.legend() };
+      return { id: subject.id + "-" + ricochet.slug(this.column), title: subject.title + " against " + this.x[0], caption: subject.caption, views: values.map(({ value }) => value.view), charts, legend: this.curves.legend(), measured: { key: subject.id, along: this.column, values: subject.values } };
     }
     // Rows of finished cases that have the value.
     rows(cases, value) {
