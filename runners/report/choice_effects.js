@@ -25,7 +25,7 @@
     if (bands.length) legend.push(ricochet.swatch(open, openColour));
     for (const [verdict, colour] of Object.entries(verdicts)) {
       if (!rows.some((row) => row.verdict === verdict)) continue;
-      ricochet.draw(out, drawn, { x: "effect", y: "name" }, { type: "bar", name: verdict, color: colour, stack: "effect", barWidth: 9, z: 3, itemStyle: { color: colour } }, { verdict });
+      ricochet.draw(out, drawn, { x: "effect", y: "name" }, { type: "bar", name: verdict, color: colour, barWidth: 9, barGap: "-100%", z: 3, itemStyle: { color: colour } }, { verdict });
       const more = drawn.filter((row) => row.verdict === verdict && row.largest > row.effect);
       if (more.length) ricochet.draw(out, ricochet.ends(more, "effect", "largest"), { x: "end", y: "name" }, { ...ricochet.line(verdict, colour, 1.4), symbol: "rect", symbolSize: [1.5, 9], z: 4 });
       legend.push(ricochet.swatch(verdict, colour));

@@ -1,13 +1,13 @@
-// The shares of the choices in what the study observes: a bar per measure, a part per choice or interaction with its interval.
+// The shares of the choices in what the study observes, where they tell most of it: a bar per measure, a part per choice or interaction with its interval.
 {
-  const least = 0.04, mostParts = 10, others = "all others", grey = "#BDBDBD";
+  const half = 0.5, least = 0.04, mostParts = 10, others = "all others", grey = "#BDBDBD";
 
   const interval = ({ low, high }) => (100 * low).toFixed(0) + "–" + (100 * high).toFixed(0);
 
   ricochet.answeredBy("shares");
   ricochet.figure("shares", (data) => {
-    const { percent, spaced } = ricochet.format, effects = data.rows("effects"), known = (measure) => effects.some((row) => row.measure === measure && row.share > 0);
-    const measures = ricochet.observedMeasures(data).filter(known);
+    const { percent, spaced } = ricochet.format, effects = data.rows("effects"), told = (measure) => effects.filter((row) => row.measure === measure).reduce((sum, row) => sum + row.share, 0);
+    const measures = ricochet.observedMeasures(data).filter((measure) => told(measure) >= half);
     if (!measures.length) return [];
     const own = effects.filter((row) => measures.includes(row.measure)), largest = (factor) => Math.max(...own.filter((row) => row.factor === factor).map((row) => row.share));
     const factors = ricochet.distinct(own.map((row) => row.factor)).filter((factor) => largest(factor) >= least).sort((a, b) => largest(b) - largest(a)).slice(0, mostParts);
@@ -28,8 +28,7 @@
       ricochet.draw(out, rows, { x: "share", y: "measure" }, { type: "bar", name, stack: "shares", barWidth: 34, color: colour, itemStyle: { color: colour, borderColor: "#ffffff", borderWidth: 1 }, label }, { factor: name });
       legend.push(ricochet.swatch(name, colour));
     });
-    const told = (measure) => own.filter((row) => row.measure === measure).reduce((sum, row) => sum + row.share, 0);
-    if (measures.some((measure) => told(measure) < 0.99)) out.notes.push("Where a bar ends before 100 %, cases without a result leave the rest untold.");
+    if (measures.some((measure) => told(measure) < 0.99)) out.notes.push("Where a bar ends before 100 %, choices of two levels and cases without a result leave the rest untold.");
     const used = new Set();
     factors.forEach((factor) => ricochet.shorten(factor, used));
     const key = used.size ? " " + ricochet.keyTo(used) + "." : "";

@@ -5,7 +5,7 @@
 // is about; `values` are {view, quantity, of}, `of` a number of a case or null. Its charts name their `cases`.
 {
   const { numberOf, textOf, roleOf, Interval } = ricochet, { escape, text, unit, mark, count } = ricochet.format;
-  const mostCharts = 24, mostRows = 60, mostColumns = 72, mostCells = 4000, mostWritten = 12, listed = 10;
+  const mostCharts = 24, mostRows = 60, mostColumns = 96, mostCells = 4000, mostWritten = 12, listed = 10;
   // Pale to dark, so that the order shows without colours too.
   const ramp = ["#F6F2DC", "#D3E6C4", "#93CBB5", "#4EA3B6", "#2C6FA3", "#22366F"];
 
@@ -88,9 +88,11 @@
     }
 
     fill() {
-      const scale = this.scale(), { map } = this.description;
-      this.body.innerHTML = this.legend(scale) + '<div class="scroll tall"><table class="map"><caption class="hidden">' + escape(this.description.title) + "</caption><thead>" + this.head() + "</thead><tbody>" + this.rowsOf(scale) +
+      this.used = new Set();
+      const scale = this.scale(), { map } = this.description, heads = this.columns.length ? '<p class="fine">Columns: ' + escape(this.heads) + "</p>" : "";
+      this.body.innerHTML = this.legend(scale) + heads + '<div class="scroll tall"><table class="map"><caption class="hidden">' + escape(this.description.title) + "</caption><thead>" + this.head() + "</thead><tbody>" + this.rowsOf(scale) +
         "</tbody></table></div>" + (this.left ? '<p class="fine">' + this.left + " more rows: cases.csv has them.</p>" : "") + (map.values.length ? this.extremes() : "");
+      if (this.used.size) this.body.insertAdjacentHTML("beforeend", '<p class="fine key">' + escape(ricochet.keyTo(this.used)) + "</p>");
     }
     legend({ range, low, high, logarithmic }) {
       const statuses = ["refused", "diverged", "failed"].filter((status) => this.cases.some((one) => one.status === status)).map((status) => "<span>" + mark(status) + " " + status + "</span>").join("");
@@ -101,11 +103,13 @@
     }
     // One line of a role stands for the method with its parameters.
     levels(columns) { return Array.from(ricochet.groupBy(columns, (column) => [roleOf(column)]).values()); }
-    word(one, columns) { return ricochet.shorten(this.data.label(one, columns) || "–"); }
+    word(one, columns) { return ricochet.shorten(this.data.label(one, columns) || "–", this.used); }
+    // What the lines of the head hold, the outermost first: "N, α (s), h (s)".
+    get heads() { return this.columns.map((column) => ricochet.shorten(ricochet.format.withUnit([column, this.data.unit(column)]), this.used)).join(", "); }
     head() {
       const levels = this.levels(this.rows), sides = '<th scope="col" rowspan="' + Math.max(1, this.columns.length) + '">', corner = levels.map((columns) => sides + escape(roleOf(columns[0])) + "</th>").join("") || sides + "</th>";
       const lines = headers(this.data, this.across, this.columns.map((column) => [column]));
-      const cells = (line, level) => line.map(({ one, columns, span }) => '<th scope="col" colspan="' + span + '">' + escape(this.word(one, columns)) + "</th>").join("");
+      const cells = (line, level) => line.map(({ one, columns, span }) => '<th scope="col" colspan="' + span + '" title="' + escape(this.data.label(one, columns)) + '">' + escape(textOf(one, columns[0]) || "–") + "</th>").join("");
       return (lines.length ? lines : [[]]).map((line, level) => "<tr>" + (level === 0 ? corner : "") + cells(line, level) + "</tr>").join("");
     }
     rowsOf(scale) {
@@ -135,7 +139,7 @@
       if (!most) return "";
       const table = (title, some) => '<table class="plain"><caption>' + escape(title) + '</caption><thead><tr><th scope="col">case</th><th scope="col">what it is</th><th scope="col" class="number">' +
         escape(ricochet.format.withUnit(this.value.quantity)) + "</th></tr></thead><tbody>" +
-        some.map((one) => '<tr><td class="text">' + escape(one.id) + "</td><td>" + escape(this.data.label(one)) + '</td><td class="number">' + escape(text(this.number(one), 5)) + "</td></tr>").join("") + "</tbody></table>";
+        some.map((one) => '<tr><td class="text">' + escape(one.id) + "</td><td>" + escape(ricochet.shorten(this.data.label(one), this.used)) + '</td><td class="number">' + escape(text(this.number(one), 5)) + "</td></tr>").join("") + "</tbody></table>";
       return "<details><summary>The " + most + " smallest and the " + most + " largest</summary><div class=\"extremes\">" + table("Smallest " + name, known.slice(0, most)) + table("Largest " + name, known.slice(-most).reverse()) + "</div></details>";
     }
 

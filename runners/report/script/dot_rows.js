@@ -1,10 +1,10 @@
 // Charts whose rows have names: bars, dots and bands along x. What shows an answer is drawn so.
 {
-  const rowHeight = 26, frame = 64, letter = 6.3, most = 250;
+  const rowHeight = 26, frame = 64, letter = 6.3;
 
   // A view of named rows, the first on top; `along` is the horizontal axis, `height` that of a row.
   ricochet.namedRows = (names, x, along, height = rowHeight) => {
-    const longest = Math.max(0, ...names.map((name) => name.length)), width = Math.min(most, 14 + letter * longest);
+    const longest = Math.max(0, ...names.map((name) => name.length)), most = window.innerWidth < 600 ? 130 : 250, width = Math.min(most, 14 + letter * longest);
     const y = {
       type: "category", data: names, inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
       axisLabel: { color: ricochet.ink, fontSize: 11, width: width - 10, overflow: "truncate", interval: 0 },

@@ -47,10 +47,11 @@
     let after = place, link = document.querySelector('nav a[href="#answer"]');
     for (const description of all) {
       const answers = beside && description === answer, put = (fresh) => (answers ? beside.append(fresh) : after.after(fresh));
-      const { section } = ricochet.mount(description, put), entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });
-      // A chart of its own fits beside the words; several stand below them.
-      if (answers) beside.parentElement.classList.toggle("beside", description.charts.length === 1 && !description.linked);
-      else after = section;
+      const figure = ricochet.mount(description, put), { section } = figure, entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });
+      if (answers) {
+        beside.parentElement.classList.add("beside");
+        if (description.atFirst) figure.show(description.atFirst);
+      } else after = section;
       link.after(entry);
       link = entry;
     }

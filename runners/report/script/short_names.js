@@ -10,7 +10,7 @@
     "κ": "stiffness of the contact", e: "restitution", N: "elements", h: "step", "β": "beta", "γ": "gamma", "θ": "theta",
   };
   // A word of everyday language is a name where a value or another choice follows it.
-  const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| [\\d−])" : "");
+  const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| \\([^)]{1,6}\\)| [\\d−])" : "");
   const short = new Map(names), whole = new RegExp("(?<![\\w.-])(?:" + names.map(([full]) => named(full)).join("|") + ")(?![\\w-]|\\.\\w)", "g");
 
   // A label with short names; `used`, where given, takes those that it has.

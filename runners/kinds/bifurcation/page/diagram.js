@@ -39,7 +39,8 @@
       out.charts = cases.map((one, c) => this.chart({ title: this.title(one), cases: [one] }, frames[c], 0));
       if (several) {
         const all = frames.reduce((sum, frame) => sum.join(frame.range), new Interval());
-        out.charts.push(this.chart({ title: "all methods", cases, byMethod: true }, { range: all, own: false }, out.views.push("overlaid") - 1));
+        out.atFirst = out.views.push("overlaid") - 1;   // beside the answer
+        out.charts.push(this.chart({ title: "all methods", cases, byMethod: true }, { range: all, own: false }, out.atFirst));
       }
       if (kinds.length > 1 && kinds.length * cases.length <= mostStartCharts) {
         const view = out.views.push("by start") - 1;

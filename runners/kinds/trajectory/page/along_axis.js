@@ -57,6 +57,8 @@
     }
   }
 
-  // The figures of a subject, one per axis.
-  ricochet.alongAxes = (data, subject) => axisColumns(data.view).map((column) => new AlongAxis(data.view, column).figure(subject)).filter(Boolean);
+  // The figures of a subject, one per axis; how cases lie along an axis is worked out once for all subjects.
+  const known = new Map();
+  const along = (view, column) => known.get(column) || known.set(column, new AlongAxis(view, column)).get(column);
+  ricochet.alongAxes = (data, subject) => axisColumns(data.view).map((column) => along(data.view, column).figure(subject)).filter(Boolean);
 }

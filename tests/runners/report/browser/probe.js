@@ -137,11 +137,30 @@
   }
   // A map has a cell for every case; a click on one of its rows draws the charts of that row.
   function checkMap(figure) {
-    const before = ricochet.figures.length, out = { rows: all("tbody tr", figure.section).length, cells: all("td[data-case]", figure.section).length, marks: all("td[data-case]", figure.section).filter((cell) => cell.textContent).length };
+    const before = ricochet.figures.length, out = { rows: all(".map tbody tr", figure.section).length, cells: all("td[data-case]", figure.section).length, marks: all("td[data-case]", figure.section).filter((cell) => cell.textContent).length };
     all("[data-row]", figure.section)[0].click();
     out.charts = ricochet.figures.slice(before).map((one) => one.description.charts.length);
     ricochet.figures.slice(before).forEach(ricochet.unmount);
     return out;
+  }
+  // Another overlay makes the figure anew in its place, and back.
+  function checkOverlay(figure) {
+    const place = () => ricochet.figures.find((one) => one.section.id === figure.section.id), pick = (k) => { const [choice] = all("[data-choice]", place().section); choice.selectedIndex = k; choice.dispatchEvent(new Event("change")); };
+    const first = figure.description.charts.length;
+    pick(1);
+    const next = place(), out = { charts: next.description.charts.length, names: next.description.legend.map((entry) => entry.name), anew: next !== figure && next.section.isConnected && !figure.section.isConnected };
+    pick(0);
+    out.back = place().description.charts.length === first;
+    return out;
+  }
+  // The "?" beside a word opens what it means, and closes it.
+  function checkExplained() {
+    const [button] = all(".why");
+    if (!button) return null;
+    button.click();
+    const note = document.getElementById(button.getAttribute("aria-controls")), out = { label: button.getAttribute("aria-label"), text: note ? note.textContent : "" };
+    button.click();
+    return Object.assign(out, { closed: !all(".meaning").length, count: all(".why").length });
   }
   function checkFigure(figure, controls) {
     const { description } = figure, views = Math.max(1, all("[data-view]", figure.section).length);
@@ -171,6 +190,7 @@
     out.tooltip = sample ? figure.option(first).tooltip.formatter([{ ...sample.getDataParams(0), marker: "" }]) : "";
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "basins") out.cell = checkCell(figure, first);
+    if ((description.choices || []).some((choice) => choice.name === "Overlay")) out.overlay = checkOverlay(figure);
     return out;
   }
   function checkTable() {
@@ -200,7 +220,7 @@
     const asked = JSON.parse(document.documentElement.dataset.asked);
     let out = null;
     try {
-      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: all(".why").length, answer: all("#answer-figure .figure").length, figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
     } catch (e) { errors.push(String((e && e.stack) || e)); }
     parent.postMessage(JSON.stringify(Object.assign({ errors }, out)), "*");
   });

@@ -55,6 +55,11 @@ void check_facets(const StudyResults& results, const Json& page) {
   CHECK(energy.at("charts").size() == 12);  // 4 masses × 3 time methods
   CHECK(energy.at("views").size() == 4);    // E, its ratio, its change, and the difference to one of the curves
   CHECK(energy.at("linked_along") == true);
+  // Overlaid instead: the four masses, a chart per time method and step.
+  CHECK(energy.at("overlay").at("charts") == 9);
+  CHECK(energy.at("overlay").at("names").size() == 4);
+  CHECK(energy.at("overlay").at("anew") == true);
+  CHECK(energy.at("overlay").at("back") == true);
   size_t with_curves = 0;
   for (const Json& chart : energy.at("charts")) {
     if (chart.at("views").empty()) {
