@@ -138,7 +138,7 @@
       if (scale === "difference") out.notes.push(facet.curves.some(({ base }) => base) ? "Less the curve of " + ricochet.shorten(this.baseName) + "." : "No curve of " + ricochet.shorten(this.baseName) + " here.");
       const unseen = scale === "change" ? facet.curves.map((curve) => ({ curve, zeros: valuesOf(curve, scale).filter((value) => value === 0).length })).filter(({ zeros }) => zeros > 0) : [];
       if (unseen.length) out.notes.push("Samples equal to the start exactly, which a logarithmic axis cannot show: " + unseen.map(({ curve, zeros }) => curve.name + " " + zeros + " of " + curve.values.length).join(", ") + ".");
-      if (stops.length) out.option.series.push(stopLines(stops));
+      if (stops.length) out.option.series.push(stopLines(stops, range));
       return out;
     }
     draw(out, curve, scale, range) {
@@ -160,11 +160,13 @@
     }
   }
 
-  const stopLines = (stops) => ({
+  // Stops that lie on each other in a wide frame share a label.
+  const apart = (stops, range) => stops.every((stop, k) => k === 0 || Math.abs(stop - stops[k - 1]) > 0.12 * (range.high - range.low));
+  const stopLines = (stops, range) => ({
     type: "line", name: "stops", data: [], silent: true, tooltip: { show: false },
     markLine: {
       silent: true, symbol: "none", animation: false, label: { show: true, formatter: "stop", position: "insideStartTop", fontSize: 10, color: "#777777" },
-      lineStyle: { color: "#777777", type: "solid", width: 1 }, data: stops.map((stop) => ({ yAxis: stop })),
+      lineStyle: { color: "#777777", type: "solid", width: 1 }, data: stops.map((stop, k) => ({ yAxis: stop, label: { show: k === 0 || apart(stops, range) } })),
     },
   });
 

@@ -20,7 +20,7 @@
     const front = rows.filter((row) => row.shown !== beaten).sort((a, b) => a.value - b.value), names = ricochet.distinct(front.map((row) => row.shown)).slice(0, mostNames), legend = [];
     const x = ricochet.errors.quantity(error), y = ["run time", "s"], range = (column) => new ricochet.Interval().include(...rows.map((row) => row[column]));
     const out = ricochet.view(x, y, ricochet.logAxis(x, range("value"), false), ricochet.logAxis(y, range("seconds"), true));
-    ricochet.draw(out, front, { x: "value", y: "seconds" }, { ...ricochet.line("Pareto front", "#E8D95A", 7), lineStyle: { width: 7, color: "#E8D95A", cap: "round" } });
+    ricochet.draw(out, front, { x: "value", y: "seconds" }, { ...ricochet.line("Pareto front", "#E8D95A", 9), lineStyle: { width: 9, color: "#E8D95A", cap: "round" } });
     ricochet.draw(out, rows, { x: "value", y: "seconds" }, ricochet.dot(beaten, grey, "circle", 5, 2), { shown: beaten });
     names.forEach((name, k) => {
       ricochet.draw(out, rows, { x: "value", y: "seconds" }, ricochet.dot(name, ricochet.methodColours[k % ricochet.methodColours.length], ricochet.symbol(k), 10, 4), { shown: name });
