@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "runners/report/html.hpp"
 #include "runners/report/template.hpp"
@@ -11,6 +12,8 @@
 
 namespace ricochet::report {
 namespace {
+
+constexpr size_t most_full_rows = 100;  // of the table of all cases with every column
 
 /// Measures that at least one case has, in the declared order, others after them.
 std::vector<std::string> measures_present(const CaseView& view) {
@@ -35,81 +38,75 @@ Fill header_fill(const std::string& header, const std::string& tooltip, const st
   return out;
 }
 
-Fill text_fill(const std::string& text, const std::string& classes) {
+struct CaseCell {
+  std::string text, classes, swatch = "";
+};
+
+Fill cell_fill(const CaseCell& cell) {
   Fill out;
-  out.set("text", text);
-  out.set("classes", classes);
+  out.set("text", cell.text);
+  if (!cell.classes.empty()) out.set("classes", cell.classes);
+  if (!cell.swatch.empty()) out.set("swatch", cell.swatch);
   return out;
 }
 
-/// A number that sorts as it is, shown shorter.
-Fill number_fill(double value, const std::string& text, const std::string& classes) {
-  if (!std::isfinite(value)) return text_fill("–", "number absent" + classes);
-  Fill out = text_fill(text, "number" + classes);
-  out.set("value", exact_text(value));
-  return out;
+/// A column of the table of all cases. `extra`: shown on demand, and only where there are few cases.
+struct CaseColumn {
+  std::string header, tooltip, classes;
+  bool extra = false;
+  std::function<CaseCell(const CaseRecord&)> cell;
+};
+
+/// A number, shown short; an empty cell where there is none, which the style sheet marks.
+CaseCell number_cell(std::optional<double> value, int digits) {
+  return value && std::isfinite(*value) ? CaseCell{number_text(*value, digits), ""} : CaseCell{"", ""};
 }
 
-Fill case_columns(const CaseView& view, const std::vector<std::string>& measures) {
-  Fill out{Fill::type::list};
-  out << header_fill("case", "Identity of the case: its row in cases.csv and its file in curves/", "text extra");
-  for (const std::string& column : view.results().columns)
-    out << header_fill(with_unit({column, axis_unit(column)}), "Axis of the study",
-                       view.varies(column) ? "axis" : "axis extra");
-  out << header_fill("status", "done, refused (does not apply), diverged or failed", "text");
-  out << header_fill("reason", "Why a case has no result", "text");
-  out << header_fill("operator", "How the matrices were stored and solved", "text extra");
-  out << header_fill("steps", "Number of time steps marched", "number");
-  out << header_fill("set-up (s)", "Time before the first step", "number extra");
-  out << header_fill("run (s)", "Time of marching", "number");
-  for (const std::string& name : measures) {
-    const MeasureInfo* info = measure_info(name);
-    out << header_fill(with_unit({in_words(name), info ? info->unit : ""}), info ? info->text : "",
-                       info && info->aside ? "number extra" : "number");
-  }
-  return out;
-}
-
-Fill case_cells(const CaseView& view, const CaseRecord& record, const std::vector<std::string>& measures) {
-  Fill out{Fill::type::list};
-  out << text_fill(record.id, "text extra");
-  bool first = true;
-  for (const std::string& column : view.results().columns) {
-    const std::string text = CaseView::text(record, column), extra = view.varies(column) ? "" : " extra";
-    const auto number = CaseView::number(record, column);
-    Fill cell = number ? number_fill(*number, text, extra) : text_fill(text.empty() ? "–" : text, "text" + extra);
-    if (first) cell.set("swatch", view.colour(record));
-    first = false;
-    out << cell;
-  }
-  out << text_fill(status_mark(record.status) + " " + record.status, "status " + record.status);
-  out << text_fill(record.reason, "reason");
-  out << text_fill(record.operator_name, "text extra");
-  const auto timed = [&](double value, const std::string& classes) {
-    Fill cell = number_fill(value, number_text(value, 5), classes);
-    cell.set("title", exact_text(value));
-    return cell;
+CaseColumn axis_column(const CaseView& view, const std::string& column) {
+  const auto cell = [column](const CaseRecord& record) {
+    const std::string text = CaseView::text(record, column);
+    return CaseCell{text, text.empty() || CaseView::number(record, column) ? "" : "text"};
   };
-  if (record.status == "refused") {
-    for (const char* extra : {"", " extra", ""}) out << text_fill("–", std::string("number absent") + extra);
-  } else {
-    out << number_fill(static_cast<double>(record.steps), std::to_string(record.steps), "");
-    out << timed(record.setup_seconds, " extra");
-    out << timed(record.run_seconds, "");
-  }
-  for (const std::string& name : measures) {
-    const MeasureInfo* info = measure_info(name);
-    const std::string extra = info && info->aside ? " extra" : "";
-    const auto value = ricochet::measure(record, name);
-    if (!value || !std::isfinite(*value)) {
-      out << text_fill("–", "number absent" + extra);
-      continue;
-    }
-    // Ratios are near 1, where what counts is far behind the point.
-    Fill cell = number_fill(*value, number_text(*value, info && std::string_view(info->unit) == "1" ? 9 : 5), extra);
-    cell.set("title", exact_text(*value));
-    out << cell;
-  }
+  return {with_unit({column, axis_unit(column)}), "Axis of the study", "axis", !view.varies(column), cell};
+}
+
+CaseColumn measure_cells(const std::string& name) {
+  const MeasureInfo* info = measure_info(name);
+  // Ratios are near 1, where what counts is far behind the point.
+  const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
+  return {with_unit({in_words(name), info ? info->unit : ""}), info ? info->text : "", "number", info && info->aside,
+          [name, digits](const CaseRecord& record) { return number_cell(ricochet::measure(record, name), digits); }};
+}
+
+std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures) {
+  const auto worked = [](const CaseRecord& record, double value) {
+    return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
+  };
+  std::vector<CaseColumn> out = {
+      {"case", "Identity of the case: its row in cases.csv and its file in curves/", "text", false,
+       [&view](const CaseRecord& record) {
+         return CaseCell{record.id, "text", view.colour(record)};
+       }},
+      {"status", "done, refused (does not apply), diverged or failed", "text", false, [](const CaseRecord& record) {
+         return CaseCell{status_mark(record.status) + " " + record.status, "status " + record.status};
+       }}};
+  for (const std::string& column : view.results().columns) out.push_back(axis_column(view, column));
+  const Cases all = view.all();
+  if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reason.empty(); }))
+    out.push_back({"reason", "Why a case has no result", "text", false, [](const CaseRecord& record) {
+                     return CaseCell{record.reason, "reason"};
+                   }});
+  out.push_back({"operator", "How the matrices were stored and solved", "text", true, [](const CaseRecord& record) {
+                   return CaseCell{record.operator_name, "text"};
+                 }});
+  out.push_back({"steps", "Number of time steps marched", "number", false, [](const CaseRecord& record) {
+                   return CaseCell{record.status == "refused" ? "" : std::to_string(record.steps), ""};
+                 }});
+  out.push_back({"set-up (s)", "Time before the first step", "number", true,
+                 [worked](const CaseRecord& record) { return worked(record, record.setup_seconds); }});
+  out.push_back({"run (s)", "Time of marching", "number", false,
+                 [worked](const CaseRecord& record) { return worked(record, record.run_seconds); }});
+  for (const std::string& name : measures) out.push_back(measure_cells(name));
   return out;
 }
 
@@ -137,14 +134,30 @@ std::string case_table_html(const CaseView& view) {
       one.set("count", std::to_string(count));
       statuses << one;
     }
+  std::vector<CaseColumn> columns = case_columns(view, measures);
+  // Cells that are out of sight are left out of a page of many cases, which they would fill.
+  const size_t all_columns = columns.size();
+  if (results.cases.size() > most_full_rows) std::erase_if(columns, [](const CaseColumn& one) { return one.extra; });
+  Fill headers{Fill::type::list};
+  for (const CaseColumn& one : columns)
+    headers << header_fill(one.header, one.tooltip, one.classes + (one.extra ? " extra" : ""));
   for (const CaseRecord& record : results.cases) {
-    Fill row;
+    Fill row, cells{Fill::type::list};
+    for (const CaseColumn& one : columns) {
+      CaseCell cell = one.cell(record);
+      if (one.extra) cell.classes += cell.classes.empty() ? "extra" : " extra";
+      cells << cell_fill(cell);
+    }
     row.set("status", record.status);
-    row.set("cells", case_cells(view, record, measures));
+    row.set("cells", cells);
     rows << row;
   }
   with.set("statuses", statuses);
-  with.set("columns", case_columns(view, measures));
+  with.set("columns", headers);
+  if (columns.size() < all_columns)
+    with.set("hidden", fmt::format("{} more columns", all_columns - columns.size()));
+  else
+    with.set("full", Fill::type::bool_true);
   with.set("rows", rows);
   const std::vector<std::string> constants = view.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
