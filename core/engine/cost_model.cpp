@@ -49,7 +49,8 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   if (kind == OperatorKind::modal) {
     nanoseconds += n * (slots + 1) * rate.diagonal;
     cost.setup_seconds = 20 * n * n * n * nano;
-    if (problem.load && !problem.load->absent() && !problem.load->constant_in_time()) nanoseconds += n * n / lanes;
+    const bool assembled = problem.load && problem.load->has_formula() && !problem.load->constant_in_time();
+    if (assembled) nanoseconds += n * n / lanes;
   } else {
     const double w = half_bandwidth(problem.stiffness);
     const double v = border > 0 ? w + 2 : w;

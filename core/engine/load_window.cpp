@@ -29,6 +29,23 @@ LoadWindow::LoadWindow(const Program& program)
   for (Entry& entry : entries_) entry.value.resize(rows);
   sum_.resize(rows);
   nodal_.resize(rows);
+  const DistributedLoad& load = *problem_->load;
+  for (int k = 0; k < load.terms(); ++k) model_->load_to_model(load.shape(k).data(), terms_.emplace_back(rows).data());
+}
+
+// What scales is brought into model coordinates once, and costs a multiply-add per dof.
+void LoadWindow::assemble(double t, std::vector<double>& out) {
+  const DistributedLoad& load = *problem_->load;
+  if (load.has_formula()) {
+    load.assemble_formula(t, nodal_.data());
+    model_->load_to_model(nodal_.data(), out.data());
+  } else {
+    std::fill(out.begin(), out.end(), 0.0);
+  }
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    const double scale = load.scale(static_cast<int>(k), t);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += scale * terms_[k][i];
+  }
 }
 
 const double* LoadWindow::sum(const Levels& levels, double t) {
@@ -41,8 +58,7 @@ const double* LoadWindow::sum(const Levels& levels, double t) {
       found = std::min_element(entries_.begin(), entries_.end(),
                                [](const Entry& a, const Entry& b) { return a.used < b.used; });
       found->level = key;
-      problem_->load->assemble(t + level.at * h_, nodal_.data());
-      model_->load_to_model(nodal_.data(), found->value.data());
+      assemble(t + level.at * h_, found->value);
     }
     found->used = ++clock_;
     for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += level.weight * found->value[i];

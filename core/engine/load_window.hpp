@@ -19,12 +19,15 @@ class LoadWindow {
     long long used = -1;                                      // when it was last asked for
     std::vector<double> value;
   };
+  void assemble(double t, std::vector<double>& out);
+
   const SemiDiscrete* problem_;
   const MarchModel* model_;
   double h_;
   bool constant_;
   std::vector<Entry> entries_;
   std::vector<double> sum_, nodal_;
+  std::vector<std::vector<double>> terms_;  // of the load
   long long clock_ = 0;
 };
 

@@ -69,6 +69,10 @@ void check_variables(const SceneSpec& scene) {
   only_x(scene.initial.velocity, "/scene/initial/velocity", "the initial velocity");
 }
 
+std::string load_pointer(std::size_t term, const char* key) {
+  return fmt::format("/scene/load/{}/{}", term, key);
+}
+
 bool left_fixed(const SceneSpec& scene) {
   const auto* bar = std::get_if<BarSpec>(&scene.structure);
   return bar ? bar->fixed == BarSpec::Fixed::left : std::holds_alternative<BeamSpec>(scene.structure);
@@ -76,6 +80,41 @@ bool left_fixed(const SceneSpec& scene) {
 bool right_fixed(const SceneSpec& scene) {
   const auto* bar = std::get_if<BarSpec>(&scene.structure);
   return bar && bar->fixed == BarSpec::Fixed::right;
+}
+
+/// Whether something at x can move the structure there.
+bool on_free_part(const SceneSpec& scene, double x) {
+  const double length = structure_length(scene);
+  return (x > 0 || (x == 0 && !left_fixed(scene))) && (x < length || (x == length && !right_fixed(scene)));
+}
+std::string free_part(const SceneSpec& scene) {
+  return fmt::format("0 {} x {} {:.6g} m", left_fixed(scene) ? "<" : "≤", right_fixed(scene) ? "<" : "≤",
+                     structure_length(scene));
+}
+
+/// Every term acts somewhere, and is finite there at t = 0.
+void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
+  const bool oscillator = std::holds_alternative<OscillatorSpec>(scene.structure);
+  for (std::size_t k = 0; k < scene.load.terms.size(); ++k) {
+    const LoadTerm& term = scene.load.terms[k];
+    const char* one_point = "an oscillator has one point; expected an entry {\"force\": formula in t, in N}";
+    require(!oscillator || term.force, load_pointer(k, "shape"), one_point);
+    require(!oscillator || !term.at, load_pointer(k, "at"), one_point);
+    require(oscillator || !term.force || term.at, load_pointer(k, "at"),
+            "missing; expected where the force acts, x in m");
+    if (term.at) {
+      const double x = *term.at;
+      const bool held = (x == 0 && left_fixed(scene)) || (x == structure_length(scene) && right_fixed(scene));
+      require(on_free_part(scene, x), load_pointer(k, "at"),
+              fmt::format("a force at x = {:.6g} m {}; expected {}", x,
+                          held ? "would act where the structure is held" : "is beyond the " + space.structure,
+                          free_part(scene)));
+    }
+    term.history(0, 0);
+    if (term.force) continue;
+    for (const auto& element : space.elements)
+      for (const auto& point : gauss_points()) term.shape(element.left + point.xi * element.length);
+  }
 }
 
 void check_positions(const SceneSpec& scene) {
@@ -88,10 +127,9 @@ void check_positions(const SceneSpec& scene) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const std::string pointer = fmt::format("/scene/stops/at/{}", i);
     const double x = positions[i];
-    const bool free = (x > 0 || (x == 0 && !left_fixed(scene))) && (x < length || (x == length && !right_fixed(scene)));
-    require(free, pointer,
-            fmt::format("a stop at x = {:.6g} m is not on the free part of the structure; expected 0 {} x {} {:.6g} m",
-                        x, left_fixed(scene) ? "<" : "≤", right_fixed(scene) ? "<" : "≤", length));
+    require(on_free_part(scene, x), pointer,
+            fmt::format("a stop at x = {:.6g} m is not on the free part of the structure; expected {}", x,
+                        free_part(scene)));
     for (std::size_t j = 0; j < i; ++j)
       require(std::abs(positions[i] - positions[j]) > 1e-9 * length, pointer,
               fmt::format("two stops at x = {:.6g} m; expected different positions", positions[i]));
@@ -219,8 +257,9 @@ void check_scene(const SceneSpec& shared, int elements) {
     scene.initial.velocity(node);
   }
   for (const auto& element : space.elements)
-    for (const auto& point : gauss_points()) scene.load(element.left + point.xi * element.length, 0);
-  scene.load(tip_position(scene), 0);
+    for (const auto& point : gauss_points()) scene.load.formula(element.left + point.xi * element.length, 0);
+  scene.load.formula(tip_position(scene), 0);
+  check_load(scene, space);
 }
 
 }  // namespace ricochet

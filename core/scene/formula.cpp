@@ -137,6 +137,10 @@ double Formula::operator()(double x, double t) const {
                                state_->uses_t ? fmt::format(", t = {:.6g} s", t) : ""));
 }
 
+double Formula::value(double x, double t) const {
+  return state_->value(x, t);
+}
+
 void Formula::evaluate(std::span<const double> x, double t, std::span<double> values) const {
   assert(x.size() == values.size());
   if (!state_->uses_x) {

@@ -21,6 +21,8 @@ class Formula {
   ~Formula();
 
   double operator()(double x, double t = 0) const;
+  /// The same, not finite where the formula is not; does not throw.
+  double value(double x, double t) const;
   /// values[i] = f(x[i], t); one call, no allocation. A non-finite value is left in `values` for the caller to judge.
   void evaluate(std::span<const double> x, double t, std::span<double> values) const;
   /// df/dx by a seven-point stencil that stays inside [low, high]: exact to round-off for polynomials of degree ≤ 6.

@@ -1,11 +1,54 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 namespace ricochet {
+namespace {
 
-DistributedLoad::DistributedLoad(const Formula& load, const FiniteElementSpace& space)
-    : load_(load), size_(space.dofs) {
-  if (absent()) return;
+bool is_zero(const LoadTerm& term) {
+  return term.history.is_zero() || (!term.force && term.shape.is_zero());
+}
+
+}  // namespace
+
+bool LoadSpec::is_zero() const {
+  return formula.is_zero() &&
+         std::all_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return ricochet::is_zero(term); });
+}
+
+bool LoadSpec::uses_t() const {
+  return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
+           return !ricochet::is_zero(term) && term.history.uses_t();
+         });
+}
+
+bool LoadSpec::has_point_forces() const {
+  return std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.at.has_value(); });
+}
+
+double LoadSpec::spread(double x, double t) const {
+  double sum = formula(x, t);
+  for (const LoadTerm& term : terms) sum += (term.force ? 1.0 : term.shape(x)) * term.history(0, t);
+  return sum;
+}
+
+std::string LoadSpec::text() const {
+  std::string text = formula.is_zero() && !terms.empty() ? "" : formula.text();
+  for (const LoadTerm& term : terms) {
+    if (!text.empty()) text += " + ";
+    if (term.force)
+      text += term.at ? fmt::format("({}) at x = {:g} m", term.history.text(), *term.at) : term.history.text();
+    else
+      text += fmt::format("({})*({})", term.shape.text(), term.history.text());
+  }
+  return text;
+}
+
+DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space)
+    : formula_(load.formula), size_(space.dofs) {
+  if (load.is_zero()) return;
   const auto& gauss = gauss_points();
   for (const auto& element : space.elements) {
     dofs_.push_back(element.dof);
@@ -18,12 +61,21 @@ DistributedLoad::DistributedLoad(const Formula& load, const FiniteElementSpace& 
   }
   if (space.elements.empty()) points_.push_back(0);
   values_.resize(points_.size());
+  for (const LoadTerm& term : load.terms) {
+    if (is_zero(term)) continue;
+    Term& one = terms_.emplace_back();
+    one.shape = Eigen::VectorXd::Zero(size_);
+    one.history = term.history;
+    terms_vary_ = terms_vary_ || term.history.uses_t();
+    if (term.force)
+      for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;
+    else
+      integrate(term.shape, 0, one.shape.data());
+  }
 }
 
-void DistributedLoad::assemble(double t, double* out) const {
-  std::fill(out, out + size_, 0.0);
-  if (absent()) return;
-  load_.evaluate(points_, t, values_);
+void DistributedLoad::integrate(const Formula& load, double t, double* out) const {
+  load.evaluate(points_, t, values_);
   if (dofs_.empty()) out[0] = values_[0];
   for (std::size_t e = 0; e < dofs_.size(); ++e) {
     for (std::size_t a = 0; a < 4; ++a) {
@@ -32,6 +84,16 @@ void DistributedLoad::assemble(double t, double* out) const {
       for (std::size_t g = 0; g < 4; ++g) out[dof] += weights_[e][4 * g + a] * values_[4 * e + g];
     }
   }
+}
+
+void DistributedLoad::assemble_formula(double t, double* out) const {
+  std::fill(out, out + size_, 0.0);
+  if (has_formula()) integrate(formula_, t, out);
+}
+
+void DistributedLoad::assemble(double t, double* out) const {
+  assemble_formula(t, out);
+  for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, size_) += scale(k, t) * shape(k);
 }
 
 }  // namespace ricochet

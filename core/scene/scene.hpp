@@ -2,6 +2,7 @@
 #include <optional>
 #include <ricochet/scene/formula.hpp>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -86,11 +87,35 @@ struct InitialSpec {
   Projection projection = Projection::none;
 };
 
+/// One part of a load whose form in space stays as it is: a shape that a history scales, or a force at a point.
+struct LoadTerm {
+  bool force = false;        ///< at a point
+  std::optional<double> at;  ///< where that is, m; none of an oscillator, which has one point
+  Formula shape;             ///< f(x), N/m, of what is spread
+  Formula history;           ///< g(t), 1; of a force F(t), N
+};
+
+/// What pushes the structure, beside its support: a formula, and terms that are added to it.
+struct LoadSpec {
+  Formula formula;  ///< f(x,t), N/m; for an oscillator f(t), N
+  std::vector<LoadTerm> terms;
+
+  LoadSpec() = default;
+  LoadSpec(Formula whole) : formula(std::move(whole)) {}  // NOLINT: a formula is a load
+  bool is_zero() const;
+  bool uses_t() const;
+  bool has_point_forces() const;
+  /// What is spread, f + Σ f_k(x) g_k(t), N/m. Of an oscillator every term is: then N, forces among them.
+  double spread(double x, double t) const;
+  /// As a study would write it, for sentences.
+  std::string text() const;
+};
+
 struct SceneSpec {
   StructureSpec structure;
   StopsSpec stops;
   SupportSpec support;
-  Formula load;  ///< f(x,t), N/m; for an oscillator f(t), N
+  LoadSpec load;
   InitialSpec initial;
 };
 

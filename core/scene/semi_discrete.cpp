@@ -32,15 +32,18 @@ void add_stiffness(const OscillatorSpec& oscillator, SemiDiscrete& problem) {
 }
 
 // An oscillator's harmonic force is one more term of its load.
-Formula whole_load(const SceneSpec& scene) {
+LoadSpec whole_load(const SceneSpec& scene) {
+  LoadSpec load = scene.load;
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
-  if (!oscillator || oscillator->force.amplitude == 0) return scene.load;
+  if (!oscillator || oscillator->force.amplitude == 0) return load;
   const auto& force = oscillator->force;
-  if (force.pulsation == 0 && !scene.load.uses_t())
-    return Formula(scene.load(0) + force.amplitude * std::cos(force.phase));
-  return Formula(
-      fmt::format("({}) + ({})*cos(({})*t + ({}))", scene.load.text(), force.amplitude, force.pulsation, force.phase),
-      "/scene/structure/force", "xt");
+  if (force.pulsation == 0 && !load.formula.uses_t())
+    load.formula = Formula(load.formula(0) + force.amplitude * std::cos(force.phase));
+  else
+    load.formula = Formula(fmt::format("({}) + ({})*cos(({})*t + ({}))", load.formula.text(), force.amplitude,
+                                       force.pulsation, force.phase),
+                           "/scene/structure/force", "xt");
+  return load;
 }
 
 // The structure itself, before any law.

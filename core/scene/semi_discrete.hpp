@@ -13,18 +13,37 @@ namespace ricochet {
 
 class ContactLaw;
 
-/// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element;
-/// without elements, the force f(0,t) (N) itself.
+/// Assembles the load vector F_i(t) = ∫f(x,t) φ_i dx (N, N m) by 4-point Gauss quadrature per element; without
+/// elements, the force f(0,t) (N) itself. Terms are assembled once, f_k into F_k by the same quadrature and a force at
+/// x into φ_i(x), and then scaled: F(t) = ∫f φ dx + Σ g_k(t) F_k.
 class DistributedLoad {
  public:
-  DistributedLoad(const Formula& load, const FiniteElementSpace& space);
-  bool absent() const { return load_.is_zero(); }
-  bool constant_in_time() const { return !load_.uses_t(); }
+  DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space);
+  bool absent() const { return formula_.is_zero() && terms_.empty(); }
+  bool constant_in_time() const { return !formula_.uses_t() && !terms_vary_; }
   /// F(t) into `out` (n); no allocation. Values that are not finite are passed on, and stop the lane as diverged.
   void assemble(double t, double* out) const;
 
+  /// Whether there is more than terms.
+  bool has_formula() const { return !formula_.is_zero(); }
+  /// F(t) without the terms.
+  void assemble_formula(double t, double* out) const;
+  int terms() const { return static_cast<int>(terms_.size()); }
+  /// F_k (n).
+  const Eigen::VectorXd& shape(int k) const { return terms_[static_cast<std::size_t>(k)].shape; }
+  /// g_k(t); not finite where the formula is not.
+  double scale(int k, double t) const { return terms_[static_cast<std::size_t>(k)].history.value(0, t); }
+
  private:
-  Formula load_;
+  struct Term {
+    Eigen::VectorXd shape;
+    Formula history;
+  };
+  void integrate(const Formula& load, double t, double* out) const;
+
+  Formula formula_;
+  std::vector<Term> terms_;
+  bool terms_vary_ = false;
   std::vector<double> points_;  ///< 4 per element, or one
   mutable std::vector<double> values_;
   std::vector<std::array<int, 4>> dofs_;

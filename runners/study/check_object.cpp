@@ -55,16 +55,24 @@ Json check_scalar(const Field& field, const Json& value, const std::string& poin
   return to_json(given);
 }
 
-Json check_formula(const Field& field, const Json& value, const std::string& pointer) {
+Json check_formula(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
   if (value.is_null() && field.nullable) return value;
   if (value.is_number()) return value.get<double>();
   if (value.is_string()) {
     Formula(value.get<std::string>(), pointer, field.variables);
     return value;
   }
-  const std::string variables = field.variables == "x" ? "x" : "x and t";
+  const bool listed = !field.nested.empty();
+  if (listed && value.is_array() && !value.empty()) {
+    Json result = Json::array();
+    for (std::size_t i = 0; i < value.size(); ++i)
+      result.push_back(check_object(field.nested.front(), value[i], pointer_to(pointer, i), axes));
+    return result;
+  }
+  const std::string variables = field.variables == "xt" ? "x and t" : field.variables;
   throw InputError(pointer, "expected a number or a formula in " + variables + (field.nullable ? " or null" : "") +
-                                unit_text(field.spec) + ", found " + quote(value));
+                                unit_text(field.spec) + (listed ? ", or a list of objects" : "") + ", found " +
+                                quote(value));
 }
 
 Json check_places(const Json& value, const std::string& pointer) {
@@ -154,9 +162,11 @@ Json check_objects(const Field& field, const Json& value, const std::string& poi
   return result;
 }
 
-// A list of positions is one value; a list that holds words or lists is an axis.
+// A list of positions or of objects is one value; a list that holds words or lists is an axis.
 bool is_axis(const Field& field, const Json& value) {
   if (!field.axis || !value.is_array()) return false;
+  if (field.form == Field::Form::formula && !field.nested.empty())
+    return value.empty() || std::any_of(value.begin(), value.end(), [](const Json& item) { return !item.is_object(); });
   if (field.form != Field::Form::places) return true;
   return std::any_of(value.begin(), value.end(), [](const Json& item) { return item.is_string() || item.is_array(); });
 }
@@ -190,7 +200,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       if (!value.is_string()) throw InputError(pointer, "expected a text, found " + quote(value));
       return value;
     case Field::Form::formula:
-      return check_formula(field, value, pointer);
+      return check_formula(field, value, pointer, axes);
     case Field::Form::places:
       return check_places(value, pointer);
     case Field::Form::object:

@@ -30,7 +30,7 @@ struct Field {
   enum class Form {
     scalar,    ///< a number, whole number, boolean or word, as `spec` declares
     text,      ///< any string
-    formula,   ///< a number or a formula in `variables`
+    formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
     methods,   ///< methods of `role`: a name, an object, or a list of either
@@ -48,7 +48,7 @@ struct Field {
   std::string variables;           ///< for formulas: a subset of "xt"
   Role role = Role::mass;          ///< for methods
   bool marched = false;            ///< for references: marched_reference is one as well
-  std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects and starts
+  std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects, starts and such formulas
   std::size_t count = 0;           ///< for Form::objects
 
   const std::string& key() const { return spec.key; }

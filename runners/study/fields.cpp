@@ -82,7 +82,7 @@ Field optional(Field field) {
 
 Field budget() {
   return optional(real("budget", "s", positive, std::nullopt,
-                       "Processor time after which a case is stopped and counts as failed; null: no limit."));
+                       "Processor time after which a case counts as failed; null: no limit."));
 }
 
 Field observe(std::vector<std::string> measures) {

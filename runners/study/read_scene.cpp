@@ -8,6 +8,21 @@ Formula read_formula(const Json& value, const std::string& pointer, const std::s
   return Formula(value.get<std::string>(), pointer, variables);
 }
 
+LoadSpec read_load(const Json& value, const std::string& pointer) {
+  if (!value.is_array()) return read_formula(value, pointer, "xt");
+  LoadSpec load;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const std::string here = pointer + "/" + std::to_string(i);
+    LoadTerm& term = load.terms.emplace_back();
+    term.force = value[i].contains("force");
+    if (term.force && !value[i].at("at").is_null()) term.at = value[i].at("at").get<double>();
+    if (!term.force) term.shape = read_formula(value[i].at("shape"), here + "/shape", "x");
+    const char* history = term.force ? "force" : "time";
+    term.history = read_formula(value[i].at(history), here + "/" + history, "t");
+  }
+  return load;
+}
+
 Section read_section(const Json& json) {
   Section section;
   const auto type = json.at("type").get<std::string>();
@@ -92,7 +107,7 @@ SceneSpec read_scene(const Json& scene) {
   const Json& support = scene.at("support");
   spec.support = {support.at("amplitude").get<double>(), support.at("pulsation").get<double>(),
                   support.at("phase").get<double>()};
-  spec.load = read_formula(scene.at("load"), "/scene/load", "xt");
+  spec.load = read_load(scene.at("load"), "/scene/load");
   const Json& initial = scene.at("initial");
   spec.initial.displacement = read_formula(initial.at("displacement"), "/scene/initial/displacement", "x");
   spec.initial.velocity = read_formula(initial.at("velocity"), "/scene/initial/velocity", "x");

@@ -91,13 +91,23 @@ ObjectForm scene() {
            "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};
   initial.fields.back().axis = true;
 
+  ObjectForm point;
+  point.fields = {optional(real("at", "m", any, std::nullopt, "Where the force acts; an oscillator has no such key.")),
+                  single(formula("force", "N", "t", false, std::nullopt, "Force F(t)."))};
+  ObjectForm spread;
+  spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
+                   single(formula("time", "1", "t", false, std::nullopt, "g(t)."))};
+  Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
+  load.nested.emplace_back();
+  load.nested.back().ways = {point, spread};
+
   ObjectForm keys;
   keys.fields = {
       object("structure", std::nullopt, "The structure.", structure()),
       object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: no stops.", stops),
       object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
              "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
-      formula("load", "N/m", "xt", false, Json("0"), "Distributed load f(x,t)."),
+      std::move(load),
       object("initial", Json::object(), "Absolute initial state; absent: at rest in the laboratory frame.", initial)};
   return keys;
 }

@@ -37,8 +37,8 @@ class SchemaWriter {
   Json definitions() { return std::move(definitions_); }
 
  private:
-  // Short, as it stands in every object; that $schema is the only key that begins so, the reader says.
-  static Json remarks() { return {{"^//|^[$]", true}}; }
+  // Short, as it stands in every object; which keys may begin so, the reader says.
+  static Json remarks() { return {{"^[/$]", true}}; }
   static Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
   static Json either(const char* type, Json then, Json otherwise) {
     return {{"if", {{"type", type}}}, {"then", std::move(then)}, {"else", std::move(otherwise)}};
@@ -76,7 +76,7 @@ class SchemaWriter {
     add_fields(form, properties, required);
     const std::set<std::string> own = keys_of(form);
     for (const std::string& key : of_all)
-      if (own.count(key) == 0) properties[key] = {{"not", Json::object()}};
+      if (own.count(key) == 0) properties[key] = false;
     Json schema = Json::object();
     if (!properties.empty()) schema["properties"] = std::move(properties);
     if (!required.empty()) schema["required"] = std::move(required);
@@ -105,10 +105,11 @@ class SchemaWriter {
   Json value(const Field& field) {
     Json schema = single(field);
     if (field.axis) {
-      // A list of positions is one value of "at", and also looks like a list of values.
+      // A list of positions is one value of "at", and also looks like a list of values,
       const Json list = {{"type", "array"}, {"items", schema}, {"minItems", 1}, {"uniqueItems", true}};
-      schema = field.form == Field::Form::places ? Json{{"anyOf", Json::array({schema, list})}}
-                                                 : shared("axis", value_or_list(schema, list));
+      // and so does a list of objects of "load".
+      const bool listed = field.form == Field::Form::places || !field.nested.empty();
+      schema = listed ? Json{{"anyOf", Json::array({schema, list})}} : shared("a", value_or_list(schema, list));
     }
     std::string text = field.spec.text;
     if (!field.spec.unit.empty() && field.spec.unit != "1") text += " Unit: " + field.spec.unit + ".";
@@ -126,8 +127,7 @@ class SchemaWriter {
       case Field::Form::text:
         return {{"type", "string"}};
       case Field::Form::formula:
-        return {
-            {"type", field.nullable ? Json::array({"number", "string", "null"}) : Json::array({"number", "string"})}};
+        return formula(field);
       case Field::Form::places:
         return {{"anyOf", Json::array({{{"enum", {"nodes", "tip"}}},
                                        {{"type", "array"}, {"items", position_schema}, {"minItems", 1}}})}};
@@ -150,6 +150,14 @@ class SchemaWriter {
         break;
     }
     return excludes();
+  }
+
+  Json formula(const Field& field) {
+    Json types = {"number", "string"};
+    if (field.nullable) types.push_back("null");
+    const Json one = {{"type", types}};
+    if (field.nested.empty()) return one;
+    return either("array", {{"items", object(field.nested.front())}, {"minItems", 1}}, one);
   }
 
   /// Bounds speak of numbers alone and `items` of lists alone: where a type is named, one schema says both.
@@ -285,17 +293,18 @@ void each_schema(Json& schema, const std::string& key, const SeeSchema& see) {
 
 /// Schemas that stand in several places stand in $defs once: an editor reads a schema at every key.
 void share_repeated(Json& schema) {
-  constexpr std::size_t shortest = 60;
   std::map<std::string, int> counts;
   each_schema(schema, "", [&](Json& one, const std::string&) { ++counts[one.dump()]; });
   std::map<std::string, std::string> names;
   Json definitions = Json::object();
   each_schema(schema, "", [&](Json& one, const std::string& key) {
     const std::string text = one.dump();
-    if (text.size() < shortest || counts[text] < 2) return;
     auto known = names.find(text);
     if (known == names.end()) {
-      known = names.emplace(text, fmt::format("{}-{}", key, names.size() + 1)).first;
+      const std::string name = fmt::format("{}-{}", key, names.size() + 1);
+      const std::size_t count = static_cast<std::size_t>(counts[text]), reference = name.size() + 18;
+      if (count * text.size() <= count * reference + text.size() + name.size() + 4) return;
+      known = names.emplace(text, name).first;
       definitions[known->second] = one;
     }
     one = {{"$ref", "#/$defs/" + known->second}};

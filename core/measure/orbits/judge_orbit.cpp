@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
@@ -10,14 +11,14 @@ namespace {
 using Points = std::vector<std::array<double, 2>>;
 
 // The last round of the strobed orbit and that of its image.
-bool is_own_image(const Orbit& orbit, int period, const SectionPlan& plan) {
+bool is_own_image(const Orbit& orbit, int period, const SectionPlan& plan, double tolerance) {
   Points here, opposite;
   const auto last = static_cast<std::ptrdiff_t>(std::min(orbit.strobed.size(), static_cast<std::size_t>(period)));
   for (auto point = orbit.strobed.end() - last; point != orbit.strobed.end(); ++point) {
     here.push_back({point->displacement, point->velocity});
     opposite.push_back({point->opposite_displacement, point->opposite_velocity});
   }
-  return same_cloud(here, opposite, {plan.scale, plan.scale * plan.pulsation}, 10 * recurrence_tolerance);
+  return same_cloud(here, opposite, {plan.scale, plan.scale * plan.pulsation}, tolerance);
 }
 
 }  // namespace
@@ -32,10 +33,31 @@ double impacts_per_period(const Orbit& orbit) {
   return sum / static_cast<double>(orbit.impact_counts.size());
 }
 
+OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan) {
+  OrbitPeriod out;
+  const std::vector<double> scale = plan.reading_scale();
+  double largest = 0;
+  for (std::size_t i = 0; i < orbit.readings.values.size(); ++i)
+    if (const double unit = scale[i % scale.size()]; unit > 0)
+      largest = std::max(largest, std::abs(orbit.readings.values[i]) / unit);
+  const double h = 2 * std::numbers::pi / (plan.pulsation * plan.steps_per_period);
+  out.placed = plan.scale > 0 ? h * orbit.rebounds / plan.scale : 0;
+  const double open = std::min(most_amplified * out.placed, most_left_open * largest);
+  out.tolerance = std::max(recurrence_tolerance, open / 2);
+  out.recurrence = find_recurrence(orbit.readings, scale, out.tolerance);
+  if (out.tolerance == recurrence_tolerance) return out;
+  const int below = out.recurrence.period > 0 ? out.recurrence.period : longest_period + 1;
+  for (int lag = 1; lag < below && out.doubtful == 0; ++lag)
+    if (const double apart = lag_distance(orbit.readings, scale, lag); apart < 2 * open)
+      out.doubtful = lag, out.doubtful_distance = apart;
+  return out;
+}
+
 JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::optional<Interval>& exponent) {
   JudgedOrbit out;
   if (orbit.stage != Orbit::Stage::complete) return out;
-  out.recurrence = find_recurrence(orbit.readings, plan.reading_scale(), recurrence_tolerance);
+  const OrbitPeriod period = orbit_period(orbit, plan);
+  out.recurrence = period.recurrence;
   std::vector<double> displacements;
   for (const SectionPoint& point : orbit.strobed) displacements.push_back(point.displacement);
   out.zero_one = zero_one_test(displacements);
@@ -46,18 +68,24 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   input.exponent = exponent;
   input.impacts_per_period = impacts_per_period(orbit);
   input.settled = orbit.settled;
-  input.tolerance = recurrence_tolerance;
+  input.tolerance = period.tolerance;
+  input.placed = period.placed;
+  input.doubtful = period.doubtful;
+  input.doubtful_distance = period.doubtful_distance;
   input.forcing_period = 2 * std::numbers::pi / plan.pulsation;
   out.verdict = classify(input);
-  if (out.recurrence.period > 0) out.symmetric = is_own_image(orbit, out.recurrence.period, plan);
+  if (out.recurrence.period > 0)
+    out.symmetric =
+        is_own_image(orbit, out.recurrence.period, plan, std::max(10 * recurrence_tolerance, period.tolerance));
   return out;
 }
 
 std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& plan) {
   if (orbit.stage != Orbit::Stage::complete) return std::nullopt;
   if (!touches(orbit)) return MotionClass{Regime::no_contact};
-  const Recurrence found = find_recurrence(orbit.readings, plan.reading_scale(), recurrence_tolerance);
-  return found.period > 0 ? MotionClass{Regime::periodic, found.period} : MotionClass{Regime::undecided};
+  const OrbitPeriod found = orbit_period(orbit, plan);
+  const int period = found.doubtful > 0 ? 0 : found.recurrence.period;
+  return period > 0 ? MotionClass{Regime::periodic, period} : MotionClass{Regime::undecided};
 }
 
 }  // namespace ricochet

@@ -8,6 +8,11 @@ namespace ricochet {
 /// Relative distance at which two readings of an orbit count as the same (see SectionPlan::scale for the unit). An
 /// orbit that is still approaching repeats when the limit it approaches does.
 constexpr double recurrence_tolerance = 1e-4;
+/// What one forcing period puts into an orbit may come back from it this many times as large: 2/(1 − |μ|) at a
+/// multiplier μ of 0.96. Nearer to ±1 what a step makes of an orbit is not told from a change of its class.
+constexpr double most_amplified = 50;
+/// Of the largest reading: what differs by more is not said to repeat.
+constexpr double most_left_open = 0.05;
 /// Impacts on one side within one forcing period from which a motion is said to chatter.
 constexpr int chatter_impacts = 10;
 
@@ -15,6 +20,21 @@ constexpr int chatter_impacts = 10;
 bool touches(const Orbit& orbit);
 /// Mean over the kept periods, both sides.
 double impacts_per_period(const Orbit& orbit);
+
+/// What the readings of an orbit say about its period, and what the step leaves open of that. Impacts that rebound are
+/// placed to within a step: an orbit of period p then repeats within
+///     D = min(50 u, 0.05 largest reading),    u = h Σ|v₊ − v₋| / scale, over one period,                          (2)
+/// and wanders, or locks to some multiple of p, below it.
+struct OrbitPeriod {
+  Recurrence recurrence;                    ///< within `tolerance`
+  double tolerance = recurrence_tolerance;  ///< that, or half of (2) where it is larger
+  double placed = 0;                        ///< u
+  /// The smallest lag at which the readings differ by less than twice (2), short of the period or without one: they may
+  /// repeat at it, and the step does not tell. 0: none.
+  int doubtful = 0;
+  double doubtful_distance = 0;
+};
+OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan);
 
 /// What the kept periods of an orbit say.
 struct JudgedOrbit {

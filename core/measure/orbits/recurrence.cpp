@@ -221,6 +221,15 @@ Recurrence find_recurrence(const SectionSeries& series, const std::vector<double
   return closest;
 }
 
+double lag_distance(const SectionSeries& series, const std::vector<double>& scale, int lag) {
+  check(scale, series.width);
+  if (lag >= series.periods()) return HUGE_VAL;
+  double largest = 0;
+  for (int k = lag; k < series.periods(); ++k)
+    largest = std::max(largest, distance(series.row(k), series.row(k - lag), scale));
+  return largest;
+}
+
 Settling::Settling(std::vector<double> scale_per_column, double relative_tolerance, int longest_lag)
     : scale(std::move(scale_per_column)),
       tolerance(relative_tolerance),

@@ -35,6 +35,9 @@ struct Recurrence {
 Recurrence find_recurrence(const SectionSeries& series, const std::vector<double>& scale, double tolerance,
                            int longest = longest_period);
 
+/// The largest d_k(lag) of (1) over all rows of the series; infinite where there are none so far apart.
+double lag_distance(const SectionSeries& series, const std::vector<double>& scale, int lag);
+
 /// The same question asked once per period of a march that waits for its transient to end: plain data, O(longest ·
 /// width) per period, no allocation after construction.
 struct Settling {

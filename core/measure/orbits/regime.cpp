@@ -35,7 +35,9 @@ std::string repeats_text(const RegimeInput& input) {
   if (r.distance > input.tolerance)
     return fmt::format("settles {} (distances, {:.2g} at most, shrink by {:.4g} per period towards less than {:.1g})",
                        lag, r.distance, r.contraction, input.tolerance);
-  return fmt::format("repeats {} within {:.2g} over {} periods", lag, r.distance, r.window);
+  std::string text = fmt::format("repeats {} within {:.2g} over {} periods", lag, r.distance, r.window);
+  if (input.placed > 0) text += fmt::format(" (the step places its impacts to {:.2g} per period)", input.placed);
+  return text;
 }
 
 // Whether the exponent's interval lies above zero by what the window would show.
@@ -82,6 +84,12 @@ RegimeVerdict classify(const RegimeInput& input) {
             r.period,
             "no stop was touched" + (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut};
   }
+  if (input.doubtful > 0)
+    return {{Regime::undecided},
+            0,
+            fmt::format("not resolved by the step: readings {} period{} apart differ by {:.2g} at most, and the step "
+                        "places impacts to {:.2g} per period; take more steps per period",
+                        input.doubtful, input.doubtful == 1 ? "" : "s", input.doubtful_distance, input.placed)};
   if (r.period > 0) {
     std::string text = repeats_text(input) + fmt::format(", {:.4g} impacts per period", input.impacts_per_period);
     if (input.exponent) text += ", " + exponent_text(*input.exponent);

@@ -17,6 +17,9 @@ struct RegimeInput {
   bool settled = true;        ///< false: the transient was cut at its cap
   double tolerance = 0;       ///< of the recurrence, relative
   double forcing_period = 0;  ///< T, s; 0: not known
+  double placed = 0;          ///< what a step leaves open of the section per period, relative; 0: nothing is known
+  int doubtful = 0;           ///< a lag at which the section may repeat as far as the step tells; 0: none
+  double doubtful_distance = 0;
 };
 
 struct RegimeVerdict {
@@ -26,12 +29,13 @@ struct RegimeVerdict {
 };
 
 /// 1. No contact: no stop was touched.
-/// 2. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that, unless T is known and
+/// 2. Undecided: the step does not tell whether the section repeats at a shorter lag than the one found, or at all.
+/// 3. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that, unless T is known and
 ///    the growth it means over the window, e^{low T window}, is less than 2: undecided.
-/// 3. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
-/// 4. Quasi-periodic: the exponent's interval holds zero and K < 0.2; without an exponent, K < 0.2 and the section does
+/// 4. Chaotic: the exponent's interval lies above zero; without an exponent, K > 0.8.
+/// 5. Quasi-periodic: the exponent's interval holds zero and K < 0.2; without an exponent, K < 0.2 and the section does
 ///    not approach an orbit (distances that halved over the window do).
-/// 5. Undecided otherwise; the sentence says what is missing or what contradicts.
+/// 6. Undecided otherwise; the sentence says what is missing or what contradicts.
 /// `failed` is for those who march: nothing is classified as failed here.
 RegimeVerdict classify(const RegimeInput& input);
 

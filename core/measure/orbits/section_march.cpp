@@ -8,7 +8,8 @@
 namespace ricochet {
 namespace {
 
-constexpr int impact_periods = 64;  // whose impacts are kept
+constexpr int impact_periods = 64;     // whose impacts are kept
+constexpr double least_rebound = 0.1;  // of the speed of an impact
 
 double central(const std::vector<double>& before, const std::vector<double>& after, std::size_t lane, double h) {
   return (after[lane] - before[lane]) / (2 * h);
@@ -35,6 +36,7 @@ class SectionMarch::Watch final : public StepObserver {
       keeping_ |= 1u << lane;
       if (orbits_[lane]->closed[0] || orbits_[lane]->closed[1]) closed_ |= 1u << lane;
       counts_[lane] = {0, 0};
+      orbits_[lane]->rebounds_so_far = 0;
       tips_[lane] = {};
     }
     return keeping_ != 0;
@@ -93,9 +95,24 @@ class SectionMarch::Watch final : public StepObserver {
       if (view.program->closes_instant) orbit.closed[side] = asked[side];
     }
     if (!view.program->closes_instant) return;
+    for (std::size_t side = 0; side < 2; ++side) follow(marcher, view, lane, asked[side], orbit.brief[side], orbit);
     orbit.contact_steps += any;
     closed_ &= ~(1u << lane);
     closed_ |= static_cast<std::uint32_t>(any) << lane;
+  }
+
+  // Until it is over or has lasted. What rests at its stop afterwards is where it is whenever it came.
+  void follow(const Marcher& marcher, const StageView& view, int lane, bool closed, BriefContact& contact,
+              Orbit& orbit) const {
+    if (contact.point < 0) return;
+    if (closed && ++contact.steps <= briefest_contact) return;
+    if (!closed) {
+      const double after = velocity(marcher, view, lane, model_.contact(), static_cast<int>(contact.point)) +
+                           marcher.support_rate(lane, view.from);
+      if (after * contact.before < 0 && std::abs(after) >= least_rebound * std::abs(contact.before))
+        orbit.rebounds_so_far += std::abs(after - contact.before);
+    }
+    contact = {};
   }
 
   void begin(const Marcher& marcher, const StageView& view, int lane, int side, int point, Orbit& orbit) {
@@ -103,8 +120,13 @@ class SectionMarch::Watch final : public StepObserver {
     const double speed = closing_speed(marcher, view, lane, side, point);
     const double turns = (static_cast<double>(marcher.step() % plan_.steps_per_period) + view.program->facts.from) /
                          plan_.steps_per_period;
-    orbit.impacts.push_back({2 * std::numbers::pi * turns, side, std::abs(speed), point});
+    const double periods = orbit.transient_periods + orbit.kept_periods;
+    const double steps = static_cast<double>(marcher.step()) + view.program->facts.from;
+    orbit.impacts.push_back(
+        {2 * std::numbers::pi * turns, side, std::abs(speed), point, h_ * (steps + periods * plan_.steps_per_period)});
     ++counts_[static_cast<std::size_t>(lane)][static_cast<std::size_t>(side)];
+    orbit.brief[side] = {point, 0,
+                         velocity(marcher, view, lane, model_.contact(), point) + marcher.support_rate(lane, t)};
     if (plan_.section != SectionKind::impact) return;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     orbit.points.push_back({displacement(marcher, view, lane) + marcher.support(lane, t),
@@ -198,6 +220,8 @@ SectionMarch::~SectionMarch() = default;
 void SectionMarch::load(int place, Orbit orbit) {
   if (orbit.settling.scale.empty()) orbit.settling = Settling(plan_.reading_scale(), plan_.tolerance);
   marcher_.set_lane(place, orbit.lane, orbit.now);
+  // The period that started it may be all that was asked.
+  if (orbit.stage == Orbit::Stage::transient && orbit.transient_periods > 0) end_transient(place, orbit);
   orbits_[static_cast<std::size_t>(place)] = std::move(orbit);
 }
 
@@ -263,6 +287,7 @@ void SectionMarch::close_period(int place, Orbit& orbit, const SectionPoint& poi
     const auto& counts = watch_->counts(static_cast<std::size_t>(place));
     orbit.impact_counts.push_back(counts[0] + counts[1]);
     orbit.most_on_a_side = std::max({orbit.most_on_a_side, counts[0], counts[1]});
+    orbit.rebounds = std::max(orbit.rebounds, orbit.rebounds_so_far);
     const std::size_t old = orbit.impact_counts.size();
     if (old > impact_periods && orbit.impact_counts[old - 1 - impact_periods] > 0)
       orbit.impacts.erase(orbit.impacts.begin(), orbit.impacts.begin() + orbit.impact_counts[old - 1 - impact_periods]);
@@ -271,6 +296,10 @@ void SectionMarch::close_period(int place, Orbit& orbit, const SectionPoint& poi
   }
   ++orbit.transient_periods;
   orbit.settled = orbit.settling.add(row.data());
+  end_transient(place, orbit);
+}
+
+void SectionMarch::end_transient(int place, Orbit& orbit) const {
   if (orbit.transient_periods < plan_.transient) return;
   if (!orbit.settled && orbit.transient_periods < plan_.at_most) return;
   orbit.stage = Orbit::Stage::keep;

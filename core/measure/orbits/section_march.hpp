@@ -23,7 +23,7 @@ struct SectionPlan {
   double pulsation = 0;      ///< ω of the forcing, rad/s
   int steps_per_period = 0;  ///< even, 8 or more; h = 2π/(ω · steps)
   int strobe = 0;            ///< step of the period at which the strobe stands, 0 … steps_per_period − 1
-  int transient = 300;       ///< periods that are not kept, at least
+  int transient = 300;       ///< periods that are not kept, at least; each kept one is read at its end
   int at_most = 2000;        ///< and at most, while the orbit is not settled
   int keep = 300;            ///< periods that are kept
   SectionKind section = SectionKind::strobe;
@@ -40,14 +40,26 @@ struct SectionPoint {
   double displacement = 0, velocity = 0, opposite_displacement = 0, opposite_velocity = 0;
 };
 
-/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s), and
-/// the row of H that does; of several at once, the first.
+/// A contact that begins: ωt in [0, 2π), the side (0 lower, 1 upper), the speed at which the point closes (m/s), the
+/// row of H that does (of several at once, the first), and t (s) since the orbit's own beginning, counted from a whole
+/// period of the forcing.
 struct ImpactPoint {
   double phase = 0;
   std::int64_t side = 0;  ///< as wide as the others: no padding, the bytes of equal impacts are equal
   double speed = 0;
   std::int64_t point = 0;
+  double time = 0;
 };
+
+/// A contact that has begun and may be over at once: then it is an impact that rebounds, and its instant is one of the
+/// step's. One that lasts is not.
+struct BriefContact {
+  std::int64_t point = -1;  ///< row of H; −1: none
+  std::int64_t steps = 0;   ///< that it has lasted
+  double before = 0;        ///< velocity of the point when it began, m/s
+};
+/// Steps that a contact without a duration of its own may last in a scheme.
+constexpr int briefest_contact = 3;
 
 /// An orbit, on its way or complete. Plain data: what is needed to go on is in it.
 struct Orbit {
@@ -67,6 +79,12 @@ struct Orbit {
   long long contact_steps = 0;        ///< of the kept periods
   int most_on_a_side = 0;             ///< impacts on one side in one period, the most
   bool closed[2] = {false, false};
+  /// Of the kept periods, the largest sum over one of |v₊ − v₋| over contacts of at most briefest_contact steps that
+  /// leave with a tenth of their speed or more (m/s).
+  /// A step h places their instants to within h, which moves what follows by up to h times this.
+  double rebounds = 0;
+  double rebounds_so_far = 0;  ///< in the present period
+  BriefContact brief[2];       ///< per side
   LaneSpec lane;
   LaneState entry;  ///< when the kept periods began, one step after a strobe
   LaneState now;    ///< the latest one
@@ -97,6 +115,8 @@ class SectionMarch {
   };
   void read_tips(std::vector<double>& tips) const;
   void march_to(int step, bool watched);
+  /// Whether the transient is over; then the next period is kept.
+  void end_transient(int place, Orbit& orbit) const;
   void close_period(int place, Orbit& orbit, const SectionPoint& point, double smoothed);
 
   Marcher marcher_;

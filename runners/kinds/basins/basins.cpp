@@ -20,8 +20,7 @@ std::vector<Field> basins_keys() {
   Field refine;
   refine.spec.type = ParameterSpec::Type::boolean;
   refine.spec.key = "refine";
-  refine.spec.text =
-      "Whether a coarse grid is marched first and only cells near a boundary of basins at full resolution.";
+  refine.spec.text = "Whether only cells near a boundary of basins are marched, after a coarse grid.";
   refine.fallback = false;
   std::vector<Field> fields = {std::move(axes), steps_per_period()};
   for (Field& field : orbit_keys()) fields.push_back(std::move(field));

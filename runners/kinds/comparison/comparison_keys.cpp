@@ -23,16 +23,15 @@ std::vector<Field> comparison_keys() {
   Field errors = of_form(Field::Form::words, "errors", std::nullopt, "The errors to measure.");
   errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());
   errors.fallback = Json(error_names());
-  return {
-      step(),
-      duration(),
-      samples(),
-      std::move(reference),
-      std::move(errors),
-      optional(real("horizon", "s", positive, std::nullopt,
-                    "Trajectories are compared up to this time; null: up to the end, or up to where two nearby runs "
-                    "have drifted apart, whichever comes first (the report says which).")),
-      budget()};
+  return {step(),
+          duration(),
+          samples(),
+          std::move(reference),
+          std::move(errors),
+          optional(real("horizon", "s", positive, std::nullopt,
+                        "Trajectories are compared up to here; null: to the end, or to where two nearby runs have "
+                        "drifted apart.")),
+          budget()};
 }
 
 void check_comparison(const Json& study) {

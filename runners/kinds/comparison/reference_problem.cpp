@@ -59,7 +59,7 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   problem.support_phase = scene.support.phase;
   problem.load_zero = scene.load.is_zero();
   problem.load_constant = !scene.load.uses_t();
-  problem.load = [load = scene.load](double x, double t) { return load(x, t); };
+  problem.load = [load = scene.load](double x, double t) { return load.spread(x, t); };
   problem.displacement = of_x(scene.initial.displacement);
   problem.velocity = of_x(scene.initial.velocity);
   problem.projected = scene.initial.projection == InitialSpec::Projection::constraint;

@@ -221,6 +221,12 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
   const SampleGrid grid = comparison_grid(study_case.scene, study_case.duration, study_case.samples);
   ReferenceProblem problem = reference_problem(study_case, registry_);
   DiscreteProblem discrete;
+  if (!solver->of_the_mesh() && study_case.scene.load.has_point_forces()) {
+    known.refusal =
+        "the load has a force at a point, and this reference knows loads that are spread: use one of the mesh, "
+        "event-driven-semi-discrete or self";
+    return known;
+  }
   if (solver->of_the_mesh()) {
     const auto law = make_law(study_case, registry_);
     auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get());

@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* orbits_mark = "orbits 4";
+constexpr const char* orbits_mark = "orbits 5";
 constexpr const char* exponents_mark = "exponents 2";
 
 }  // namespace
@@ -32,14 +32,20 @@ void serialize(Archive& archive, SectionSeries& series) {
 
 template <class Archive>
 void serialize(Archive& archive, ImpactPoint& impact) {
-  archive(impact.phase, impact.side, impact.speed, impact.point);
+  archive(impact.phase, impact.side, impact.speed, impact.point, impact.time);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BriefContact& contact) {
+  archive(contact.point, contact.steps, contact.before);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Orbit& orbit) {
   archive(orbit.task, orbit.stage, orbit.transient_periods, orbit.kept_periods, orbit.settled, orbit.end,
           orbit.stopped_period, orbit.settling, orbit.readings, orbit.strobed, orbit.points, orbit.impacts,
-          orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.entry, orbit.now);
+          orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.rebounds,
+          orbit.rebounds_so_far, orbit.brief, orbit.entry, orbit.now);
 }
 
 template <class Archive>

@@ -168,7 +168,7 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
                   section[i].opposite_displacement, section[i].opposite_velocity});
     for (const ImpactPoint& impact : impacts_shown(view))
       impacts.add({view.value, start, impact.phase, static_cast<double>(impact.side), impact.speed,
-                   view.problem->contact_x[static_cast<std::size_t>(impact.point)]});
+                   view.problem->contact_x[static_cast<std::size_t>(impact.point)], impact.time});
   }
   record.tables.push_back(std::move(values));
   record.tables.push_back(changes(views, starts));

@@ -10,13 +10,12 @@ std::vector<Field> orbit_keys() {
   transient.fields = {
       integer("periods", {1, 100000000, false, false}, 300, "Forcing periods before the first reading."),
       integer("at_most", {1, 100000000, false, false}, 2000,
-              "Forcing periods after which an orbit that has not settled is read all the same (and "
-              "said not to have settled).")};
+              "Forcing periods after which an orbit is read though it has not settled.")};
   return {object("transient", Json::object(), "What is left out until the orbit has settled, in forcing periods.",
                  transient),
           integer("keep", {16, 10000000, false, false}, 300, "Forcing periods that are read."),
           word("section", {"strobe", "impact", "extremum"}, "strobe",
-               "When the state is read: once per forcing period, at each impact, or at each extremum of the tip."),
+               "When the state is read: once per forcing period, at impacts, or at extrema of the tip."),
           single(real("phase", "rad", any, 0.0, "Phase of the forcing at which the strobe reads."))};
 }
 

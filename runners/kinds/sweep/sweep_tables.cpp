@@ -148,12 +148,14 @@ NumberTable points_head(const SweptColumns& swept) {
 }
 
 NumberTable impacts_head(const SweptColumns& swept) {
-  NumberTable table = number_table("impacts", {swept.parameter,
-                                               start_column,
-                                               {"phase", "rad", "Phase of the forcing at the impact."},
-                                               {"side", "", "The stop that is hit: lower or upper."},
-                                               {"speed", "m/s", "Speed at which the contact point closes."},
-                                               {"x", "m", "Place of the contact point."}});
+  NumberTable table =
+      number_table("impacts", {swept.parameter,
+                               start_column,
+                               {"phase", "rad", "Phase of the forcing at the impact."},
+                               {"side", "", "The stop that is hit: lower or upper."},
+                               {"speed", "m/s", "Speed at which the contact point closes."},
+                               {"x", "m", "Place of the contact point."},
+                               {"t", "s", "Time since the orbit began: at t = 0, or where its neighbour ended."}});
   table.text = "One impact of one orbit: of one period of what repeats, else of every kept period.";
   return table;
 }

@@ -31,6 +31,9 @@ void collect(const ObjectForm& form, const Json& value, const std::string& point
     if (found == value.end()) continue;
     if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
+    else if (field->form == Field::Form::formula && found->is_array())
+      for (std::size_t i = 0; i < found->size(); ++i)
+        collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
     else if (field->form == Field::Form::formula ||
              (field->form == Field::Form::scalar && field->spec.type == ParameterSpec::Type::real))
       scalars.push_back({here, field});
@@ -146,6 +149,37 @@ bool is_forced(const SceneSpec& scene) {
          (oscillator && oscillator->force.amplitude != 0 && oscillator->force.pulsation > 0) || scene.load.uses_t();
 }
 
+namespace {
+
+// That a part of the load repeats with the period of the forcing, wherever it is looked at.
+void check_repeats(const Formula& load, const std::string& pointer, const std::string& unit, double period,
+                   double length) {
+  if (!load.uses_t()) return;
+  constexpr double tolerance = 1e-9;
+  constexpr int places = 9, phases = 64;
+  double largest = 0, worst = 0, worst_x = 0, worst_t = 0, worst_k = 0;
+  for (int i = 0; i < places; ++i)
+    for (int j = 0; j < phases; ++j) {
+      const double x = length * i / (places - 1);
+      const double t = period * (j + 0.5 * std::numbers::inv_pi) / phases;
+      const double value = load(x, t);
+      largest = std::max(largest, std::abs(value));
+      for (const double k : {1.0, 2.0, 7.0, 50.0, 300.0, 2000.0}) {
+        const double change = std::abs(load(x, t + k * period) - value);
+        if (change <= worst) continue;
+        worst = change, worst_x = x, worst_t = t, worst_k = k;
+      }
+    }
+  if (worst > tolerance * largest)
+    throw InputError(pointer, fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s: "
+                                          "at x = {:.6g} m it differs by {:.3g}{} between t = {:.6g} s and {:g} "
+                                          "period{} later; expected f(x, t + T) = f(x, t)",
+                                          load.text(), period, worst_x, worst, unit.empty() ? "" : " " + unit, worst_t,
+                                          worst_k, worst_k == 1 ? "" : "s"));
+}
+
+}  // namespace
+
 void check_forcing(const SceneSpec& scene) {
   const double pulsation = forcing_pulsation(scene);
   const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure);
@@ -164,29 +198,13 @@ void check_forcing(const SceneSpec& scene) {
                                    "rad/s; expected a whole multiple of it",
                                    oscillator->force.pulsation, pulsation));
   }
-  if (!scene.load.uses_t()) return;
-  const Formula load = scene.load;  // a formula keeps its variables inside: evaluate our own copy
-  constexpr int places = 9, phases = 64;
-  const double length = structure_length(scene);
-  double largest = 0, worst = 0, worst_x = 0, worst_t = 0, worst_k = 0;
-  for (int i = 0; i < places; ++i)
-    for (int j = 0; j < phases; ++j) {
-      const double x = length * i / (places - 1);
-      const double t = period * (j + 0.5 * std::numbers::inv_pi) / phases;
-      const double value = load(x, t);
-      largest = std::max(largest, std::abs(value));
-      for (const double k : {1.0, 2.0, 7.0, 50.0, 300.0, 2000.0}) {
-        const double change = std::abs(load(x, t + k * period) - value);
-        if (change <= worst) continue;
-        worst = change, worst_x = x, worst_t = t, worst_k = k;
-      }
-    }
-  if (worst > tolerance * largest)
-    throw InputError("/scene/load",
-                     fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s: "
-                                 "at x = {:.6g} m it differs by {:.3g} N/m between t = {:.6g} s and {:g} "
-                                 "period{} later; expected f(x, t + T) = f(x, t)",
-                                 load.text(), period, worst_x, worst, worst_t, worst_k, worst_k == 1 ? "" : "s"));
+  const LoadSpec load = scene.load;  // formulas keep their variables inside: evaluate our own copies
+  check_repeats(load.formula, "/scene/load", "N/m", period, structure_length(scene));
+  for (std::size_t i = 0; i < load.terms.size(); ++i) {
+    const LoadTerm& term = load.terms[i];
+    check_repeats(term.history, fmt::format("/scene/load/{}/{}", i, term.force ? "force" : "time"),
+                  term.force ? "N" : "", period, 0);
+  }
 }
 
 std::vector<double> parameter_values(const Json& settings) {

@@ -78,4 +78,32 @@ TEST_CASE("the rough class of an orbit is its class where it repeats or never to
   CHECK_FALSE(judge(stopped, plan, std::nullopt).verdict.motion.decided());
 }
 
+TEST_CASE("a class is claimed where the step resolves it") {
+  const SectionPlan plan = plan_of_section();
+  const double h = 2 * std::acos(-1.0) / (plan.pulsation * plan.steps_per_period);
+  // Readings of 0.2 scales that alternate by a distance; impacts that rebound are placed to u of the scale.
+  const auto alternating = [&](double distance, double u) {
+    Orbit orbit = kept(1, same);
+    for (std::size_t k = 0; k < orbit.strobed.size(); k += 2) orbit.readings.values[4 * k] += distance * plan.scale;
+    orbit.rebounds = u * plan.scale / h;
+    return orbit;
+  };
+  const double u = 1e-4, left_open = most_amplified * u;  // 0.005, below 5 % of 0.2
+  const auto verdict = [&](double distance, double placed) {
+    return judge(alternating(distance, placed), plan, std::nullopt).verdict;
+  };
+  CHECK(verdict(0.4 * left_open, u).motion == MotionClass{Regime::periodic, 1});
+  CHECK(verdict(2.2 * left_open, u).motion == MotionClass{Regime::periodic, 2});
+  for (const double between : {0.6, 1.9}) {
+    CHECK(verdict(between * left_open, u).motion == MotionClass{Regime::undecided});
+    CHECK(verdict(between * left_open, u).evidence.starts_with("not resolved by the step: readings 1 period apart"));
+    CHECK(rough_class(alternating(between * left_open, u), plan) == MotionClass{Regime::undecided});
+  }
+  // Without impacts that rebound, what repeats is told to the last digit of the tolerance.
+  CHECK(verdict(0.4 * left_open, 0).motion == MotionClass{Regime::periodic, 2});
+  CHECK(orbit_period(alternating(0, u), plan).placed == Approx(u));
+  // However coarse the step, an orbit that differs by a twentieth of itself does not repeat.
+  CHECK(orbit_period(alternating(0, 1), plan).tolerance <= 0.05 * 0.2 / 2 * 1.001);
+}
+
 }  // namespace judge_orbit_tests

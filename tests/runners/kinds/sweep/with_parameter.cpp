@@ -80,11 +80,11 @@ TEST_CASE("A formula is multiplied, a formula without variables is a number") {
   study["scene"]["load"] = "x*sin(10*t)";
   study["scene"]["stops"]["lower"] = "-0.05 - 0.05";
   const StudyCase one = first_case(study);
-  CHECK(with_parameter(one, "/scene/load", -3).scene.load(0.5, 0.2) == Approx(-3 * 0.5 * std::sin(2.0)));
+  CHECK(with_parameter(one, "/scene/load", -3).scene.load.spread(0.5, 0.2) == Approx(-3 * 0.5 * std::sin(2.0)));
   CHECK((*with_parameter(one, "/scene/stops/lower", -0.07).scene.stops.lower)(1) == -0.07);
   // Twice is the product: nothing of the first value is lost.
   const StudyCase twice = with_parameter(with_parameter(one, "/scene/load", 2), "/scene/load", 5);
-  CHECK(twice.scene.load(1, 0.1) == Approx(10 * std::sin(1.0)));
+  CHECK(twice.scene.load.spread(1, 0.1) == Approx(10 * std::sin(1.0)));
 }
 
 TEST_CASE("A parameter of a method changes that method, and is checked like the study's") {
