@@ -58,9 +58,10 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",        "data",           "cases",  "dataset", "options",
-                                          "method_curves", "figure_section", "figure", "picture"};
-constexpr const char* page_scripts[] = {"case_table", "page"};
+constexpr const char* shared_scripts[] = {"format",     "data",          "cases",          "dataset",
+                                          "options",    "method_curves", "figure_section", "theme",
+                                          "chart_data", "figure",        "picture",        "paper"};
+constexpr const char* page_scripts[] = {"column_filter", "case_table", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "runners/report/html.hpp"
 #include "runners/report/template.hpp"
@@ -27,13 +28,8 @@ std::vector<std::string> measures_present(const CaseView& view) {
   return out;
 }
 
-Fill header_fill(const std::string& header, const std::string& tooltip, const std::string& classes) {
-  Fill out;
-  out.set("header", header);
-  out.set("tooltip", tooltip);
-  out.set("classes", classes);
-  return out;
-}
+// What fits the width of a sheet of paper, and how many rows of it a reader turns over.
+constexpr std::size_t columns_on_paper = 11, rows_on_paper = 150;
 
 Fill text_fill(const std::string& text, const std::string& classes) {
   Fill out;
@@ -42,75 +38,114 @@ Fill text_fill(const std::string& text, const std::string& classes) {
   return out;
 }
 
-/// A number that sorts as it is, shown shorter.
-Fill number_fill(double value, const std::string& text, const std::string& classes) {
-  if (!std::isfinite(value)) return text_fill("–", "number absent" + classes);
-  Fill out = text_fill(text, "number" + classes);
+/// A number that sorts as it is, shown shorter; all its digits in the tooltip where `text` has fewer.
+Fill number_fill(double value, const std::string& text, bool tooltip = true) {
+  if (!std::isfinite(value)) return text_fill("–", "number absent");
+  Fill out = text_fill(text, "number");
   out.set("value", exact_text(value));
+  if (tooltip) out.set("title", exact_text(value));
   return out;
 }
 
-Fill case_columns(const CaseView& view, const std::vector<std::string>& measures) {
-  Fill out{Fill::type::list};
-  out << header_fill("case", "Identity of the case: its row in cases.csv and its file in curves/", "text extra");
-  for (const std::string& column : view.results().columns)
-    out << header_fill(with_unit({column, axis_unit(column)}), "Axis of the study",
-                       view.varies(column) ? "axis" : "axis extra");
-  out << header_fill("status", "done, refused (does not apply), diverged or failed", "text");
-  out << header_fill("reason", "Why a case has no result", "text");
-  out << header_fill("operator", "How the matrices were stored and solved", "text extra");
-  out << header_fill("steps", "Number of time steps marched", "number");
-  out << header_fill("set-up (s)", "Time before the first step", "number extra");
-  out << header_fill("run (s)", "Time of marching", "number");
-  for (const std::string& name : measures) {
-    const MeasureInfo* info = measure_info(name);
-    out << header_fill(with_unit({in_words(name), info ? info->unit : ""}), info ? info->text : "",
-                       info && info->aside ? "number extra" : "number");
-  }
-  return out;
+/// A column of the table of cases: its name in cases.csv, its header, and what a case has in it.
+struct CaseColumn {
+  std::string name, header, tooltip, classes;
+  bool extra = false;  ///< a first look leaves it out
+  std::function<Fill(const CaseRecord&)> cell;
+};
+
+CaseColumn axis_column(const CaseView& view, const std::string& name) {
+  return {name,
+          with_unit({name, axis_unit(name)}),
+          "Axis of the study",
+          "axis",
+          !view.varies(name),
+          [name](const CaseRecord& record) {
+            const std::string text = CaseView::text(record, name);
+            if (const auto number = CaseView::number(record, name)) return number_fill(*number, text, false);
+            return text.empty() ? text_fill("–", "text absent") : text_fill(text, "text");
+          }};
 }
 
-Fill case_cells(const CaseView& view, const CaseRecord& record, const std::vector<std::string>& measures) {
-  Fill out{Fill::type::list};
-  out << text_fill(record.id, "text extra");
-  bool first = true;
-  for (const std::string& column : view.results().columns) {
-    const std::string text = CaseView::text(record, column), extra = view.varies(column) ? "" : " extra";
-    const auto number = CaseView::number(record, column);
-    Fill cell = number ? number_fill(*number, text, extra) : text_fill(text.empty() ? "–" : text, "text" + extra);
-    if (first) cell.set("swatch", view.colour(record));
-    first = false;
-    out << cell;
-  }
-  out << text_fill(status_mark(record.status) + " " + record.status, "status " + record.status);
-  out << text_fill(record.reason, "reason");
-  out << text_fill(record.operator_name, "text extra");
-  const auto timed = [&](double value, const std::string& classes) {
-    Fill cell = number_fill(value, number_text(value, 5), classes);
-    cell.set("title", exact_text(value));
-    return cell;
+CaseColumn measure_column_of(const std::string& name) {
+  const MeasureInfo* info = measure_info(name);
+  // Ratios are near 1, where what counts is far behind the point.
+  const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
+  return {name,
+          with_unit({in_words(name), info ? info->unit : ""}),
+          info ? info->text : "",
+          "number",
+          info && info->aside,
+          [name, digits](const CaseRecord& record) {
+            const auto value = ricochet::measure(record, name);
+            return value ? number_fill(*value, number_text(*value, digits)) : text_fill("–", "number absent");
+          }};
+}
+
+/// Which case it is, what became of it, what sets it apart, what it measured; last what a first look leaves out.
+std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures) {
+  const auto marched = [](const CaseRecord& record, Fill cell) {
+    return record.status == "refused" ? text_fill("–", "number absent") : cell;
   };
-  if (record.status == "refused") {
-    for (const char* extra : {"", " extra", ""}) out << text_fill("–", std::string("number absent") + extra);
-  } else {
-    out << number_fill(static_cast<double>(record.steps), std::to_string(record.steps), "");
-    out << timed(record.setup_seconds, " extra");
-    out << timed(record.run_seconds, "");
-  }
-  for (const std::string& name : measures) {
-    const MeasureInfo* info = measure_info(name);
-    const std::string extra = info && info->aside ? " extra" : "";
-    const auto value = ricochet::measure(record, name);
-    if (!value || !std::isfinite(*value)) {
-      out << text_fill("–", "number absent" + extra);
-      continue;
-    }
-    // Ratios are near 1, where what counts is far behind the point.
-    Fill cell = number_fill(*value, number_text(*value, info && std::string_view(info->unit) == "1" ? 9 : 5), extra);
-    cell.set("title", exact_text(*value));
-    out << cell;
-  }
+  const bool reasons = std::any_of(view.results().cases.begin(), view.results().cases.end(),
+                                   [](const CaseRecord& record) { return !record.reason.empty(); });
+  std::vector<CaseColumn> out = {
+      {"case", "case", "Identity of the case: its row in cases.csv and its file in curves/", "text", false,
+       [&view](const CaseRecord& record) {
+         Fill cell = text_fill(record.id, "text");
+         cell.set("swatch", view.colour(record));
+         return cell;
+       }},
+      {"status", "status", "done, refused (does not apply), diverged or failed", "text", false,
+       [](const CaseRecord& record) {
+         Fill cell = text_fill(status_mark(record.status) + " " + record.status, "status " + record.status);
+         cell.set("plain", record.status);
+         return cell;
+       }}};
+  for (const std::string& name : view.results().columns) out.push_back(axis_column(view, name));
+  out.push_back({"reason", "reason", "Why a case has no result", "text", !reasons,
+                 [](const CaseRecord& record) { return text_fill(record.reason, "reason"); }});
+  for (const std::string& name : measures) out.push_back(measure_column_of(name));
+  out.push_back({"steps", "steps", "Number of time steps marched", "number", false, [=](const CaseRecord& record) {
+                   return marched(record, number_fill(static_cast<double>(record.steps), std::to_string(record.steps)));
+                 }});
+  const auto timed = [&](const char* name, const char* header, const char* tooltip, bool extra,
+                         double CaseRecord::*seconds) {
+    out.push_back({name, header, tooltip, "number", extra, [=](const CaseRecord& record) {
+                     return marched(record, number_fill(record.*seconds, number_text(record.*seconds, 5)));
+                   }});
+  };
+  timed("run_seconds", "run (s)", "Time of marching", false, &CaseRecord::run_seconds);
+  timed("setup_seconds", "set-up (s)", "Time before the first step", true, &CaseRecord::setup_seconds);
+  out.push_back({"operator", "operator", "How the matrices were stored and solved", "text", true,
+                 [](const CaseRecord& record) { return text_fill(record.operator_name, "text"); }});
+  std::stable_partition(out.begin(), out.end(), [](const CaseColumn& column) { return !column.extra; });
+  std::size_t shown = 0;
+  for (CaseColumn& column : out)
+    if (column.extra)
+      column.classes += " extra";
+    else if (++shown > columns_on_paper)
+      column.classes += " off-paper";
   return out;
+}
+
+/// What of the table's columns and rows does not fit on paper, "" where all does.
+std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& columns) {
+  const auto hidden = static_cast<std::size_t>(std::count_if(columns.begin(), columns.end(), [](const auto& column) {
+    return column.classes.ends_with("off-paper") || column.extra;
+  }));
+  const std::size_t cases = view.results().cases.size(), rows = cases > rows_on_paper ? cases - rows_on_paper : 0;
+  std::string out;
+  if (hidden) out = count_text(hidden, "more column", "more columns");
+  if (rows) out += (out.empty() ? "" : " and ") + count_text(rows, "more row", "more rows");
+  return out.empty() ? "" : out + (hidden + rows == 1 ? " is" : " are") + " in cases.csv.";
+}
+
+/// A condition that is true of something here, to show how one is written.
+std::string filter_example(const CaseView& view, const std::vector<std::string>& measures) {
+  std::string out = "words, or status = done";
+  if (!measures.empty()) out = fmt::format("words, or {} > 0", measures.front());
+  return view.with_status("refused").empty() ? out : "words, or status = refused";
 }
 
 /// Entries of lists that cases carry, each once with the cases that have it.
@@ -128,7 +163,7 @@ std::string case_table_html(const CaseView& view) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
-  Fill with, statuses{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
+  Fill with, statuses{Fill::type::list}, heads{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
   for (const char* status : {"done", "refused", "diverged", "failed"})
     if (const size_t count = view.with_status(status).size()) {
       Fill one;
@@ -137,15 +172,36 @@ std::string case_table_html(const CaseView& view) {
       one.set("count", std::to_string(count));
       statuses << one;
     }
-  for (const CaseRecord& record : results.cases) {
-    Fill row;
+  const std::vector<CaseColumn> columns = case_columns(view, measures);
+  for (const CaseColumn& column : columns) {
+    Fill head;
+    head.set("column", column.name);
+    head.set("header", column.header);
+    head.set("tooltip", column.tooltip);
+    head.set("classes", column.classes);
+    heads << head;
+  }
+  for (std::size_t k = 0; k < results.cases.size(); ++k) {
+    const CaseRecord& record = results.cases[k];
+    Fill row, cells{Fill::type::list};
     row.set("status", record.status);
-    row.set("cells", case_cells(view, record, measures));
+    row.set("case", record.id);
+    if (k >= rows_on_paper) row.set("row_classes", "off-paper");
+    for (const CaseColumn& column : columns) {
+      Fill cell = column.cell(record);
+      const bool paper = column.classes.ends_with("off-paper");
+      if (column.extra || paper)
+        cell.set("classes", cell.get("classes")->string_value() + (column.extra ? " extra" : " off-paper"));
+      cells << cell;
+    }
+    row.set("cells", cells);
     rows << row;
   }
   with.set("statuses", statuses);
-  with.set("columns", case_columns(view, measures));
+  with.set("columns", heads);
   with.set("rows", rows);
+  with.set("example", filter_example(view, measures));
+  if (const std::string left = off_paper(view, columns); !left.empty()) with.set("off_paper", left);
   const std::vector<std::string> constants = view.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
   bool any = false;

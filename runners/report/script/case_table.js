@@ -1,23 +1,33 @@
-// The table of all cases: sorted by a click on a header, filtered by words and by status.
+// The table of all cases: sorted by a click on a header, filtered by words, by conditions on columns and by status; what it shows is to be had as CSV.
 ricochet.startCaseTable = () => {
   const table = document.getElementById("cases");
   if (!table) return;
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
   const body = table.tBodies[0], rows = Array.from(body.rows), words = document.getElementById("filter"), shown = document.getElementById("shown");
-  const statuses = all("[data-status]", document.querySelector("#all-cases .controls"));
+  const heads = all("thead th", table), columns = heads.map((head) => head.dataset.column), statuses = all("[data-status]", document.querySelector("#all-cases .controls"));
   function filter() {
-    const wanted = words.value.toLowerCase().split(/\s+/).filter(Boolean), off = new Set(statuses.filter((s) => !s.checked).map((s) => s.dataset.status));
+    const asked = ricochet.readFilter(words.value, columns), off = new Set(statuses.filter((s) => !s.checked).map((s) => s.dataset.status));
+    const places = asked.conditions.map(({ column, holds }) => [columns.indexOf(column), holds]);
     let count = 0;
     for (const row of rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = off.has(row.dataset.status) || !wanted.every((w) => text.includes(w));
+      const text = asked.words.length ? row.textContent.toLowerCase().replace(/_/g, " ") : "";
+      row.hidden = off.has(row.dataset.status) || !asked.words.every((w) => text.includes(w)) || !places.every(([place, holds]) => holds(ricochet.cellValue(row.cells[place])));
       count += row.hidden ? 0 : 1;
     }
-    shown.textContent = count === rows.length ? "" : count + " of " + rows.length + " rows shown";
+    words.setAttribute("aria-invalid", String(asked.wrong !== ""));
+    shown.textContent = asked.wrong || (count === rows.length ? "" : count + " of " + rows.length + " rows shown");
   }
   words.addEventListener("input", filter);
   statuses.forEach((s) => s.addEventListener("change", filter));
   document.getElementById("all-columns").addEventListener("change", (e) => table.classList.toggle("full", e.target.checked));
+
+  // Columns and rows in sight, in their order, numbers with all digits.
+  ricochet.casesShown = () => {
+    const places = heads.map((head, k) => k).filter((k) => getComputedStyle(heads[k]).display !== "none");
+    const value = (cell) => cell.dataset.value || cell.dataset.text || (cell.classList.contains("absent") || cell.textContent === "–" ? "" : cell.textContent);
+    return ricochet.csvText([places.map((k) => columns[k])].concat(Array.from(body.rows).filter((row) => !row.hidden).map((row) => places.map((k) => value(row.cells[k])))));
+  };
+  document.getElementById("cases-csv").addEventListener("click", () => ricochet.download(document.title.split(" · ")[0] + "-cases", "csv", new Blob([ricochet.casesShown()], { type: "text/csv" })));
 };
 
 // Sorts a table by a click on a header; rows without a value stand last, either way.
@@ -28,7 +38,7 @@ ricochet.startSorting = (table) => {
     const index = headers.indexOf(header), up = header.getAttribute("aria-sort") !== "ascending";
     headers.forEach((h) => h.setAttribute("aria-sort", "none"));
     header.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const key = (row) => { const cell = row.cells[index], v = cell.dataset.value; return v !== undefined ? Number(v) : cell.textContent.trim(); };
+    const key = (row) => { const cell = row.cells[index], v = cell.dataset.value; return v !== undefined ? Number(v) : (cell.dataset.text || cell.textContent).trim(); };
     const compare = (a, b) => {
       const x = key(a), y = key(b);
       if (absent(x) || absent(y)) return absent(x) - absent(y);
