@@ -23,30 +23,9 @@ ricochet.startCaseTable = () => {
 
   // Columns and rows in sight, in their order, numbers with all digits.
   ricochet.casesShown = () => {
-    const places = heads.map((head, k) => k).filter((k) => getComputedStyle(heads[k]).display !== "none");
+    const places = heads.map((head, k) => k).filter((k) => heads[k].getClientRects().length > 0);
     const value = (cell) => cell.dataset.value || cell.dataset.text || (cell.classList.contains("absent") || cell.textContent === "–" ? "" : cell.textContent);
     return ricochet.csvText([places.map((k) => columns[k])].concat(Array.from(body.rows).filter((row) => !row.hidden).map((row) => places.map((k) => value(row.cells[k])))));
   };
   document.getElementById("cases-csv").addEventListener("click", () => ricochet.download(document.title.split(" · ")[0] + "-cases", "csv", new Blob([ricochet.casesShown()], { type: "text/csv" })));
-};
-
-// Sorts a table by a click on a header; rows without a value stand last, either way.
-ricochet.startSorting = (table) => {
-  const body = table.tBodies[0], headers = Array.from(table.querySelectorAll("thead th"));
-  const absent = (v) => v === "–" || v === "";
-  function sort(header) {
-    const index = headers.indexOf(header), up = header.getAttribute("aria-sort") !== "ascending";
-    headers.forEach((h) => h.setAttribute("aria-sort", "none"));
-    header.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const key = (row) => { const cell = row.cells[index], v = cell.dataset.value; return v !== undefined ? Number(v) : (cell.dataset.text || cell.textContent).trim(); };
-    const compare = (a, b) => {
-      const x = key(a), y = key(b);
-      if (absent(x) || absent(y)) return absent(x) - absent(y);
-      if (typeof x !== typeof y) return typeof x === "number" ? -1 : 1;
-      const order = typeof x === "number" ? x - y : x.localeCompare(y);
-      return up ? order : -order;
-    };
-    Array.from(body.rows).sort(compare).forEach((row) => body.appendChild(row));
-  }
-  headers.forEach((h) => { const button = h.querySelector("button"); if (button) button.addEventListener("click", () => sort(h)); });
 };

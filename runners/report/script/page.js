@@ -60,11 +60,22 @@
   window.addEventListener("beforeprint", () => ricochet.paper.prepare());
   window.addEventListener("afterprint", () => ricochet.paper.finish());
 
+  // The summary takes its figure when it is asked for; printed from there, it is all that is printed.
+  function startSummary() {
+    const place = document.getElementById("summary-figure"), button = document.getElementById("print-summary");
+    if (!place) return;
+    const look = () => { if (location.hash === "#summary") ricochet.paper.showFirst(place); };
+    window.addEventListener("hashchange", look);
+    button.addEventListener("click", () => window.print());
+    look();
+  }
+
   document.addEventListener("DOMContentLoaded", () => {
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     ricochet.startCaseTable();
     document.querySelectorAll(".scroll").forEach(watchWidth);
     startFigures();
+    startSummary();
     ricochet.theme.paint();
   });
 }

@@ -1,7 +1,7 @@
 // Paper: while the page is printed, each chart stands there once more as a drawing as wide as its place on the sheet, in the colours of paper. The summary
 // takes the first chart of the page.
 {
-  const sheet = 680, gap = 12;   // CSS pixels between the margins of A4
+  const sheet = 680, tall = 985, gap = 12;   // CSS pixels between the margins of A4
   const place = (classes) => Object.assign(document.createElement("div"), { className: classes });
 
   function drawn(figure, slot, width, height) {
@@ -26,10 +26,34 @@
         const { width, height } = sizeOf(figure, slot), drawing = drawn(figure, slot, width, height);
         if (drawing) slot.element.after(drawing);
       }
-    const summary = document.getElementById("summary-figure");
-    if (summary) showFirst(summary);
+    const figure = document.getElementById("summary-figure");
+    if (figure) { showFirst(figure); fit(document.getElementById("summary")); }
   }
-  function finish() { document.querySelectorAll(".on-paper").forEach((one) => one.remove()); }
+  function finish() {
+    document.querySelectorAll(".on-paper").forEach((one) => one.remove());
+    const summary = document.getElementById("summary");
+    if (summary) { summary.className = "sheet"; summary.style.removeProperty("--fit"); }
+  }
+
+  // The largest letters, in points, at which the summary stays on one sheet, tried on a copy beside the page; where even small ones do not do, the legend
+  // goes, which the report has, then the answer's lesser lines.
+  function fit(summary) {
+    const probe = place("sheet-probe"), copy = summary.cloneNode(true);
+    copy.querySelectorAll("[id]").forEach((part) => part.removeAttribute("id"));
+    copy.querySelectorAll(".on-screen").forEach((part) => part.remove());
+    copy.removeAttribute("id");
+    probe.append(copy);
+    document.body.append(probe);
+    const tries = ["", "brief", "brief briefer"].flatMap((classes) => [10, 9.5, 9, 8.5, 8, 7.5, 7, 6.5].map((size) => [classes, size]));
+    const found = tries.find(([classes, size]) => {
+      copy.className = "sheet " + classes;
+      copy.style.setProperty("--fit", size + "pt");
+      return copy.offsetHeight <= tall;
+    }) || tries[tries.length - 1];
+    probe.remove();
+    summary.className = "sheet " + found[0];
+    summary.style.setProperty("--fit", found[1] + "pt");
+  }
 
   function showFirst(place) {
     const figure = ricochet.figures.find((one) => one.slots.some((slot) => one.visible(slot) && one.viewOf(slot).option));

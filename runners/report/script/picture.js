@@ -34,7 +34,8 @@
   ricochet.drawing = (option, size) => {
     const chart = echarts.init(null, null, Object.assign({ renderer: "svg", ssr: true }, size));
     chart.setOption(option);
-    const text = chart.renderToSVGString();
+    // Pictures inside (images of basins, clouds of points) fill the box that they are given.
+    const text = chart.renderToSVGString().replace(/<image /g, '<image preserveAspectRatio="none" ');
     chart.dispose();
     return text;
   };

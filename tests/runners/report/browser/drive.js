@@ -1,7 +1,7 @@
 // node drive.js STEPS.json ANSWERS.json
 // Drives headless Chromium as a reader's hands and eyes would: real keys, real swipes, a paper's width, a dark screen. Each step opens a page anew:
-//   {name, page, width, height, dark, print, touch, keys: [key…], swipe: {x, from, to}, evaluate: [expression…], pdf: file, png: file}
-// and its answer is {errors, values}: what the console complained of, and what the expressions gave, in order; they stand behind keys and swipe.
+//   {name, page, width, height, dark, print, touch, before: [expression…], keys: [key…], swipe: {x, from, to}, evaluate: [expression…], pdf: file, png: file, whole: tallest}
+// and its answer is {errors, before, values}: what the console complained of, and what the expressions before and behind keys and swipe gave, in order.
 // An expression may be a promise. The browser is RICOCHET_BROWSER or chromium.
 "use strict";
 const { spawn } = require("child_process"), fs = require("fs"), os = require("os"), path = require("path");
@@ -35,7 +35,7 @@ const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 const keyCodes = { Tab: 9, Enter: 13, Escape: 27, " ": 32, ArrowLeft: 37, ArrowRight: 39 };
 
-async function take({ page, width = 1400, height = 1000, dark, print, touch, keys = [], swipe, evaluate = [], pdf, png, whole }) {
+async function take({ page, width = 1400, height = 1000, dark, print, touch, before = [], keys = [], swipe, evaluate = [], pdf, png, whole }) {
   const { targetId } = await send("Target.createTarget", { url: "about:blank" }), { sessionId } = await send("Target.attachToTarget", { targetId, flatten: true });
   const ask = (method, params) => send(method, params, sessionId), errors = [];
   const listen = (message) => {
@@ -59,6 +59,8 @@ async function take({ page, width = 1400, height = 1000, dark, print, touch, key
     return result.value === undefined ? null : result.value;
   };
   await value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  const earlier = [];
+  for (const expression of before) earlier.push(await value(expression));
   for (const key of keys) {
     const [name, shift] = key.startsWith("Shift+") ? [key.slice(6), 8] : [key, 0], code = { key: name, code: name === " " ? "Space" : name, windowsVirtualKeyCode: keyCodes[name] || name.charCodeAt(0), modifiers: shift };
     const text = name === "Enter" ? "\r" : name.length === 1 ? name : "";
@@ -78,7 +80,7 @@ async function take({ page, width = 1400, height = 1000, dark, print, touch, key
   if (png) fs.writeFileSync(png, Buffer.from((await ask("Page.captureScreenshot", { captureBeyondViewport: Boolean(whole), ...(whole ? { clip: { x: 0, y: 0, width, height: Math.min(whole, await value("document.documentElement.scrollHeight")), scale: 1 } } : {}) })).data, "base64"));
   listeners.delete(listen);
   await send("Target.closeTarget", { targetId });
-  return { errors, values };
+  return { errors, before: earlier, values };
 }
 
 (async () => {
