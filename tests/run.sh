@@ -9,7 +9,7 @@ cd "$root"
 # shellcheck disable=SC2086  # lists of words
 install_missing $build_commands $build_packages catch2
 # The report is looked at in a browser; RICOCHET_WITHOUT_BROWSER=1 says that this machine shall go without.
-[ "${RICOCHET_WITHOUT_BROWSER:-}" = 1 ] || install_missing chromium=chromium
+[ "${RICOCHET_WITHOUT_BROWSER:-}" = 1 ] || install_missing chromium=chromium node=nodejs pdftotext=poppler-utils
 fetch_charts
 
 cmake --preset release -DRICOCHET_TESTS=ON

@@ -1,11 +1,17 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <iostream>
 
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/report/index_page.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/league.hpp"
 #include "runners/run/run_study.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/store.hpp"
 
 namespace ricochet {
@@ -22,8 +28,49 @@ int command_run(const Arguments& arguments, std::ostream&) {
   });
 }
 
-int command_report(const Arguments& arguments, std::ostream&) {
-  return rebuild_report(arguments.operands.front());
+namespace {
+
+/// The folder that holds all of these: the longest common beginning of their paths.
+std::filesystem::path common_folder(const std::vector<std::filesystem::path>& folders) {
+  std::filesystem::path common = folders.front().parent_path();
+  const auto holds = [&](const std::filesystem::path& folder) {
+    return std::mismatch(common.begin(), common.end(), folder.begin(), folder.end()).first == common.end();
+  };
+  while (!std::all_of(folders.begin(), folders.end(), holds)) common = common.parent_path();
+  return common;
+}
+
+/// A path as a relative link: what is no plain letter is %xx.
+std::string as_link(const std::filesystem::path& path) {
+  std::string out;
+  for (const char c : path.generic_string())
+    out += std::isalnum(static_cast<unsigned char>(c)) || std::string_view("-._~/").find(c) != std::string_view::npos
+               ? std::string(1, c)
+               : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return out;
+}
+
+}  // namespace
+
+int command_report(const Arguments& arguments, std::ostream& out) {
+  if (arguments.operands.size() == 1) {
+    if (arguments.out) throw UsageError("--out is for the page that lists several folders; only one was given");
+    return rebuild_report(arguments.operands.front());
+  }
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& operand : arguments.operands) {
+    if (const int code = rebuild_report(operand); code != exit_done) return code;
+    folders.push_back(std::filesystem::canonical(operand));
+  }
+  const std::filesystem::path page = std::filesystem::weakly_canonical(
+      arguments.out ? std::filesystem::absolute(*arguments.out) : common_folder(folders) / "index.html");
+  std::vector<report::IndexEntry> studies;
+  for (const std::filesystem::path& folder : folders)
+    studies.push_back(
+        {with_tables(read_store(folder)), as_link((folder / "report.html").lexically_relative(page.parent_path()))});
+  write_file(page, report::index_page(studies));
+  out << "index: " << page.string() << "\n";
+  return exit_done;
 }
 
 int command_export(const Arguments& arguments, std::ostream&) {

@@ -16,11 +16,15 @@ po::options_description described(const Subcommand& command) {
     return std::find(command.options.begin(), command.options.end(), name) != command.options.end();
   };
   auto add = all.add_options();
-  if (has("out")) add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
+  if (has("out") && command.name == "report")
+    add("out", po::value<std::string>()->value_name("FILE"),
+        "the page that lists several folders (default: index.html in the folder that holds them all)");
+  else if (has("out"))
+    add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
     add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
-  if (has("table")) add("table", "print a line for every case");
+  if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
   if (has("cases")) add("cases", "also print a line for every case");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");

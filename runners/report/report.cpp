@@ -11,6 +11,8 @@
 #include "runners/report/html.hpp"
 #include "runners/report/page.hpp"
 #include "runners/report/page_data.hpp"
+#include "runners/report/scene_sketch.hpp"
+#include "runners/report/summary_page.hpp"
 #include "runners/report/table_view.hpp"
 #include "runners/report/tables.hpp"
 #include "runners/report/template.hpp"
@@ -58,10 +60,10 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",   "data",          "cases",   "short_names",    "dataset",
-                                          "options",  "method_curves", "strips",  "figure_section", "figure",
-                                          "case_map", "picture",       "dot_rows"};
-constexpr const char* page_scripts[] = {"case_table", "verdict_words", "page"};
+constexpr const char* shared_scripts[] = {
+    "format",         "data",  "cases",      "short_names", "dataset",  "options", "method_curves", "strips",
+    "figure_section", "theme", "chart_data", "figure",      "case_map", "picture", "dot_rows",      "paper"};
+constexpr const char* page_scripts[] = {"sorting", "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
@@ -113,7 +115,9 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   Fill page;
   page.set("name", results.name);
   page.set("kind", results.kind);
-  page.set("style", std::string(asset("page.css")));
+  page.set("style", std::string(asset("page.css")) + page_margins(results));
+  page.set("summary", summary_html(view));
+  if (const std::string sketch = scene_svg(results.study); !sketch.empty()) page.set("sketch", sketch);
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(view));
   page.set("banners", banners(results));

@@ -193,7 +193,7 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
       {"runners/march",
        {"core/contract", "core/engine", "core/measure", "core/scene", "runners/table", "runners/study",
         "runners/store"}},
-      {"runners/report", {"runners/table", "runners/study", "runners/store"}},
+      {"runners/report", {"core/scene", "runners/table", "runners/study", "runners/store"}},
       {"runners/kinds",
        {"core/contract", "core/loader", "core/scene", "core/engine", "core/measure", "runners/table", "runners/study",
         "runners/store", "runners/march", "runners/report"}},

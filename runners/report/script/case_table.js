@@ -1,46 +1,32 @@
-// The table of all cases: sorted by a click on a header, filtered by words and by status.
+// The table of all cases: sorted by a click on a header, filtered by words, by conditions on columns and by status; what it shows is to be had as CSV.
 ricochet.startCaseTable = () => {
   const table = document.getElementById("cases");
   if (!table) return;
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
   const body = table.tBodies[0], rows = Array.from(body.rows), words = document.getElementById("filter"), shown = document.getElementById("shown");
-  const statuses = all("[data-status]", document.querySelector("#all-cases .controls"));
+  const heads = all("thead th", table), columns = heads.map((head) => head.dataset.column), statuses = all("[data-status]", document.querySelector("#all-cases .controls"));
   function filter() {
-    const wanted = words.value.toLowerCase().split(/\s+/).filter(Boolean), off = new Set(statuses.filter((s) => !s.checked).map((s) => s.dataset.status));
+    const asked = ricochet.readFilter(words.value, columns), off = new Set(statuses.filter((s) => !s.checked).map((s) => s.dataset.status));
+    const places = asked.conditions.map(({ column, holds }) => [columns.indexOf(column), holds]);
     let count = 0;
     for (const row of rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = off.has(row.dataset.status) || !wanted.every((w) => text.includes(w));
+      const text = asked.words.length ? row.textContent.toLowerCase().replace(/_/g, " ") : "";
+      row.hidden = off.has(row.dataset.status) || !asked.words.every((w) => text.includes(w)) || !places.every(([place, holds]) => holds(ricochet.cellValue(row.cells[place])));
       count += row.hidden ? 0 : 1;
     }
-    shown.textContent = count === rows.length ? "" : count + " of " + rows.length + " rows shown";
+    words.setAttribute("aria-invalid", String(asked.wrong !== ""));
+    shown.textContent = asked.wrong || (count === rows.length ? "" : count + " of " + rows.length + " rows shown");
   }
   words.addEventListener("input", filter);
   statuses.forEach((s) => s.addEventListener("change", filter));
   const full = document.getElementById("all-columns");
   if (full) full.addEventListener("change", (e) => table.classList.toggle("full", e.target.checked));
-};
 
-// A number as it is written: "−1.2e-7"; not a number where it is a word.
-ricochet.numberWritten = (text) => (/^[−-]?[\d.∞]/.test(text) ? Number(text.replace("−", "-").replace("∞", "Infinity")) : NaN);
-
-// Sorts a table by a click on a header; rows without a value stand last, either way.
-ricochet.startSorting = (table) => {
-  const body = table.tBodies[0], headers = Array.from(table.querySelectorAll("thead th"));
-  const absent = (v) => v === "–" || v === "";
-  function sort(header) {
-    const index = headers.indexOf(header), up = header.getAttribute("aria-sort") !== "ascending";
-    headers.forEach((h) => h.setAttribute("aria-sort", "none"));
-    header.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const key = (row) => { const cell = row.cells[index], text = cell.textContent.trim(), v = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value); return Number.isNaN(v) ? text : v; };
-    const compare = (a, b) => {
-      const x = key(a), y = key(b);
-      if (absent(x) || absent(y)) return absent(x) - absent(y);
-      if (typeof x !== typeof y) return typeof x === "number" ? -1 : 1;
-      const order = typeof x === "number" ? x - y : x.localeCompare(y);
-      return up ? order : -order;
-    };
-    Array.from(body.rows).sort(compare).forEach((row) => body.appendChild(row));
-  }
-  headers.forEach((h) => { const button = h.querySelector("button"); if (button) button.addEventListener("click", () => sort(h)); });
+  // Columns and rows in sight, in their order, numbers with all digits.
+  ricochet.casesShown = () => {
+    const places = heads.map((head, k) => k).filter((k) => heads[k].getClientRects().length > 0);
+    const value = (cell) => cell.dataset.value || cell.dataset.text || (cell.textContent === "–" ? "" : cell.textContent);
+    return ricochet.csvText([places.map((k) => columns[k])].concat(Array.from(body.rows).filter((row) => !row.hidden).map((row) => places.map((k) => value(row.cells[k])))));
+  };
+  document.getElementById("cases-csv").addEventListener("click", () => ricochet.download(document.title.split(" · ")[0] + "-cases", "csv", new Blob([ricochet.casesShown()], { type: "text/csv" })));
 };

@@ -24,6 +24,7 @@
       all(".legend button", section).forEach((b) => b.addEventListener("click", () => this.toggle(b)));
       all("[data-export]", section).forEach((b) => b.addEventListener("click", () => this.save(b)));
       all("[data-facets]", section).forEach((b) => b.addEventListener("input", () => this.filter(b.value)));
+      this.slots.forEach((slot) => ricochet.chartData.attach(this, slot));
     }
     chartOf(slot) { return this.description.charts[slot.index]; }
     viewOf(slot) {
@@ -42,11 +43,12 @@
       }
       return names;
     }
-    option(slot) {
+    // `colour` carries colours over to where they are drawn; as they are said, they are for white paper.
+    option(slot, colour = (said) => said) {
       const view = this.viewOf(slot);
       if (!view.option) return null;
       const option = fresh(view.option);
-      if (view.sources) option.series.push(...ricochet.handDrawn.series(view.sources(), option, this.hidden));
+      if (view.sources) option.series.push(...ricochet.handDrawn.series(view.sources().map((source) => ({ ...source, colour: colour(source.colour) })), option, this.hidden));
       if (this.own) for (const axis of [].concat(option.yAxis).slice(0, 1)) { delete axis.min; delete axis.max; }
       option.legend.selected = this.selected(option.series);
       // The brush that a drag starts belongs to the toolbox; its icons stay out of sight.
@@ -55,10 +57,10 @@
     }
     draw(slot) {
       if (!this.visible(slot)) return;
-      const option = this.option(slot);
+      const option = this.option(slot, ricochet.theme.colour);
       if (!option) { if (slot.chart) slot.chart.clear(); return; }
       if (!slot.chart) {
-        slot.chart = echarts.init(slot.element, null, { renderer: "canvas" });
+        slot.chart = ricochet.openChart(slot.element, () => { if (this.visible(slot)) this.draw(slot); });
         slot.chart.on("datazoom", (event) => this.follow(slot, event));
         slot.chart.getZr().on("dblclick", () => this.reset());
         slot.chart.getZr().on("mousemove", (event) => this.hover(slot, [event.offsetX, event.offsetY], event.event));
@@ -69,6 +71,7 @@
       slot.chart.setOption(option, true);
       slot.chart.dispatchAction({ type: "takeGlobalCursor", key: "dataZoomSelect", dataZoomSelectActive: true });
       if (this.zoom) this.applying(() => slot.chart.dispatchAction(this.zoom));
+      ricochet.chartData.describe(this, slot);
     }
     redraw() { this.slots.forEach((slot) => { if (slot.chart && this.visible(slot)) { slot.chart.resize(); this.draw(slot); } }); }
     drawAll() { this.slots.forEach((slot) => slot.chart || this.draw(slot)); }
@@ -130,11 +133,7 @@
     save(button) {
       const element = button.closest("figure").querySelector(".chart"), slot = this.slots.find((s) => s.element === element), blob = ricochet.picture(this, slot, button.dataset.export);
       if (!blob) return;
-      const link = document.createElement("a"), name = this.description.id + "-" + this.chartOf(slot).title;
-      link.href = URL.createObjectURL(blob);
-      link.download = name.replace(/[^A-Za-z0-9.-]+/g, "-").replace(/^-|-$/g, "") + "." + button.dataset.export;
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+      ricochet.download(this.description.id + "-" + this.chartOf(slot).title, button.dataset.export, blob);
     }
   }
 

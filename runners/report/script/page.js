@@ -37,6 +37,23 @@
     figure.section.remove();
   };
 
+  // A finger on a chart is the page's: the chart library hears of taps alone, as clicks.
+  const ofPage = (event) => { if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation(); };
+  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) document.addEventListener(name, ofPage, { capture: true, passive: true });
+
+  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys.
+  function watchWidth(box) {
+    const look = () => {
+      const more = box.scrollWidth - box.clientWidth;
+      if (more > 1) { box.dataset.wide = box.scrollLeft < more - 1 ? "more" : "all"; box.tabIndex = 0; }
+      else { delete box.dataset.wide; box.removeAttribute("tabindex"); }
+    };
+    box.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(box);
+    look();
+  }
+  ricochet.watchWidth = watchWidth;
+
   function startFigures() {
     const page = read("page-data"), place = document.getElementById("figures");
     if (!page || !place || typeof echarts === "undefined") return;
@@ -64,7 +81,19 @@
       clearTimeout(pending);
       pending = setTimeout(() => figures.forEach((f) => f.slots.forEach((s) => s.chart && s.chart.resize())), 120);
     });
-    window.addEventListener("beforeprint", () => figures.forEach((f) => f.drawAll()));
+  }
+
+  window.addEventListener("beforeprint", () => ricochet.paper.prepare());
+  window.addEventListener("afterprint", () => ricochet.paper.finish());
+
+  // The summary takes its figure when it is asked for; printed from there, it is all that is printed.
+  function startSummary() {
+    const place = document.getElementById("summary-figure"), button = document.getElementById("print-summary");
+    if (!place) return;
+    const look = () => { if (location.hash === "#summary") ricochet.paper.showFirst(place); };
+    window.addEventListener("hashchange", look);
+    button.addEventListener("click", () => window.print());
+    look();
   }
 
   document.addEventListener("DOMContentLoaded", () => {
@@ -74,6 +103,9 @@
     for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
     // Every digit of a number that is shown short.
     document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
+    document.querySelectorAll(".scroll").forEach(watchWidth);
     startFigures();
+    startSummary();
+    ricochet.theme.paint();
   });
 }

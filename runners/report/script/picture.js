@@ -30,13 +30,16 @@
     return format === "svg" ? asSvg(option, size) : asPng(option, size);
   };
 
-  function asSvg(option, size) {
+  // The drawing of an option, as text.
+  ricochet.drawing = (option, size) => {
     const chart = echarts.init(null, null, Object.assign({ renderer: "svg", ssr: true }, size));
     chart.setOption(option);
-    const text = chart.renderToSVGString();
+    // Pictures inside (images of basins, clouds of points) fill the box that they are given.
+    const text = chart.renderToSVGString().replace(/<image /g, '<image preserveAspectRatio="none" ');
     chart.dispose();
-    return new Blob([text], { type: "image/svg+xml" });
-  }
+    return text;
+  };
+  const asSvg = (option, size) => new Blob([ricochet.drawing(option, size)], { type: "image/svg+xml" });
   function asPng(option, size) {
     const chart = echarts.init(document.createElement("div"), null, Object.assign({ renderer: "canvas", devicePixelRatio: 3 }, size));
     chart.setOption(option);

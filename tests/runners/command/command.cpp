@@ -87,16 +87,16 @@ TEST_CASE("Help and version are answers, not errors") {
   for (const char* words : {"--help", "-h", "help"}) {
     const Outcome outcome = here.run(words);
     CHECK(outcome.code == 0);
-    for (const char* name :
-         {"run", "plan", "list", "describe", "new", "check", "report", "export", "point", "schema", "doctor", "130"})
+    for (const char* name : {"run", "plan", "list", "describe", "new", "check", "report", "compare", "export", "point",
+                             "schema", "doctor", "130"})
       CHECK_THAT(outcome.out, Contains(name));
   }
   CHECK_THAT(here.run("--version").out, StartsWith("ricochet "));
   const Outcome help = here.run("help help");
   CHECK(help.code == 0);
   CHECK_THAT(help.out, StartsWith("Usage: ricochet help"));
-  for (const char* name :
-       {"run", "plan", "list", "describe", "new", "check", "report", "export", "point", "schema", "doctor"}) {
+  for (const char* name : {"run", "plan", "list", "describe", "new", "check", "report", "compare", "export", "point",
+                           "schema", "doctor"}) {
     const Outcome first = here.run(std::string(name) + " --help"), second = here.run(std::string("help ") + name);
     CHECK(first.code == 0);
     CHECK(first.out == second.out);
@@ -296,6 +296,38 @@ TEST_CASE("A study runs to results that can be reported and exported again") {
   CHECK(here.run("export there --to tables").code == 0);
   CHECK(fs::exists(here / "tables" / "cases.csv"));
   CHECK(here.run("plan there/study.json").code == 0);
+}
+
+TEST_CASE("Two results folders are compared, and several are listed on one page") {
+  const Folder here;
+  nlohmann::ordered_json other = tiny();
+  other["name"] = "other";
+  other["duration"] = 0.02;
+  here.write("tiny.json", tiny().dump(1));
+  here.write("other.json", other.dump(1));
+  for (const char* folder : {"out/first", "out/again"})
+    CHECK(here.run("run tiny.json --jobs 1 --out " + std::string(folder)).code == 0);
+  CHECK(here.run("run other.json --jobs 1 --out out/deep/other").code == 0);
+  const Outcome same = here.run("compare out/first out/again"), differ = here.run("compare out/first out/deep/other");
+  CHECK(same.code == 0);
+  CHECK_THAT(same.out, Contains("inputs: the same\n") && Contains("The results are equal to the last bit.\n"));
+  CHECK(differ.code == 0);
+  CHECK_THAT(differ.out, Contains("/duration: 0.01 → 0.02\n") && Contains("by their parameters") &&
+                             Contains("The results differ beyond round-off"));
+  const Outcome table = here.run("compare out/first out/deep/other --table");
+  CHECK_THAT(table.out, StartsWith("part,case,case_b,name,a,b,relative_change,verdict\n"));
+  CHECK_THAT(table.out, Contains("input,,,/duration,0.01,0.02,,changed\n"));
+  CHECK(here.run("compare out/first").code == 2);
+  CHECK(here.run("compare out/first nowhere").code == 5);
+  const Outcome list = here.run("report out/first out/deep/other");
+  CHECK(list.code == 0);
+  CHECK_THAT(list.out, Contains("index: ") && Contains("/out/index.html\n"));
+  const std::string page = read(here / "out/index.html");
+  CHECK_THAT(page, Contains("href=\"first/report.html\"") && Contains("href=\"deep/other/report.html\"") &&
+                       Contains("Does it run?") && Contains("✓ 4 done"));
+  CHECK(here.run("report out/first out/again --out list.html").code == 0);
+  CHECK_THAT(read(here / "list.html"), Contains("href=\"out/again/report.html\""));
+  CHECK(here.run("report out/first --out list.html").code == 2);
 }
 
 TEST_CASE("Results that are not there, or are something else, end with 5") {

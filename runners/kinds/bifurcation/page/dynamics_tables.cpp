@@ -87,11 +87,11 @@ std::string changes_html(const CaseView& view, const Quantity& parameter) {
   return titled("Located changes", table);
 }
 
-/// White to blue; the text turns white where the ground is dark.
+/// White to blue; the text turns white where that stands out more, never below a contrast of 4.5.
 std::string heat_style(double share) {
   const auto mix = [&](int full) { return static_cast<int>(std::lround(255 + share * (full - 255))); };
   return fmt::format("background:#{:02X}{:02X}{:02X};color:{}", mix(0x00), mix(0x60), mix(0xA0),
-                     share > 0.6 ? "#fff" : "#222");
+                     share > 0.83 ? "#fff" : "#000");
 }
 
 std::string agreement_html(const CaseView& view) {

@@ -48,7 +48,7 @@
       axisLabel: { fontSize: 10, color: ricochet.ink, hideOverlap: true, formatter: (v) => number(v) }, nameTextStyle: { fontSize: 11, color: ricochet.ink }, splitLine: { lineStyle: { color: "#ececec" } },
     });
     panel.appendChild(box);
-    const chart = echarts.init(box, null, { renderer: "canvas" });
+    const chart = ricochet.openChart(box);
     chart.setOption({
       animation: false, backgroundColor: "#fff", grid: { left: 62, right: 14, top: 10, bottom: 38 },
       tooltip: { trigger: "item", confine: true, formatter: (p) => escape(x) + " = " + number(ricochet.cell(p, "x"), 7) + "<br>" + escape(y) + " = " + number(ricochet.cell(p, "y"), 7) },

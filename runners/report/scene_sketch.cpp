@@ -1,0 +1,265 @@
+#include "runners/report/scene_sketch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/report/html.hpp"
+#include "runners/report/scene_values.hpp"
+
+namespace ricochet::report {
+namespace {
+
+// Pixels of the drawing: where the structure begins, how long it is, its line at rest, and how far stops may lie off.
+constexpr double sketch_width = 640, sketch_height = 168, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
+                 nearest_gap = 9, widest_gap = 44;
+
+std::string line(double x1, double y1, double x2, double y2, const char* classes) {
+  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", classes, x1, y1,
+                     x2, y2);
+}
+
+std::string label(double x, double y, const std::string& text, const char* anchor = "middle") {
+  return text.empty()
+             ? ""
+             : fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", x, y, anchor, escape(text));
+}
+
+std::string path(const std::string& d, const char* classes) {
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>", classes, d);
+}
+
+/// An arrow along x or y, its head at the second end; `both`: one at each.
+std::string arrow(double x1, double y1, double x2, double y2, bool both = false) {
+  const double length = std::hypot(x2 - x1, y2 - y1), ux = (x2 - x1) / length, uy = (y2 - y1) / length;
+  const auto head = [&](double x, double y, double sign) {
+    const double bx = x - sign * 7 * ux, by = y - sign * 7 * uy;
+    return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, bx - 3.5 * uy, by + 3.5 * ux,
+                       x, y, bx + 3.5 * uy, by - 3.5 * ux);
+  };
+  return line(x1, y1, x2, y2, "acts") + path(head(x2, y2, 1) + (both ? head(x1, y1, -1) : ""), "acts");
+}
+
+/// A wall whose face stands at x; hatched to its left (or right).
+std::string wall(double x, double from, double to, double side) {
+  std::string hatch;
+  for (double y = from; y < to; y += 8) hatch += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, x + side * 8, y + 8);
+  return line(x, from, x, to, "solid") + path(hatch, "hatch");
+}
+
+/// A stop above (or below) a point: its face level at y, hatched away from the structure.
+std::string level_stop(double x, double y, double side) {
+  std::string hatch;
+  for (double u = -9; u <= 9; u += 6) hatch += fmt::format("M{:.1f} {:.1f}l5 {:.1f}", x + u, y, side * 6);
+  return line(x - 12, y, x + 12, y, "stop") + path(hatch, "stop");
+}
+
+/// A stop across the way of a tip that moves along x.
+std::string upright_stop(double x, double y, double side) {
+  std::string hatch;
+  for (double v = -14; v <= 14; v += 7) hatch += fmt::format("M{:.1f} {:.1f}l{:.1f} 5", x, y + v, side * 6);
+  return line(x, y - 18, x, y + 18, "stop") + path(hatch, "stop");
+}
+
+std::string metres(double gap) {
+  return number_text(gap, 4) + " m";
+}
+
+/// Pixels between rest and a stop: gaps are to scale among each other, none so small that it does not show.
+class Gaps {
+ public:
+  explicit Gaps(const std::vector<SceneValues::Stop>& stops) {
+    for (const SceneValues::Stop& stop : stops)
+      for (const auto& gap : {stop.lower, stop.upper})
+        if (gap && std::isfinite(*gap)) largest_ = std::max(largest_, std::abs(*gap));
+  }
+  double operator()(double gap) const {
+    return largest_ == 0 || gap == 0
+               ? 4
+               : nearest_gap + (widest_gap - nearest_gap) * std::min(1.0, std::abs(gap) / largest_);
+  }
+
+ private:
+  double largest_ = 0;
+};
+
+std::string support_words(const SceneValues& scene) {
+  const std::string amplitude = scene.text("/scene/support/amplitude", "m");
+  return amplitude.empty() ? "" : "A₀ sin(ωt)";
+}
+
+bool loaded(const SceneValues& scene) {
+  const auto* load = scene.at("/scene/load");
+  return load && (load->is_string()   ? load->get<std::string>() != "0"
+                  : load->is_number() ? load->get<double>() != 0
+                                      : !load->empty());
+}
+
+std::string beam(const SceneValues& scene) {
+  const double length = scene.number("/scene/structure/length").value_or(1);
+  const auto x_of = [&](double x) { return sketch_left + sketch_span * std::clamp(x / length, 0.0, 1.0); };
+  std::string out = wall(sketch_left, sketch_rest - 30, sketch_rest + 30, -1) +
+                    line(sketch_left, sketch_rest, sketch_left + sketch_span, sketch_rest, "structure");
+  if (const std::string shaken = support_words(scene); !shaken.empty())
+    out += arrow(sketch_left - 24, sketch_rest - 24, sketch_left - 24, sketch_rest + 24, true) +
+           label(sketch_left - 24, sketch_rest + 48, shaken);
+  if (loaded(scene)) {
+    for (int k = 1; k <= 6; ++k)
+      out += arrow(sketch_left + sketch_span * k / 7.0, sketch_rest - 30, sketch_left + sketch_span * k / 7.0,
+                   sketch_rest - 8);
+    out += label(sketch_left + sketch_span / 14.0 - 6, sketch_rest - 34, "f(x, t)");
+  }
+  const std::vector<SceneValues::Stop> stops = scene.stops(length);
+  const Gaps gaps(stops);
+  const bool few = stops.size() <= 4;
+  for (const SceneValues::Stop& stop : stops) {
+    const double x = x_of(stop.x);
+    if (stop.upper) out += level_stop(x, sketch_rest - gaps(*stop.upper), -1);
+    if (stop.lower) out += level_stop(x, sketch_rest + gaps(*stop.lower), 1);
+    if (!few && &stop != &stops.back()) continue;
+    if (stop.upper) out += label(x, sketch_rest - gaps(*stop.upper) - 11, metres(*stop.upper));
+    if (stop.lower) out += label(x, sketch_rest + gaps(*stop.lower) + 20, metres(*stop.lower));
+  }
+  out += line(sketch_left, sketch_height - 14, sketch_left + sketch_span, sketch_height - 14, "measure") +
+         line(sketch_left, sketch_height - 19, sketch_left, sketch_height - 9, "measure") +
+         line(sketch_left + sketch_span, sketch_height - 19, sketch_left + sketch_span, sketch_height - 9, "measure");
+  return out +
+         label(sketch_left + sketch_span / 2, sketch_height - 18, "L = " + scene.text("/scene/structure/length", "m"));
+}
+
+/// A pin on what moves along x, between the stops of its tip.
+std::string tip_stops(const SceneValues& scene, double length, double x, double y) {
+  const std::vector<SceneValues::Stop> stops = scene.stops(length);
+  const Gaps gaps(stops);
+  std::string out;
+  for (const SceneValues::Stop& stop : stops) {
+    if (stop.upper)
+      out += upright_stop(x + 4 + gaps(*stop.upper), y, 1) +
+             label(x + 14 + gaps(*stop.upper), y + 4, metres(*stop.upper), "start");
+    if (stop.lower)
+      out += upright_stop(x - 4 - gaps(*stop.lower), y, -1) +
+             label(x - 14 - gaps(*stop.lower), y + 4, metres(*stop.lower), "end");
+  }
+  return out + (stops.empty() ? "" : line(x, y - 10, x, y + 22, "structure"));
+}
+
+std::string oscillator(const SceneValues& scene) {
+  const double mass = 330, low = 128;
+  std::string spring = fmt::format("M{:.1f} {:.1f}h20", sketch_left, low - 22);
+  for (int k = 0; k < 8; ++k) spring += k % 2 == 0 ? "l10 -9l10 9" : "l10 9l10 -9";
+  std::string out =
+      wall(sketch_left, low - 44, low, -1) + line(sketch_left, low, sketch_left + sketch_span, low, "hatch") +
+      fmt::format("<rect class=\"body\" x=\"{}\" y=\"{}\" width=\"70\" height=\"44\"/>", mass - 35, low - 44) +
+      label(mass, low - 17, "m");
+  if (!scene.text("/scene/structure/stiffness", "").empty())
+    out += path(spring + fmt::format("L{:.1f} {:.1f}", mass - 35, low - 22), "spring") +
+           label(sketch_left + 110, low - 36, "k");
+  if (!scene.text("/scene/structure/force/amplitude", "").empty())
+    out += arrow(mass + 37, low - 22, mass + 92, low - 22) + label(mass + 98, low - 18, "F cos(ωt + ψ)", "start");
+  if (const std::string shaken = support_words(scene); !shaken.empty())
+    out +=
+        arrow(sketch_left - 56, low - 22, sketch_left - 12, low - 22, true) + label(sketch_left - 34, low - 34, shaken);
+  return out + tip_stops(scene, 0, mass, low - 68);
+}
+
+std::string bar(const SceneValues& scene) {
+  const std::string fixed = scene.word("/scene/structure/fixed");
+  const bool right = fixed == "right", held = fixed == "left" || right;
+  const double from = sketch_left + 60, to = sketch_left + sketch_span - 60, tip = fixed == "left" ? to : from;
+  std::string out = fmt::format("<rect class=\"body\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"18\"/>", from,
+                                sketch_rest + 14, to - from);
+  if (held)
+    out += right ? wall(to, sketch_rest - 4, sketch_rest + 50, 1) : wall(from, sketch_rest - 4, sketch_rest + 50, -1);
+  if (loaded(scene))
+    out += arrow((from + to) / 2 - 25, sketch_rest + 2, (from + to) / 2 + 25, sketch_rest + 2) +
+           label((from + to) / 2, sketch_rest - 6, "f(x, t)");
+  out += tip_stops(scene, scene.number("/scene/structure/length").value_or(1), tip, sketch_rest - 8);
+  return out + label((from + to) / 2, sketch_rest + 54, "L = " + scene.text("/scene/structure/length", "m"));
+}
+
+struct Structure {
+  const char* name;
+  std::string (*draw)(const SceneValues&);
+  std::vector<std::tuple<const char*, const char*, const char*>> numbers;  ///< symbol, key, unit
+};
+
+const std::vector<Structure>& structures() {
+  static const std::vector<Structure> all = {{"beam",
+                                              beam,
+                                              {{"L", "length", "m"},
+                                               {"E", "young", "Pa"},
+                                               {"ρ", "density", "kg/m³"},
+                                               {"α (damping, of K)", "damping/stiffness", "s"},
+                                               {"η (damping, of M)", "damping/mass", "1/s"}}},
+                                             {"oscillator",
+                                              oscillator,
+                                              {{"m", "mass", "kg"},
+                                               {"k", "stiffness", "N/m"},
+                                               {"c", "damping", "N s/m"},
+                                               {"F", "force/amplitude", "N"},
+                                               {"ω of F", "force/pulsation", "rad/s"},
+                                               {"ψ", "force/phase", "rad"}}},
+                                             {"bar",
+                                              bar,
+                                              {{"L", "length", "m"},
+                                               {"EA", "EA", "N"},
+                                               {"ρA", "rhoA", "kg/m"},
+                                               {"α (damping, of K)", "damping/stiffness", "s"},
+                                               {"η (damping, of M)", "damping/mass", "1/s"}}}};
+  return all;
+}
+
+const Structure* structure_of(const SceneValues& scene) {
+  const auto found = std::find_if(structures().begin(), structures().end(), [&](const Structure& one) {
+    return one.name == scene.word("/scene/structure/type");
+  });
+  return found == structures().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string scene_svg(const nlohmann::ordered_json& study) {
+  const SceneValues scene(study);
+  const Structure* structure = structure_of(scene);
+  if (!structure) return "";
+  std::string said = std::string("Sketch of the scene: ") + structure->name;
+  for (const auto& [symbol, text] : scene_numbers(study)) said += ", " + symbol + " " + text;
+  return fmt::format("<svg class=\"sketch\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>\n",
+                     sketch_width, sketch_height, escape(said), structure->draw(scene));
+}
+
+std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::ordered_json& study) {
+  const SceneValues scene(study);
+  std::vector<std::pair<std::string, std::string>> out;
+  const auto add = [&](const std::string& symbol, const std::string& text) {
+    if (!text.empty()) out.emplace_back(symbol, text);
+  };
+  const Structure* structure = structure_of(scene);
+  if (!structure) return out;
+  for (const auto& [symbol, key, unit] : structure->numbers)
+    add(symbol, scene.text(std::string("/scene/structure/") + key, unit));
+  if (const auto section = scene.section()) {
+    add("EI", number_text(section->EI, 4) + " N m²");
+    add("ρS", number_text(section->rhoS, 4) + " kg/m");
+  }
+  for (const auto& [symbol, key] : {std::pair("lower stop", "lower"), {"upper stop", "upper"}}) {
+    const std::string pointer = std::string("/scene/stops/") + key;
+    const auto* stop = scene.at(pointer);
+    // A stop at rest is one all the same.
+    add(symbol,
+        stop && scene.text(pointer, "m").empty() ? "0 m" : scene.text(pointer, stop && stop->is_string() ? "" : "m"));
+  }
+  const auto* at = scene.at("/scene/stops/at");
+  if (at) add("stops at", at->is_string() ? at->get<std::string>() : scene.text("/scene/stops/at", "m"));
+  add("A₀ (clamp)", scene.text("/scene/support/amplitude", "m"));
+  if (!scene.text("/scene/support/amplitude", "").empty())
+    add("ω (clamp)", scene.text("/scene/support/pulsation", "rad/s"));
+  add("load", scene.text("/scene/load", ""));
+  add("u(x, 0)", scene.text("/scene/initial/displacement", ""));
+  add("u_t(x, 0)", scene.text("/scene/initial/velocity", ""));
+  add("duration", scene.text("/duration", "s"));
+  return out;
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,153 @@
+#include "runners/report/scene_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ricochet/scene/scene.hpp>
+
+#include "runners/report/html.hpp"
+
+namespace ricochet::report {
+namespace {
+
+using SceneJson = nlohmann::ordered_json;
+
+constexpr std::size_t most_stops = 12;
+constexpr int scene_digits = 4;
+
+std::optional<double> first_number(const SceneJson* value) {
+  if (value && value->is_array() && !value->empty()) value = &value->front();
+  return value && value->is_number() ? std::optional(value->get<double>()) : std::nullopt;
+}
+
+/// A stop's formula at x; nothing where there is no stop or no formula that can be read.
+std::optional<double> stop_at(const SceneJson* formula, double x) {
+  if (formula && formula->is_array() && !formula->empty()) formula = &formula->front();
+  if (!formula) return std::nullopt;
+  if (formula->is_number()) return formula->get<double>();
+  if (!formula->is_string()) return std::nullopt;
+  try {
+    return Formula(formula->get<std::string>(), "/scene/stops", "x")(x);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::string with(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+
+}  // namespace
+
+const SceneJson* SceneValues::at(const std::string& pointer) const {
+  const SceneJson::json_pointer place(pointer);
+  return study_.contains(place) && !study_.at(place).is_null() ? &study_.at(place) : nullptr;
+}
+
+std::string SceneValues::word(const std::string& pointer) const {
+  const SceneJson* value = at(pointer);
+  return value && value->is_string() ? value->get<std::string>() : "";
+}
+
+std::optional<double> SceneValues::number(const std::string& pointer) const {
+  if (const std::vector<double> values = swept(pointer); !values.empty()) return values.back();
+  return first_number(at(pointer));
+}
+
+std::vector<double> SceneValues::swept(const std::string& pointer) const {
+  std::vector<const SceneJson*> sweeps;
+  if (const SceneJson* one = at("/parameter")) sweeps.push_back(one);
+  if (const SceneJson* axes = at("/axes"); axes && axes->is_array())
+    for (const SceneJson& one : *axes) sweeps.push_back(&one);
+  for (const SceneJson* one : sweeps) {
+    if (!one->is_object() || one->value("pointer", "") != pointer) continue;
+    if (one->contains("values") && (*one)["values"].is_array()) {
+      std::vector<double> out;
+      for (const SceneJson& value : (*one)["values"])
+        if (value.is_number()) out.push_back(value.get<double>());
+      return out;
+    }
+    const auto from = first_number(&(*one)["from"]), to = first_number(&(*one)["to"]);
+    if (from && to) return {*from, *to};
+  }
+  return {};
+}
+
+std::string SceneValues::text(const std::string& pointer, const std::string& unit) const {
+  if (const std::vector<double> values = swept(pointer); !values.empty()) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return "from " + number_text(*low, scene_digits) + " to " + with(number_text(*high, scene_digits), unit) +
+           ", swept";
+  }
+  const SceneJson* value = at(pointer);
+  if (!value) return "";
+  if (value->is_number())
+    return value->get<double>() == 0 ? "" : with(number_text(value->get<double>(), scene_digits), unit);
+  if (value->is_string()) return value->get<std::string>() == "0" ? "" : value->get<std::string>();
+  if (!value->is_array() || value->empty()) return "";
+  std::vector<double> numbers;
+  for (const SceneJson& one : *value)
+    if (one.is_number()) numbers.push_back(one.get<double>());
+  if (numbers.size() != value->size()) return count_text(value->size(), "value", "values");
+  if (numbers.size() == 1) return with(number_text(numbers.front(), scene_digits), unit);
+  const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
+  if (numbers.size() == 2)
+    return number_text(numbers[0], scene_digits) + " and " + with(number_text(numbers[1], scene_digits), unit);
+  return fmt::format("from {} to {} ({} values)", number_text(*low, scene_digits),
+                     with(number_text(*high, scene_digits), unit), numbers.size());
+}
+
+std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
+  const SceneJson *lower = at("/scene/stops/lower"), *upper = at("/scene/stops/upper"), *where = at("/scene/stops/at");
+  if (!lower && !upper) return {};
+  std::vector<double> places;
+  if (where && where->is_array()) {
+    for (const SceneJson& x : *where)
+      if (x.is_number()) places.push_back(x.get<double>());
+  } else if (word("/scene/stops/at") == "tip") {
+    places = {length};
+  } else {
+    // At nodes: a few of them stand for all.
+    const auto elements = static_cast<std::size_t>(std::max(1.0, number("/mesh/elements").value_or(most_stops)));
+    const std::size_t shown = std::min(elements, most_stops);
+    for (std::size_t k = 1; k <= shown; ++k)
+      places.push_back(length * static_cast<double>(k) / static_cast<double>(shown));
+  }
+  if (places.size() > most_stops) places.resize(most_stops);
+  std::vector<Stop> out;
+  for (const double x : places) {
+    const Stop stop{x, stop_at(lower, x), stop_at(upper, x)};
+    if (stop.lower || stop.upper) out.push_back(stop);
+  }
+  return out;
+}
+
+std::optional<SceneValues::Section> SceneValues::section() const {
+  const std::string of = "/scene/structure/section/";
+  ricochet::Section section;
+  const std::pair<const char*, ricochet::Section::Type> types[] = {{"tube", ricochet::Section::Type::tube},
+                                                                   {"circle", ricochet::Section::Type::circle},
+                                                                   {"rectangle", ricochet::Section::Type::rectangle},
+                                                                   {"given", ricochet::Section::Type::given}};
+  const auto type =
+      std::find_if(std::begin(types), std::end(types), [&](const auto& one) { return one.first == word(of + "type"); });
+  if (type == std::end(types)) return std::nullopt;
+  section.type = type->second;
+  for (const auto& [key, value] : {std::pair("outer_diameter", &section.outer_diameter),
+                                   {"wall", &section.wall},
+                                   {"diameter", &section.diameter},
+                                   {"width", &section.width},
+                                   {"height", &section.height},
+                                   {"EI", &section.EI},
+                                   {"rhoS", &section.rhoS}}) {
+    if (const SceneJson* there = at(of + key); there && there->is_array()) return std::nullopt;
+    *value = number(of + key).value_or(0);
+  }
+  const SceneJson *young = at("/scene/structure/young"), *density = at("/scene/structure/density");
+  if ((young && young->is_array()) || (density && density->is_array())) return std::nullopt;
+  const SectionProperties found =
+      section_properties(section, first_number(young).value_or(0), first_number(density).value_or(0));
+  return found.EI > 0 && found.rhoS > 0 ? std::optional(Section{found.EI, found.rhoS}) : std::nullopt;
+}
+
+}  // namespace ricochet::report

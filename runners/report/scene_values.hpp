@@ -1,0 +1,43 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ricochet::report {
+
+/// The scene of a resolved study, read leniently: what a study varies stands there as a list, and what cannot be read
+/// is left out of the drawing rather than being an error.
+class SceneValues {
+ public:
+  explicit SceneValues(const nlohmann::ordered_json& study) : study_(study) {}
+
+  /// What stands at a pointer; null where nothing does.
+  const nlohmann::ordered_json* at(const std::string& pointer) const;
+  std::string word(const std::string& pointer) const;
+  /// The number there, the first of a list; nothing for what is none.
+  std::optional<double> number(const std::string& pointer) const;
+  /// It with its unit; of several "from … to … (8 values)"; "" for nothing and for a lone 0.
+  std::string text(const std::string& pointer, const std::string& unit) const;
+
+  /// A stop at one place: where along the structure, and how far it lies from rest.
+  struct Stop {
+    double x = 0;
+    std::optional<double> lower, upper;
+  };
+  /// The stops, at most twelve places of a structure this long; none where there is no contact.
+  std::vector<Stop> stops(double length) const;
+  /// EI (N m²) and ρS (kg/m) of a beam; nothing where its section varies or is none.
+  struct Section {
+    double EI, rhoS;
+  };
+  std::optional<Section> section() const;
+
+ private:
+  /// The values that a sweep gives to this place.
+  std::vector<double> swept(const std::string& pointer) const;
+
+  const nlohmann::ordered_json& study_;
+};
+
+}  // namespace ricochet::report

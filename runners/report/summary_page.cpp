@@ -1,0 +1,185 @@
+#include "runners/report/summary_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/report/answer_lines.hpp"
+#include "runners/report/html.hpp"
+#include "runners/report/scene_sketch.hpp"
+#include "runners/report/template.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet::report {
+namespace {
+
+// So much stands on one sheet beside a sketch and a figure.
+constexpr std::size_t most_summary_lines = 6, most_values = 8, most_reasons = 3;
+
+std::string entry(const Environment& environment, const std::string& name) {
+  const auto found = std::find_if(environment.entries.begin(), environment.entries.end(),
+                                  [&](const auto& one) { return one.first == name; });
+  return found == environment.entries.end() ? "" : found->second;
+}
+
+Fill pair_fill(const char* first, const std::string& name, const char* second, const std::string& value) {
+  Fill out;
+  out.set(first, name);
+  out.set(second, value);
+  return out;
+}
+
+Fill line_fill(const std::string& line) {
+  Fill out;
+  out.set("line", line);
+  return out;
+}
+
+Fill answer_fill(const StudyResults& results) {
+  Fill out{Fill::type::list};
+  const std::vector<std::string> lines = answer_lines(results);
+  for (std::size_t k = 0; k < std::min(lines.size(), most_summary_lines); ++k) out << line_fill(lines[k]);
+  if (lines.size() > most_summary_lines)
+    out << line_fill(count_text(lines.size() - most_summary_lines, "more line", "more lines") + " in the report.");
+  if (lines.empty()) out << line_fill("None is stated in sentences; the report's tables and figures stand for it.");
+  return out;
+}
+
+/// What ran of a role: its methods in order of appearance, each with the values that its parameters had; of a plain
+/// axis its values. "alpha (order 1, 2), beta".
+std::string ran_text(const StudyResults& results, const std::string& role) {
+  using Values = std::vector<std::string>;
+  std::vector<std::pair<std::string, std::vector<std::pair<std::string, Values>>>> methods;
+  for (const CaseRecord& record : results.cases) {
+    const std::string name = CaseView::text(record, role);
+    if (record.status == "refused" || name.empty()) continue;
+    auto& parameters = in_order_met(methods, name);
+    for (const std::string& column : results.columns) {
+      const std::string value = CaseView::text(record, column);
+      if (column == role || role_of(column) != role || value.empty()) continue;
+      Values& values = in_order_met(parameters, column.substr(role.size() + 1));
+      if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+    }
+  }
+  Values out;
+  for (const auto& [name, parameters] : methods) {
+    Values said;
+    for (const auto& [parameter, values] : parameters) said.push_back(parameter + " " + list_text(values, most_values));
+    out.push_back(said.empty() ? name : fmt::format("{} ({})", name, fmt::join(said, "; ")));
+  }
+  return list_text(out, most_values);
+}
+
+/// Roles with the methods that a case ran with, then every other axis with its values.
+Fill methods_fill(const CaseView& view) {
+  Fill out{Fill::type::list};
+  std::vector<std::string> roles;
+  for (const std::string& column : view.results().columns)
+    if (const std::string role = role_of(column); std::find(roles.begin(), roles.end(), role) == roles.end())
+      roles.push_back(role);
+  for (const std::string& role : roles) {
+    const std::string ran = ran_text(view.results(), role), unit = axis_unit(role);
+    if (!ran.empty()) out << pair_fill("role", role + (unit.empty() ? "" : " (" + unit + ")"), "values", ran);
+  }
+  return out;
+}
+
+Fill limits_fill(const CaseView& view) {
+  Fill out{Fill::type::list};
+  const StudyResults& results = view.results();
+  std::string counts;
+  for (const char* status : {"done", "refused", "diverged", "failed"})
+    if (const std::size_t count = view.with_status(status).size())
+      counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, status);
+  out << line_fill(count_text(results.cases.size(), "case", "cases") + counts + ".");
+  if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0)
+    out << line_fill(count_text(static_cast<std::size_t>(missing), "case", "cases") + " not run yet.");
+  if (const Table* reasons = find_table(results.derived, "reasons")) {
+    const TableReader rows(*reasons);
+    for (std::size_t row = 0; row < std::min(rows.size(), most_reasons); ++row)
+      out << line_fill(
+          fmt::format("{} {}: {}.", rows.text(row, "cases"), rows.text(row, "status"), rows.text(row, "reason")));
+    if (rows.size() > most_reasons)
+      out << line_fill(count_text(rows.size() - most_reasons, "more reason", "more reasons") + " in reasons.csv.");
+  }
+  std::vector<std::string> open;
+  if (const Table* answers = find_table(results.derived, "answers")) {
+    const TableReader rows(*answers);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      if (const std::string verdict = rows.text(row, "verdict"); verdict == "not resolved" || verdict == "not told")
+        open.push_back(in_words(rows.text(row, "measure")) + " by " + rows.text(row, "choice"));
+  }
+  if (!open.empty()) out << line_fill("Not resolved: " + list_text(open, most_values) + ".");
+  std::size_t notes = 0;
+  for (const CaseRecord& record : results.cases) notes += record.notes.empty() ? 0 : 1;
+  if (notes > 0) out << line_fill(count_text(notes, "case", "cases") + " with remarks, under Notes in the report.");
+  return out;
+}
+
+Fill identity_fill(const StudyResults& results) {
+  Fill out{Fill::type::list};
+  out << pair_fill("name", "fingerprint", "value",
+                   study_fingerprint(results) + " (resolved study, commit and plugins)");
+  for (const char* name : {"program", "commit", kStarted, "compiler", "flags", "processor", "kernel"})
+    if (const std::string value = entry(results.environment, name); !value.empty())
+      out << pair_fill("name", name, "value", value);
+  return out;
+}
+
+/// Text as a CSS string.
+std::string css_string(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text)
+    if (c == '"' || c == '\\' || c == '<' || static_cast<unsigned char>(c) < 0x20)
+      out += fmt::format("\\{:x} ", static_cast<unsigned char>(c));
+    else
+      out += c;
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string study_fingerprint(const StudyResults& results) {
+  constexpr std::size_t digits = 16;
+  std::string content = results.study.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  content += entry(results.environment, "commit");
+  for (const auto& [name, value] : results.environment.entries) {
+    // "…/libricochet-x.so (hash)": the same library is the same wherever it lies.
+    const std::size_t open = value.rfind('(');
+    if (name.starts_with("plugin ")) content += name + (open == std::string::npos ? value : value.substr(open));
+  }
+  return content_hash(content).substr(0, digits);
+}
+
+std::string summary_html(const CaseView& view) {
+  const StudyResults& results = view.results();
+  if (results.cases.empty()) return "";
+  Fill with;
+  with.set("name", results.name);
+  if (!results.question.empty()) with.set("question", results.question);
+  with.set("sketch", scene_svg(results.study));
+  std::string numbers;
+  for (const auto& [symbol, text] : scene_numbers(results.study))
+    numbers += (numbers.empty() ? "" : " · ") + symbol + " = " + text;
+  with.set("numbers", numbers);
+  with.set("lines", answer_fill(results));
+  with.set("methods", methods_fill(view));
+  with.set("limits", limits_fill(view));
+  with.set("identity", identity_fill(results));
+  return filled("summary", with);
+}
+
+std::string page_margins(const StudyResults& results) {
+  const std::string commit = entry(results.environment, "commit"), started = entry(results.environment, kStarted);
+  const std::string left = fmt::format("{} · fingerprint {}{}", results.name, study_fingerprint(results),
+                                       commit.empty() ? "" : " · commit " + commit);
+  return fmt::format(
+      "@page {{ size: A4; margin: 14mm 15mm 18mm; @bottom-left {{ content: {}; font: 7.5pt sans-serif; color: #5c5c5c; "
+      "white-space: nowrap; }} @bottom-right {{ content: {} \"page \" counter(page) \" of \" counter(pages); font: "
+      "7.5pt sans-serif; color: #5c5c5c; white-space: nowrap; }} }}\n",
+      css_string(left), started.empty() ? "" : css_string(started + " · "));
+}
+
+}  // namespace ricochet::report

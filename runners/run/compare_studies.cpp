@@ -1,0 +1,182 @@
+#include "runners/run/compare_studies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runners/report/answer_lines.hpp"
+#include "runners/run/measure_scale.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string json_said(const Json* value) {
+  return value ? value->dump(-1, ' ', false, Json::error_handler_t::replace) : "";
+}
+
+/// One reference token of a pointer (RFC 6901).
+std::string pointer_token(const std::string& key) {
+  std::string out;
+  for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return out;
+}
+
+/// Objects member by member, lists of equal length entry by entry; a list that grew or shrank is one value.
+void add_changes(const Json* a, const Json* b, const std::string& pointer, std::vector<ChangedText>& out) {
+  if (a && b && *a == *b) return;
+  if (a && b && a->is_object() && b->is_object()) {
+    for (const auto& [key, value] : a->items())
+      add_changes(&value, b->contains(key) ? &(*b)[key] : nullptr, pointer + "/" + pointer_token(key), out);
+    for (const auto& [key, value] : b->items())
+      if (!a->contains(key)) add_changes(nullptr, &value, pointer + "/" + pointer_token(key), out);
+    return;
+  }
+  if (a && b && a->is_array() && b->is_array() && a->size() == b->size()) {
+    for (std::size_t k = 0; k < a->size(); ++k) add_changes(&(*a)[k], &(*b)[k], pointer + "/" + std::to_string(k), out);
+    return;
+  }
+  out.push_back({pointer, json_said(a), json_said(b)});
+}
+
+/// A library is the same wherever it lies: its entry ends in "(hash)".
+std::string without_place(const std::string& entry, const std::string& value) {
+  const std::size_t open = value.rfind('(');
+  return entry.starts_with("plugin ") && open != std::string::npos ? value.substr(open) : value;
+}
+
+std::vector<ChangedText> environment_changes(const Environment& a, const Environment& b) {
+  std::vector<ChangedText> out;
+  const auto find = [](const Environment& in, const std::string& name) {
+    const auto found =
+        std::find_if(in.entries.begin(), in.entries.end(), [&](const auto& entry) { return entry.first == name; });
+    return found == in.entries.end() ? std::string() : without_place(name, found->second);
+  };
+  std::vector<std::string> names;
+  for (const Environment* one : {&a, &b})
+    for (const auto& [name, value] : one->entries)
+      if (name != kStarted && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const std::string& name : names)
+    if (find(a, name) != find(b, name)) out.push_back({name, find(a, name), find(b, name)});
+  return out;
+}
+
+/// The cases of both by a key that no two of either share; what is left over stays in the lists.
+template <class KeyOf>
+void pair_by(KeyOf key_of_case, StudyComparison& into) {
+  std::map<std::string, std::vector<const CaseRecord*>> there;
+  for (const CaseRecord* record : into.only_b) there[key_of_case(*record)].push_back(record);
+  std::map<std::string, int> here;
+  for (const CaseRecord* record : into.only_a) ++here[key_of_case(*record)];
+  std::set<const CaseRecord*> matched;
+  for (const CaseRecord* record : into.only_a) {
+    const std::string key = key_of_case(*record);
+    const auto found = there.find(key);
+    if (found == there.end() || found->second.size() != 1 || here[key] != 1) continue;
+    into.pairs.push_back({record, found->second.front()});
+    matched.insert({record, found->second.front()});
+  }
+  for (auto* list : {&into.only_a, &into.only_b})
+    std::erase_if(*list, [&](const CaseRecord* record) { return matched.count(record) != 0; });
+}
+
+void pair_cases(const StudyResults& a, const StudyResults& b, StudyComparison& into) {
+  into.only_a = all_cases(a);
+  into.only_b = all_cases(b);
+  pair_by([](const CaseRecord& record) { return record.id; }, into);
+  const std::size_t by_id = into.pairs.size();
+  std::vector<std::string> both = a.columns;
+  for (const std::string& column : b.columns)
+    if (std::find(both.begin(), both.end(), column) == both.end()) both.push_back(column);
+  pair_by([&](const CaseRecord& record) { return key_of(axes_of(record, both)); }, into);
+  into.by_id = into.pairs.size() == by_id;
+}
+
+MeasureChange measure_change(const std::string& name, const CasePair& pair) {
+  MeasureChange out{name, pair, measure(*pair.a, name), measure(*pair.b, name), 0, NumberChange::none};
+  if (!out.a && !out.b) return out;
+  if (!out.a || !out.b) {
+    out.change = NumberChange::missing;
+    return out;
+  }
+  if (*out.a == *out.b) return out;
+  const MeasureScale scale(name);
+  const double size = std::max(scale.of(*pair.a).value_or(0), scale.of(*pair.b).value_or(0));
+  const double move = std::abs(*out.b - *out.a), floor = std::max(round_off(*pair.a), round_off(*pair.b)) * size;
+  out.relative = size > 0 ? move / size : move;
+  out.change = move <= floor ? NumberChange::round_off : NumberChange::beyond;
+  return out;
+}
+
+std::vector<MeasureChange> measure_changes(const std::vector<CasePair>& pairs) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const CasePair& pair : pairs)
+    for (const CaseRecord* record : {pair.a, pair.b})
+      for (const auto& [name, value] : record->measures)
+        if (seen.insert(name).second) names.push_back(name);
+  std::vector<MeasureChange> out;
+  for (const std::string& name : names) {
+    const MeasureInfo* info = measure_info(name);
+    if (info && info->of == MeasureInfo::Of::computation) continue;
+    for (const CasePair& pair : pairs)
+      if (pair.a->status == "done" && pair.b->status == "done") {
+        const MeasureChange change = measure_change(name, pair);
+        if (change.a || change.b) out.push_back(change);
+      }
+  }
+  return out;
+}
+
+std::vector<std::string> lines_without(const std::vector<std::string>& lines, const std::vector<std::string>& others) {
+  std::vector<std::string> out;
+  for (const std::string& line : lines)
+    if (std::find(others.begin(), others.end(), line) == others.end()) out.push_back(line);
+  return out;
+}
+
+}  // namespace
+
+const char* change_word(NumberChange change) {
+  switch (change) {
+    case NumberChange::none:
+      return "equal";
+    case NumberChange::round_off:
+      return "within round-off";
+    case NumberChange::beyond:
+      return "beyond round-off";
+    case NumberChange::missing:
+      return "only in one";
+  }
+  return "";
+}
+
+std::vector<CasePair> StudyComparison::status_changes() const {
+  std::vector<CasePair> out;
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(out), [](const CasePair& pair) {
+    return pair.a->status != pair.b->status || pair.a->partial != pair.b->partial;
+  });
+  return out;
+}
+
+std::size_t StudyComparison::count(NumberChange change) const {
+  return static_cast<std::size_t>(
+      std::count_if(measures.begin(), measures.end(), [&](const MeasureChange& one) { return one.change == change; }));
+}
+
+StudyComparison compare_studies(const StudyResults& a, const StudyResults& b) {
+  StudyComparison out;
+  add_changes(&a.study, &b.study, "", out.inputs);
+  out.environment = environment_changes(a.environment, b.environment);
+  pair_cases(a, b, out);
+  out.measures = measure_changes(out.pairs);
+  const std::vector<std::string> lines_a = report::answer_lines(a), lines_b = report::answer_lines(b);
+  out.lines_only_a = lines_without(lines_a, lines_b);
+  out.lines_only_b = lines_without(lines_b, lines_a);
+  return out;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+/// \file
+/// Two results folders side by side: what was asked differently, and what came out differently.
+namespace ricochet {
+
+/// A value that the two have differently; "" where one has none.
+struct ChangedText {
+  std::string where;  ///< JSON pointer, entry of the environment
+  std::string a, b;
+};
+
+/// A case of both, by the cases themselves.
+struct CasePair {
+  const CaseRecord *a = nullptr, *b = nullptr;
+};
+
+/// How two numbers differ: not at all; by no more than 2⁻⁵² × steps of the measure's scale, which is what the round-off
+/// of a march may leave; by more; or one of the two is missing.
+enum class NumberChange { none, round_off, beyond, missing };
+const char* change_word(NumberChange change);
+
+/// A measure of a case of both.
+struct MeasureChange {
+  std::string measure;
+  CasePair pair;
+  std::optional<double> a, b;
+  double relative = 0;  ///< |b − a| over the measure's scale, the larger of the two; 0 where one is missing
+  NumberChange change = NumberChange::none;
+};
+
+struct StudyComparison {
+  std::vector<ChangedText> inputs, environment;
+  bool by_id = true;  ///< cases go together by their ids; else by their values on all axes of both
+  std::vector<CasePair> pairs;
+  std::vector<const CaseRecord*> only_a, only_b;
+  std::vector<MeasureChange> measures;                  ///< of pairs that are done in both, measure by measure
+  std::vector<std::string> lines_only_a, lines_only_b;  ///< of the answers
+
+  std::vector<CasePair> status_changes() const;
+  std::size_t count(NumberChange change) const;
+};
+
+/// The same values for the same axes are the same case, whatever else changed; ids go first, as they also say the
+/// scene. Measures of the computation (its time) are no result and are left out. Both outlive what is returned.
+StudyComparison compare_studies(const StudyResults& a, const StudyResults& b);
+
+/// What a person reads, at most a screen of it.
+std::string comparison_text(const StudyComparison& found, const StudyResults& a, const StudyResults& b);
+/// All of it: a row per input, case, measure and line.
+Table comparison_table(const StudyComparison& found);
+
+}  // namespace ricochet

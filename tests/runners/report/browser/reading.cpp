@@ -1,0 +1,299 @@
+// Reports of every kind, as they are read: on a phone, on paper, on a dark screen, by keys.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <regex>
+
+#include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/browser/driven.hpp"
+
+using namespace ricochet::browser;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const kinds[] = {"trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins"};
+
+// Expressions that the page answers.
+const char* const page_width = "document.documentElement.scrollWidth";
+// Boxes and words that pass the right edge of what is seen, but for what lies in a box that scrolls by itself.
+const char* const beyond_edge =
+    "Array.from(document.querySelectorAll('body *')).filter((e) => !e.closest('.scroll, .skip, .notes, pre, svg') && "
+    "e.getClientRects().length && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + ' ' + "
+    "e.className + ' ' + e.textContent.slice(0, 30))";
+// A chart in the middle of the screen, drawn.
+const char* const show_chart =
+    "new Promise((done) => { document.documentElement.style.scrollBehavior = 'auto'; "
+    "document.querySelector('.chart').scrollIntoView({block: 'center'}); setTimeout(() => done(scrollY), 300); })";
+
+/// What a shell command says.
+std::string said(const std::string& command) {
+  std::string out;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  char buffer[4096];
+  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, count);
+  REQUIRE(pclose(pipe) == 0);
+  return out;
+}
+
+std::string file_of(const std::string& name) {
+  return (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "reading-print" / name).string();
+}
+
+}  // namespace
+
+TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart scrolls the page",
+          "[report][browser]") {
+  if (left_out()) return;
+  Json steps = Json::array();
+  for (const std::string kind : kinds) {
+    steps.push_back({{"name", kind},
+                     {"page", report_of("reading-phone", kind)},
+                     {"width", 420},
+                     {"height", 900},
+                     {"touch", true},
+                     {"before", {show_chart}},
+                     {"swipe", {{"x", 210}, {"from", 520}, {"to", 380}}},
+                     {"evaluate", {page_width, "scrollY", beyond_edge}}});
+  }
+  const Json said = driven("reading-phone", steps);
+  for (const std::string kind : kinds) {
+    INFO(kind);
+    const Json& values = said.at(kind).at("values");
+    CHECK(values.at(0) == 420);
+    const double before = said.at(kind).at("before").at(0), after = values.at(1);
+    CHECK(after > before + 60);  // a swipe of 140 pixels, less what a browser takes to see that it is one
+    CHECK(values.at(2) == Json::array());
+  }
+}
+
+TEST_CASE("a wide table keeps its first column and says that it goes on", "[report][browser]") {
+  if (left_out()) return;
+  const char* const scrolled =
+      "(() => { const box = document.getElementById('cases').closest('.scroll'), cell = "
+      "document.getElementById('cases').tBodies[0].rows[0].cells[0], at = () => "
+      "Math.round(cell.getBoundingClientRect().left), first = at(), wide = box.dataset.wide, hint = "
+      "getComputedStyle(box, '::before').content; box.scrollLeft = 300; return [wide, hint, first, at(), "
+      "box.tabIndex]; "
+      "})()";
+  const Json values = driven("reading-table", {{{"name", "table"},
+                                                {"page", report_of("reading-table", "trajectory")},
+                                                {"width", 420},
+                                                {"height", 900},
+                                                {"evaluate", {scrolled}}}})
+                          .at("table")
+                          .at("values")
+                          .at(0);
+  CHECK(values.at(0) == "more");
+  CHECK_THAT(values.at(1).get<std::string>(), Contains("columns go on"));
+  CHECK(values.at(2) == values.at(3));
+  CHECK(values.at(4) == 0);
+}
+
+TEST_CASE("the table of cases takes words and conditions, and gives what it shows as CSV", "[report][browser]") {
+  if (left_out()) return;
+  const auto filtered = [](const std::string& text) {
+    return "(() => { const box = document.getElementById('filter'); box.value = '" + text +
+           "'; box.dispatchEvent(new Event('input')); return [Array.from(document.querySelectorAll('#cases tbody "
+           "tr')).filter((row) => !row.hidden).length, document.getElementById('shown').textContent]; })()";
+  };
+  const std::string heads =
+      "Array.from(document.querySelectorAll('#cases thead th')).slice(0, 3).map((head) => head.dataset.column)";
+  const Json values =
+      driven("reading-cases",
+             {{{"name", "cases"},
+               {"page", report_of("reading-cases", "trajectory")},
+               {"evaluate",
+                {heads, filtered(""), filtered("status = done"), filtered("status != done"), filtered("step > 1e-5"),
+                 filtered("step <= 1e-5 singular"), filtered("energy left > 0"), filtered("enrgy_left > 0"),
+                 filtered("step >"), filtered("mass=singular"), "ricochet.casesShown()"}}}})
+          .at("cases")
+          .at("values");
+  CHECK(values.at(0) == Json({"case", "status", "mass"}));
+  const int all = values.at(1).at(0);
+  CHECK(all > 2);
+  CHECK(values.at(2).at(0) == all);
+  CHECK(values.at(3).at(0) == 0);
+  const int coarse = values.at(4).at(0);
+  CHECK((coarse > 0 && coarse < all));
+  CHECK((values.at(5).at(0) > 0 && values.at(5).at(0) < all - coarse));
+  CHECK(values.at(6).at(0) == all);
+  CHECK(values.at(7).at(1) == "no column is called “enrgy_left”; did you mean energy_left?");
+  CHECK_THAT(values.at(8).at(1).get<std::string>(), Contains("expects a value"));
+  const std::string csv = values.at(10);
+  CHECK_THAT(csv, Catch::Matchers::StartsWith("case,status,mass,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + values.at(9).at(0).get<int>());
+  CHECK_THAT(csv, !Contains("consistent"));
+}
+
+TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report][browser]") {
+  if (left_out()) return;
+  // Contrast of every element with words of its own against what lies behind it (WCAG 2.1), the least of them.
+  const char* const least_contrast = R"js((() => {
+    const { contrast, channels } = ricochet.theme, behind = (e) => {
+      for (; e; e = e.parentElement) { const c = channels(getComputedStyle(e).backgroundColor); if (c && (c[3] === undefined || c[3] > 0.5)) return c; }
+      return [255, 255, 255];
+    };
+    let least = [99, ""];
+    for (const e of document.querySelectorAll("body *")) {
+      if (!e.getClientRects().length || !Array.from(e.childNodes).some((n) => n.nodeType === 3 && n.textContent.trim())) continue;
+      if (e.closest("[aria-pressed=false], svg, script, noscript, .skip")) continue;
+      const found = contrast(channels(getComputedStyle(e).color), behind(e));
+      if (found < least[0]) least = [found, e.tagName + "." + e.className + ": " + e.textContent.slice(0, 40)];
+    }
+    return least;
+  })())js";
+  const char* const paper = "ricochet.theme.channels(getComputedStyle(document.body).backgroundColor)";
+  const char* const chart = R"js((() => {
+    const slot = ricochet.figures.flatMap((f) => f.slots.map((s) => [f, s])).find(([f, s]) => f.visible(s) && f.viewOf(s).option), [figure, first] = slot;
+    figure.draw(first);
+    const option = first.chart.getOption(), { contrast, channels } = ricochet.theme, ground = channels(option.backgroundColor), colours = option.series.map((s) => s.color).filter((c) => typeof c === "string" && channels(c));
+    return [ground, contrast(channels(option.xAxis[0].axisLabel.color), ground), Math.min(99, ...colours.map((c) => contrast(channels(c), ground)))];
+  })())js";
+  Json steps = Json::array();
+  for (const std::string kind : kinds)
+    for (const bool dark : {true, false})
+      steps.push_back({{"name", kind + (dark ? " dark" : " light")},
+                       {"page", report_of("reading-dark", kind)},
+                       {"dark", dark},
+                       {"evaluate", {least_contrast, paper, chart}}});
+  const Json said = driven("reading-dark", steps);
+  for (const std::string kind : kinds)
+    for (const bool dark : {true, false}) {
+      const Json& values = said.at(kind + (dark ? " dark" : " light")).at("values");
+      INFO(kind << " " << dark << " " << values);
+      CHECK(values.at(0).at(0) >= 4.5);
+      CHECK((values.at(1).at(0) < 60) == dark);
+      CHECK((values.at(2).at(0).at(0) < 60) == dark);
+      CHECK(values.at(2).at(1) >= 4.5);
+      if (dark) CHECK(values.at(2).at(2) >= 3);  // guides are greyer than curves
+    }
+}
+
+TEST_CASE("a chart that is open turns dark with the screen", "[report][browser]") {
+  if (left_out()) return;
+  // Printed, the same page is light: what stands on paper is drawn from the colours as they are said.
+  const char* const drawn = R"js((() => {
+    ricochet.paper.prepare();
+    const svg = document.querySelector(".on-paper svg"), ground = svg.querySelector("rect").getAttribute("fill"), width = Number(svg.getAttribute("width"));
+    ricochet.paper.finish();
+    return [ground, width, document.querySelectorAll(".on-paper").length];
+  })())js";
+  const Json values = driven("reading-paper", {{{"name", "paper"},
+                                                {"page", report_of("reading-paper", "trajectory")},
+                                                {"dark", true},
+                                                {"evaluate", {drawn}}}})
+                          .at("paper")
+                          .at("values")
+                          .at(0);
+  CHECK((values.at(0) == "#ffffff" || values.at(0) == "#fff" || values.at(0) == "rgb(255,255,255)"));
+  CHECK(values.at(1) <= 680);
+  CHECK(values.at(2) == 0);
+}
+
+TEST_CASE("a printed report has a summary on its first page, numbered pages, and nothing beyond the sheet",
+          "[report][browser]") {
+  if (left_out()) return;
+  std::filesystem::create_directories(file_of(""));
+  Json steps = Json::array();
+  for (const std::string kind : kinds)
+    steps.push_back({{"name", kind},
+                     {"page", report_of("reading-print", kind)},
+                     {"evaluate",
+                      {"document.querySelector('.question').textContent",
+                       "document.querySelector('#summary .answer li').textContent",
+                       "Array.from(document.querySelectorAll('#summary dd'), (one) => one.textContent).find((text) => "
+                       "/^[0-9a-f]{16} /.test(text)).slice(0, 16)",
+                       "document.querySelectorAll('.figure .chart').length"}},
+                     {"pdf", file_of(kind + ".pdf")}});
+  const Json answers = driven("reading-print", steps);
+  const auto flat = [](std::string text) { return std::regex_replace(text, std::regex("[\\s-]+"), ""); };
+  for (const std::string kind : kinds) {
+    INFO(kind);
+    const Json& values = answers.at(kind).at("values");
+    const std::string pdf = "'" + file_of(kind + ".pdf") + "'";
+    const std::string info = said("pdfinfo " + pdf), first = flat(said("pdftotext -l 1 " + pdf + " -"));
+    std::smatch pages;
+    REQUIRE(std::regex_search(info, pages, std::regex("Pages: +([0-9]+)")));
+    CHECK_THAT(info, Contains("A4"));
+    CHECK_THAT(first, Contains(flat(values.at(0))));
+    CHECK_THAT(first, Contains(flat(values.at(1)).substr(0, 60)));
+    CHECK_THAT(first, Contains(values.at(2).get<std::string>()));
+    CHECK_THAT(first, Contains("page1of" + pages[1].str()));
+    CHECK_THAT(first, Contains("Identity"));    // the end of the summary is on the first page,
+    CHECK_THAT(first, !Contains("Skiptothe"));  // and nothing of the screen is
+    const std::string second = flat(said("pdftotext -f 2 -l 2 " + pdf + " -"));
+    CHECK_THAT(second, Contains("Ricochet"));  // the report begins on a page of its own
+    // Words that end right of the sheet's margin.
+    const std::string boxes = said("pdftotext -bbox " + pdf + " -");
+    const std::regex word("<word xMin=\"[0-9.]+\" yMin=\"[0-9.]+\" xMax=\"([0-9.]+)\"[^>]*>([^<]*)<");
+    for (std::sregex_iterator at(boxes.begin(), boxes.end(), word); at != std::sregex_iterator(); ++at) {
+      const double right = std::stod((*at)[1]);
+      if (right > 595.3 - 15 * 72 / 25.4 + 1) FAIL_CHECK((*at)[2] << " ends at " << right << " of 595 points");
+    }
+  }
+}
+
+TEST_CASE("a report is worked by keys, and says in words what its charts show", "[report][browser]") {
+  if (left_out()) return;
+  const char* const focused = "document.activeElement.className + ' ' + document.activeElement.textContent";
+  const char* const outline = "getComputedStyle(document.activeElement).outlineStyle";
+  const std::string until_chart =
+      "(() => { const charts = document.querySelectorAll('.figure .chart'); return [charts.length, "
+      "Array.from(charts).filter((one) => one.tabIndex === 0).length, "
+      "document.querySelectorAll('main').length, document.querySelectorAll('nav[aria-label]').length, "
+      "document.documentElement.lang, Array.from(document.querySelectorAll('button, input')).filter((one) => "
+      "!(one.textContent.trim() || one.getAttribute('aria-label') || one.closest('label') || one.title)).length]; })()";
+  Json steps = {{{"name", "skip"},
+                 {"page", report_of("reading-keys", "trajectory")},
+                 {"keys", {"Tab"}},
+                 {"evaluate", {focused, outline}}},
+                {{"name", "skipped"},
+                 {"page", report_of("reading-keys", "trajectory")},
+                 {"keys", {"Tab", "Enter"}},
+                 {"evaluate", {"location.hash"}}},
+                {{"name", "data"},
+                 {"page", report_of("reading-keys", "trajectory")},
+                 {"before", {"document.querySelector('.figure .chart').focus()", show_chart}},
+                 {"keys", {"Enter"}},
+                 {"evaluate",
+                  {"document.querySelectorAll('.chart-data tbody tr').length",
+                   "document.querySelector('.chart-data thead').textContent",
+                   "document.querySelector('[data-points]').getAttribute('aria-expanded')",
+                   "document.querySelector('.chart').getAttribute('aria-label')",
+                   "ricochet.figures[0].slots[0].chart.getModel().getSeries().reduce((sum, one) => sum + "
+                   "one.getRawData().count(), 0)"}}},
+                {{"name", "again"},
+                 {"page", report_of("reading-keys", "trajectory")},
+                 {"before", {"document.querySelector('.figure .chart').focus()", show_chart}},
+                 {"keys", {"Enter", "Enter"}},
+                 {"evaluate", {"document.querySelectorAll('.chart-data').length"}}}};
+  for (const std::string kind : kinds)
+    steps.push_back({{"name", kind}, {"page", report_of("reading-keys", kind)}, {"evaluate", {until_chart}}});
+  const Json said = driven("reading-keys", steps);
+  CHECK_THAT(said.at("skip").at("values").at(0).get<std::string>(), Contains("Skip to the answer"));
+  CHECK(said.at("skip").at("values").at(1) == "solid");
+  CHECK(said.at("skipped").at("values").at(0) == "#answer");
+  const Json& data = said.at("data").at("values");
+  CHECK(data.at(0).get<int>() > 0);
+  CHECK((data.at(0) == data.at(4) || data.at(0) == 200));
+  CHECK_THAT(data.at(1).get<std::string>(), Contains("step h (s)"));
+  CHECK(data.at(2) == "true");
+  const std::string label = data.at(3);
+  CHECK_THAT(label, Contains("Energy at the end against step h"));
+  CHECK_THAT(label, Contains("2 series (consistent, singular"));
+  CHECK_THAT(label, Contains("across step h from "));
+  CHECK_THAT(label, Contains("upwards E(T) / E_in from "));
+  CHECK(said.at("again").at("values").at(0) == 0);
+  for (const std::string kind : kinds) {
+    INFO(kind);
+    const Json& page = said.at(kind).at("values").at(0);
+    CHECK(page.at(0).get<int>() > 0);
+    CHECK(page.at(0) == page.at(1));
+    CHECK(page.at(2) == 1);
+    CHECK(page.at(3) == 1);
+    CHECK(page.at(4) == "en");
+    CHECK(page.at(5) == 0);
+  }
+}

@@ -1,0 +1,98 @@
+#include "runners/report/scene_sketch.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "runners/report/summary_page.hpp"
+#include "tests/runners/report/synthetic.hpp"
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+using Study = nlohmann::ordered_json;
+
+namespace {
+
+Study beam() {
+  return Study::parse(R"({"scene": {
+    "structure": {"type": "beam", "length": 1.5, "young": 2e11, "density": 8000,
+                  "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}, "damping": {"stiffness": 1e-4, "mass": 0}},
+    "stops": {"lower": "x>1.4 ? 0 : -0.0003", "upper": 0.0006, "at": [0.5, 1.5]},
+    "support": {"amplitude": [0.001, 0.002, 0.004], "pulsation": 30}, "load": "0",
+    "initial": {"displacement": "0", "velocity": "-2*x"}}, "duration": 0.5})");
+}
+
+std::string value_of(const Study& study, const std::string& symbol) {
+  for (const auto& [name, text] : report::scene_numbers(study))
+    if (name == symbol) return text;
+  return "";
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("a sketch says the numbers of its scene, and what the study varies as a range", "[report]") {
+  const Study study = beam();
+  CHECK(value_of(study, "L") == "1.5 m");
+  CHECK(value_of(study, "EI") == "33.8 N m²");  // π(D⁴ − d⁴)/64 × E
+  CHECK(value_of(study, "ρS") == "0.1194 kg/m");
+  CHECK(value_of(study, "A₀ (clamp)") == "from 0.001 to 0.004 m (3 values)");
+  CHECK(value_of(study, "u_t(x, 0)") == "-2*x");
+  CHECK(value_of(study, "upper stop") == "0.0006 m");
+  CHECK(value_of(study, "load").empty());  // a load of 0 is none
+  CHECK(value_of(study, "η (damping, of M)").empty());
+}
+
+TEST_CASE("stops stand where they are, each with its gap", "[report]") {
+  const std::string svg = report::scene_svg(beam());
+  CHECK(count(svg, ">0.0006 m<") == 2);
+  CHECK(count(svg, ">-0.0003 m<") + count(svg, ">−0.0003 m<") == 1);
+  CHECK(count(svg, ">0 m<") == 1);  // the formula at the tip
+  CHECK_THAT(svg, Contains("A₀ sin(ωt)"));
+  CHECK_THAT(svg, !Contains("f(x, t)"));
+  Study one_sided = beam();
+  one_sided["scene"]["stops"]["lower"] = nullptr;
+  CHECK(count(report::scene_svg(one_sided), "class=\"stop\"") == count(svg, "class=\"stop\"") / 2);
+}
+
+TEST_CASE("every structure is drawn; a study without a scene has no sketch", "[report]") {
+  const Study oscillator = Study::parse(R"({"scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 3,
+    "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
+    "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.2, "to": 1.2, "count": 6}})");
+  CHECK_THAT(report::scene_svg(oscillator), Contains("F cos(ωt + ψ)"));
+  CHECK(value_of(oscillator, "F") == "from 0.2 to 1.2 N, swept");
+  const Study bar = Study::parse(R"({"scene": {"structure": {"type": "bar", "length": 2, "EA": 3, "rhoA": 1,
+    "fixed": "right"}, "stops": {"lower": -0.5, "at": "tip"}}})");
+  CHECK_THAT(report::scene_svg(bar), Contains("0.5 m"));
+  CHECK(report::scene_svg(Study::object()).empty());
+  Study broken = beam();
+  broken["scene"]["stops"]["lower"] = "no formula";
+  CHECK_THAT(report::scene_svg(broken), Contains("0.0006 m"));
+}
+
+TEST_CASE("a summary names what ran, what did not, and by what it is known again", "[report]") {
+  StudyResults results = synthetic::results();
+  results.study = beam();
+  const std::string html = report::summary_html(report::CaseView(results));
+  CHECK_THAT(html, Contains(results.question));
+  CHECK_THAT(html, Contains("newmark-dumont-paoli (beta 0.25, 0.5)"));
+  CHECK_THAT(html, Contains(report::study_fingerprint(results)));
+  CHECK_THAT(html, Contains("refused"));
+  StudyResults other = results;
+  other.study["duration"] = 0.6;
+  CHECK(report::study_fingerprint(other) != report::study_fingerprint(results));
+  other = results;
+  other.environment.entries.emplace_back("started", "later");
+  CHECK(report::study_fingerprint(other) == report::study_fingerprint(results));
+}
+
+TEST_CASE("no name of a study breaks the style of its pages", "[report]") {
+  StudyResults results = synthetic::results();
+  results.name = "a\"}</style><script>\\";
+  const std::string style = report::page_margins(results);
+  CHECK_THAT(style, !Contains("</style"));
+  CHECK_THAT(style, Contains("\\22 }\\3c /style>"));
+}
