@@ -68,7 +68,7 @@ int command_report(const Arguments& arguments, std::ostream& out) {
   for (const std::filesystem::path& folder : folders)
     studies.push_back(
         {with_tables(read_store(folder)), as_link((folder / "report.html").lexically_relative(page.parent_path()))});
-  write_file(page, report::index_page(studies));
+  write_file(page, page.extension() == ".md" ? report::index_markdown(studies) : report::index_page(studies));
   out << "index: " << page.string() << "\n";
   return exit_done;
 }

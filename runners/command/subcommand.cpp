@@ -18,7 +18,8 @@ po::options_description described(const Subcommand& command) {
   auto add = all.add_options();
   if (has("out") && command.name == "report")
     add("out", po::value<std::string>()->value_name("FILE"),
-        "the page that lists several folders (default: index.html in the folder that holds them all)");
+        "the page that lists several folders (default: index.html in the folder that holds them all); NAME.md: "
+        "questions and answers in Markdown");
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))

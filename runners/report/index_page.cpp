@@ -49,7 +49,32 @@ Fill study_fill(const IndexEntry& entry) {
   return out;
 }
 
+/// What Markdown would read as a mark.
+std::string plain_markdown(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '*' || c == '_' || c == '<' || c == '|' || c == '`') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string index_markdown(const std::vector<IndexEntry>& studies) {
+  std::string out;
+  for (const IndexEntry& entry : studies) {
+    const StudyResults& results = entry.results;
+    std::string counts;
+    for (const char* status : {"done", "refused", "diverged", "failed"})
+      if (const std::size_t count = ricochet::with_status(all_cases(results), status).size())
+        counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + status;
+    out += "**`" + results.name + "`** " + plain_markdown(results.question) + " (" + counts + ")\n\n";
+    for (const std::string& line : answer_lines(results)) out += "* " + plain_markdown(line) + "\n";
+    out += "\n";
+  }
+  return out;
+}
 
 std::string index_page(const std::vector<IndexEntry>& studies) {
   Fill page, rows{Fill::type::list};
