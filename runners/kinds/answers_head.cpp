@@ -12,7 +12,9 @@ Table answers_head() {
        {"verdict", "",
         "decides: a difference above 1 % and above twice what step and mesh leave open. does not matter: difference "
         "and what is open are both within 1 %. not resolved: what is open may be the difference. depends: in some "
-        "combinations of the other choices only. not told: one step and one mesh. not observed: 0 or round-off. Kinds "
+        "combinations of the other choices only. not told: one step and one mesh. not observed: 0 or round-off. "
+        "shares: what effects.csv says "
+        "of the measure. Kinds "
         "that "
         "answer in their own way have words of their own."},
        {"effect", "1",

@@ -9,10 +9,12 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/report/case_view.hpp"
+#include "runners/report/effects.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/choice_effects.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -31,7 +33,9 @@ struct Said {
 };
 
 std::string percent(double share) {
-  if (share >= 1) return fmt::format("{:.0f} %", 100 * share);
+  constexpr double many = 10, whole = 0.995;
+  if (share >= many) return report::number_text(share, 2) + " times";
+  if (share >= whole) return fmt::format("{:.0f} %", 100 * share);
   return report::number_text(100 * share, 2) + " %";
 }
 
@@ -97,12 +101,21 @@ std::string next_sizes(const std::vector<const Said*>& same) {
       open_mesh = std::max(open_mesh, group.found.mesh.value_or(0) / wanted);
       open_window = std::max(open_window, group.found.sampling.value_or(0) / wanted);
     }
-  std::string out;
-  if (open_step > 1 && step > 0)
+  // What is open so far beyond what is wanted is not refined away.
+  constexpr double hopeless = 100;
+  std::string out, beyond;
+  if (open_step > hopeless)
+    beyond = "the step";
+  else if (open_step > 1 && step > 0)
     out = fmt::format("refine h to {} s", report::number_text(rounded_down(step / open_step), 3));
-  if (open_mesh > 1 && elements > 0)
+  if (open_mesh > hopeless)
+    beyond += beyond.empty() ? "the mesh" : " and the mesh";
+  else if (open_mesh > 1 && elements > 0)
     out += fmt::format("{} the mesh to {} elements", out.empty() ? "refine" : " and", two_digits(elements * open_mesh));
   if (!out.empty()) out = "; " + out + " (if what is open falls with them)";
+  if (!beyond.empty())
+    out += fmt::format("; in some combinations {} leave{} more open than refining would settle", beyond,
+                       beyond.ends_with("and the mesh") ? "" : "s");
   // The interval of a mean falls with the root of its length.
   if (open_window > 1) out += fmt::format("; a window {} times as long", two_digits(open_window * open_window));
   return out;
@@ -202,10 +215,24 @@ std::string sentence_of(const std::vector<const Said*>& same) {
   return as_sentence(out);
 }
 
+/// What each choice explains of the spread of what is observed, where effects.csv has shares.
+void say_shares(const report::CaseView& view, const std::vector<std::string>& observed, Table& table) {
+  if (!find_table(view.results().derived, "effects")) return;
+  const Table shares = report::effects_said(view);
+  const TableReader rows(shares);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (const std::string name = rows.text(row, "measure");
+        std::find(observed.begin(), observed.end(), name) != observed.end())
+      table.rows.push_back(
+          AnswerRow{.measure = name, .verdict = "shares", .sentence = rows.text(row, "sentence")}.row());
+}
+
 Table choices_said(const StudyResults& results) {
   Table table = answers_head();
-  const std::vector<ChoiceEffects> all = choice_effects(results, observed_measures(results));
+  const std::vector<std::string> observed = observed_measures(results);
+  const std::vector<ChoiceEffects> all = choice_effects(results, observed);
   const report::CaseView view(results);
+  say_shares(view, observed, table);
   std::vector<Said> said;
   for (const ChoiceEffects& effects : all) {
     said.push_back(said_of(results, effects));

@@ -15,8 +15,12 @@ void derive_tables(StudyResults& results) {
     kind->tables(results);
   else
     collect_tables(results);
-  for (Table table : {answers_table(results), effects_table(results), reasons_table(results)})
-    if (!table.rows.empty()) results.derived.push_back(std::move(table));
+  // The answer says the shares, and stands before them.
+  const auto before_shares = static_cast<std::ptrdiff_t>(results.derived.size());
+  if (Table shares = effects_table(results); !shares.rows.empty()) results.derived.push_back(std::move(shares));
+  if (Table answers = answers_table(results); !answers.rows.empty())
+    results.derived.insert(results.derived.begin() + before_shares, std::move(answers));
+  if (Table reasons = reasons_table(results); !reasons.rows.empty()) results.derived.push_back(std::move(reasons));
   for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
 }
 

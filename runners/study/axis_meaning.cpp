@@ -102,6 +102,25 @@ std::string spoken_choice(const std::string& column) {
   if (column == "time") return "the time scheme";
   if (column == "step") return "the step";
   if (column == "elements") return "the mesh";
+  static const std::pair<const char*, const char*> scene[] = {
+      {"structure.damping.stiffness", "the viscosity α"},
+      {"structure.damping.mass", "the damping η"},
+      {"structure.damping", "the damping"},
+      {"structure.stiffness", "the stiffness of the structure"},
+      {"structure.length", "the length"},
+      {"structure.section.EI", "the bending stiffness EI"},
+      {"structure.section.rhoS", "the mass per length ρS"},
+      {"stops.lower", "the lower stop"},
+      {"stops.upper", "the upper stop"},
+      {"stops.at", "where stops act"},
+      {"support.amplitude", "the amplitude of the support"},
+      {"support.pulsation", "the pulsation of the support"},
+      {"initial.displacement", "the initial displacement"},
+      {"initial.velocity", "the initial velocity"},
+      {"initial.projection", "the projection of the initial state"},
+  };
+  for (const auto& [name, said] : scene)
+    if (column == name) return said;
   return column;
 }
 

@@ -33,8 +33,8 @@ double size_of(const CaseRecord& record, const std::string& refined) {
   return refined == "step" ? value : 1 / value;
 }
 
-// By how much the error of the finest case would still move if the other quantity were refined: the change that its
-// last refinement made.
+// By how much the error of this case would still move if the other quantity were refined: to the finest of it, and by
+// the change that the last refinement made.
 double other_error(const StudyResults& results, const CaseRecord& finest, const std::string& other,
                    const std::string& error) {
   const std::vector<std::string> columns = without(results.columns, other);
@@ -45,10 +45,11 @@ double other_error(const StudyResults& results, const CaseRecord& finest, const 
     if (value && axes_of(record, columns) == place) along.emplace_back(size_of(record, other), *value);
   }
   std::sort(along.begin(), along.end());
-  const double here = size_of(finest, other);
-  if (along.size() < 2 || along.front().first != here) return 0;
+  if (along.size() < 2) return 0;
+  const double here = measure(finest, error).value_or(0);
   // The remaining error is about the last change when it halves at each refinement, less when it falls faster.
-  return std::abs(along[1].second - along[0].second) / std::max(1.0, along[1].first / along[0].first);
+  return std::abs(here - along.front().second) +
+         std::abs(along[1].second - along[0].second) / std::max(1.0, along[1].first / along[0].first);
 }
 
 bool single_valued(const StudyResults& results, const std::string& column) {
