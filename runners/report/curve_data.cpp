@@ -115,7 +115,7 @@ std::string CurveData::thinning() const {
 }
 
 size_t sample_limit(size_t series) {
-  return std::max<size_t>(4000, 2'000'000 / std::max<size_t>(series, 1));
+  return std::max<size_t>(1000, 600'000 / std::max<size_t>(series, 1));
 }
 
 }  // namespace ricochet::report

@@ -48,7 +48,7 @@ class CurveData {
   nlohmann::ordered_json blocks_ = nlohmann::ordered_json::object();
 };
 
-/// Limit for CurveData such that the page stays below about 60 MB: 4·10⁶ numbers shared by the series, at least 4000
+/// Limit for CurveData such that curves take about 8 MB of the page: 6·10⁵ numbers shared by the series, at least 1000
 /// samples each.
 size_t sample_limit(size_t series);
 

@@ -144,11 +144,18 @@ Table effects_said(const CaseView& view) {
 std::string effects_html(const CaseView& view) {
   const std::vector<MeasureShares> all = measure_shares(view.results());
   if (all.empty()) return "";
-  std::string sentences = "<ul class=\"answer\">\n";
+  // What the study observes first; where it observes none of these, all of them.
+  const std::vector<std::string> observed = AxisRows(view.results(), "answers").values("measure");
+  const auto main = [&](const MeasureShares& measure) {
+    return std::find(observed.begin(), observed.end(), measure.name) != observed.end();
+  };
+  const auto mains = static_cast<size_t>(std::count_if(all.begin(), all.end(), main));
+  std::string first, rest;
   HtmlTable table("", {{"measure"}, {"choice"}, {"share", true}, {"interval", true}}, "plain");
   for (const MeasureShares& measure : all) {
-    sentences += fmt::format("<li>{}<span class=\"fine\">{}</span></li>\n", escape(effects_sentence(measure)),
-                             escape(effects_caveats(view, measure)));
+    (mains == 0 || main(measure) ? first : rest) +=
+        fmt::format("<li>{}<span class=\"fine\">{}</span></li>\n", escape(effects_sentence(measure)),
+                    escape(effects_caveats(view, measure)));
     for (const MeasureShare& share : measure.shares)
       if (share.share >= 1e-3) {
         table.row().text(in_words(measure.name) + (measure.log ? " (log)" : "")).text(share.factor);
@@ -156,7 +163,10 @@ std::string effects_html(const CaseView& view) {
         table.number(effects_percent(share.low) + " to " + effects_percent(share.high));
       }
   }
-  sentences += "</ul>\n";
+  std::string sentences = "<ul class=\"answer\">\n" + first + "</ul>\n";
+  if (!rest.empty())
+    sentences += fmt::format("<details><summary>Of {} more</summary><ul class=\"answer\">\n{}</ul></details>\n",
+                             count_text(all.size() - mains, "measure", "measures"), rest);
   if (table.size() == 0) return sentences;
   return sentences + "<details><summary>Shares of 0.1 % and more, with 95 % intervals</summary>\n" + table.html() +
          "</details>\n";

@@ -8,13 +8,13 @@
   function chart(measure, shares) {
     const { percent, spaced } = ricochet.format, name = spaced(measure.measure), x = ["share of the variance", "%"];
     const y = {
-      type: "category", data: shares.map((row) => row.factor), inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
-      axisLabel: { color: ricochet.ink, fontSize: 11, width: 150, overflow: "break", interval: 0 },
+      type: "category", data: shares.map((row) => ricochet.shorten(row.factor)), inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
+      axisLabel: { color: ricochet.ink, fontSize: 11, width: 150, overflow: "truncate", interval: 0 },
     };
     const out = ricochet.view(x, [measure.log ? "log₁₀ " + name : name, "1"], ricochet.valueAxis(x, new ricochet.Interval(0, 100), false), y);
     out.option.grid.left = 165;
     const rows = shares.map((row) => ({
-      factor: row.factor, kind: kindOf(row.factor), share: 100 * row.share, low: 100 * row.low, high: 100 * row.high,
+      factor: ricochet.shorten(row.factor), kind: kindOf(row.factor), share: 100 * row.share, low: 100 * row.low, high: 100 * row.high,
       text: percent(row.share) + " [" + percent(row.low) + ", " + percent(row.high) + "]",
     }));
     for (const [kind, colour] of kinds)
@@ -24,19 +24,24 @@
     return out;
   }
 
+  ricochet.observedMeasures = (data) => ricochet.distinct(data.rows("answers").map((row) => row.measure).filter(Boolean));
+
   ricochet.figure("effects", (data) => {
-    const charts = [];
+    const charts = [], observed = ricochet.observedMeasures(data);
     for (const measure of data.rows("effects_said")) {
       const shares = data.rows("effects").filter((row) => row.measure === measure.measure).sort((a, b) => b.share - a.share);
       if (!shares.length || !(shares[0].share > 0)) continue;
       const view = chart(measure, shares.slice(0, mostBars));
       if (measure.rest > 0) view.notes.push("Not drawn: " + measure.rest + " smaller, together " + ricochet.format.percent(measure.rest_share) + ".");
-      charts.push({ title: ricochet.format.spaced(measure.measure), views: [view], notes: [measure.sentence] });
+      charts.push({ title: ricochet.format.spaced(measure.measure), views: [view], notes: [measure.sentence], main: observed.includes(measure.measure) });
     }
     if (!charts.length) return [];
+    // What the study observes first; the other measures on request.
+    const both = charts.some((chart) => chart.main) && charts.some((chart) => !chart.main);
+    if (both) for (const chart of charts) chart.only = chart.main ? 0 : 1;
     const caption = "Shares of the variance of a measure over all combinations of the choices: of one choice alone, and of interactions, where what one does depends on the others. " +
       "Lines: 95 % of the shares when levels are given random weights; wide where a share hangs on which levels the study holds.", used = ricochet.drawnNames(charts);
     const legend = kinds.filter(([kind]) => used.has(kind)).map(([name, colour]) => ({ name, colour, symbol: "rect" }));
-    return [{ id: "effects", title: "What each choice is worth", caption, views: ["share of the variance"], charts, legend }];
+    return [{ id: "effects", title: "Shares of the choices, measure by measure", caption, views: both ? ["what is observed", "other measures"] : ["share of the variance"], charts, legend }];
   });
 }

@@ -9,7 +9,7 @@
 namespace ricochet::report {
 namespace {
 
-constexpr std::size_t most_rows = 400, tall_rows = 24;
+constexpr std::size_t most_rows = 100, tall_rows = 24;
 
 /// ` name="value"`, escaped; nothing for an empty value.
 std::string attribute(const char* name, std::string_view value) {
@@ -57,8 +57,15 @@ HtmlTable& HtmlTable::absent(bool number, std::string_view text) {
 
 std::string HtmlTable::html() const {
   if (rows_.empty()) return "";
-  std::string out = fmt::format("<div class=\"scroll{}\"><table class=\"{}\"><caption>{}</caption>\n<thead><tr>",
-                                rows_.size() > tall_rows ? " tall" : "", classes_, caption_);
+  // One without a caption stands in something that folds.
+  const bool folded = rows_.size() > tall_rows && !caption_.empty();
+  std::string out;
+  if (folded)
+    out = fmt::format("<details class=\"table\"><summary>{} <span class=\"fine\">({} rows)</span></summary>\n",
+                      caption_.substr(0, std::min(caption_.find(". "), caption_.find_last_not_of('.') + 1)),
+                      rows_.size());
+  out += fmt::format("<div class=\"scroll{}\"><table class=\"{}\"><caption>{}</caption>\n<thead><tr>",
+                     rows_.size() > tall_rows ? " tall" : "", classes_, caption_);
   for (const Head& head : heads_)
     out += fmt::format("<th scope=\"col\"{}{}>{}{}</th>", attribute("class", head.number ? "number" : ""),
                        attribute("title", head.tooltip), head.colour.empty() ? "" : swatch(head.colour),
@@ -68,7 +75,7 @@ std::string HtmlTable::html() const {
   out += "</tbody></table></div>\n";
   if (rows_.size() > most_rows)
     out += fmt::format("<p class=\"fine\">{} more rows are in the table's CSV file.</p>\n", rows_.size() - most_rows);
-  return out;
+  return out + (folded ? "</details>\n" : "");
 }
 
 }  // namespace ricochet::report

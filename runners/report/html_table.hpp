@@ -37,7 +37,7 @@ class HtmlTable {
   HtmlTable& cell(std::string_view html, std::string_view attributes = "");
 
   std::size_t size() const { return rows_.size(); }
-  /// "" without rows; at most 400 rows, and how many more its CSV file has.
+  /// "" without rows; more than 24 fold under their caption; at most 100, and how many more its CSV file has.
   std::string html() const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "runners/report/curve_choice.hpp"
 #include "runners/report/curve_data.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
@@ -108,7 +109,7 @@ PageJson measures_json(const PageJson& cases) {
 PageJson tables_json(const CaseView& view, const KindPage& kind) {
   PageJson out = PageJson::object();
   std::vector<std::string_view> names = kind.tables;
-  names.insert(names.end(), {"effects", "effects_said"});
+  names.insert(names.end(), {"answers", "effects", "effects_said"});
   for (const std::string_view name : names)
     if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
   return out;
@@ -123,13 +124,29 @@ PageJson own_json(const CaseView& view, const KindPage& kind) {
   return out;
 }
 
-PageJson curves_json(const CaseView& view, const KindPage& kind, CurveData& curves) {
+PageJson curves_json(const CaseView& view, const KindPage& kind, const CurveChoice& choice, CurveData& curves) {
   PageJson out = PageJson::object();
   for (const CaseRecord* record : view.all())
     for (const std::string_view column : kind.curves)
-      if (auto names = curves.series(*record, "t", std::string(column)))
-        out[record->id][std::string(column)] = std::move(*names);
+      if (choice.holds(record->id))
+        if (auto names = curves.series(*record, "t", std::string(column)))
+          out[record->id][std::string(column)] = std::move(*names);
   return out;
+}
+
+/// Cases that are sampled at the same times share these.
+void share_times(PageJson& curves, PageJson& blocks) {
+  std::map<std::string, std::string> first, of;  // bytes → the first block with them; block → that one
+  for (auto& [id, columns] : curves.items())
+    for (auto& [column, names] : columns.items()) {
+      const std::string name = names[0].get<std::string>(), key = name + ":f64";
+      if (const auto block = blocks.find(key); !of.count(name) && block != blocks.end()) {
+        const auto [known, fresh] = first.emplace(block->get<std::string>(), name);
+        of[name] = known->second;
+        if (!fresh) blocks.erase(key);
+      }
+      names[0] = of[name];
+    }
 }
 
 }  // namespace
@@ -137,8 +154,9 @@ PageJson curves_json(const CaseView& view, const KindPage& kind, CurveData& curv
 PageData page_data(const CaseView& view, const KindPage& kind) {
   const StudyResults& results = view.results();
   size_t series = 0;
+  const CurveChoice choice(view);
   for (const CaseRecord& record : results.cases)
-    if (!record.curve.columns.empty()) series += kind.curves.size() + 1;
+    if (!record.curve.columns.empty() && choice.holds(record.id)) series += kind.curves.size() + 1;
   CurveData curves(sample_limit(series));
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
   out["axes"] = axes_json(view);
@@ -146,9 +164,13 @@ PageData page_data(const CaseView& view, const KindPage& kind) {
   out["measures"] = measures_json(out["cases"]);
   out["tables"] = tables_json(view, kind);
   out["own"] = own_json(view, kind);
-  out["curves"] = curves_json(view, kind, curves);
+  out["curves"] = curves_json(view, kind, choice, curves);
   if (kind.data) out[kind.data_key] = kind.data(view, curves);
-  return {std::move(out), curves.blocks(), curves.thinning()};
+  std::string less = kind.curves.empty() ? "" : choice.sentence();
+  if (const std::string thinned = curves.thinning(); !thinned.empty()) less += (less.empty() ? "" : " ") + thinned;
+  PageJson blocks = curves.blocks();
+  share_times(out["curves"], blocks);
+  return {std::move(out), std::move(blocks), std::move(less)};
 }
 
 }  // namespace ricochet::report

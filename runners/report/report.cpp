@@ -60,17 +60,17 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",     "data",          "cases",          "dataset",
-                                          "options",    "method_curves", "figure_section", "theme",
-                                          "chart_data", "figure",        "picture",        "paper"};
-constexpr const char* page_scripts[] = {"sorting", "column_filter", "case_table", "page"};
+constexpr const char* shared_scripts[] = {
+    "format",         "data",  "cases",      "short_names", "dataset",  "options", "method_curves", "strips",
+    "figure_section", "theme", "chart_data", "figure",      "case_map", "picture", "paper",         "dot_rows"};
+constexpr const char* page_scripts[] = {"sorting", "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
   const auto add = [&](const std::string& name) { out += asset(name); };
   for (const char* name : shared_scripts) add(fmt::format("script/{}.js", name));
   for (const std::string_view script : kind.scripts) out += script;
-  add("effects.js");
+  for (const char* name : {"effects", "shares", "choice_effects"}) add(fmt::format("{}.js", name));
   for (const char* name : page_scripts) add(fmt::format("script/{}.js", name));
   return out;
 }
@@ -97,7 +97,11 @@ std::string answer_sentences(const StudyResults& results) {
 
 std::string answer_html(const CaseView& view, const KindPage& kind) {
   if (view.results().cases.empty()) return "<p>No case has run yet.</p>\n";
-  const std::string answer = answer_sentences(view.results()) + (kind.answer ? kind.answer(view) : "");
+  // A script puts the figure that shows the answer beside its sentences.
+  const std::string said = answer_sentences(view.results()), more = kind.answer ? kind.answer(view) : "";
+  const std::string answer =
+      said.empty() ? more
+                   : "<div class=\"first\"><div>\n" + said + "</div><div id=\"answer-figure\"></div></div>\n" + more;
   if (answer.empty() && view.with_status("done").empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;

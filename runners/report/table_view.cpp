@@ -9,7 +9,7 @@
 namespace ricochet::report {
 namespace {
 
-constexpr size_t most_view_rows = 60;  // a page of a thousand cases must stay one that can be sent
+constexpr size_t most_view_rows = 40;  // a page of a thousand cases must stay one that can be sent
 
 Fill view_column(const Table& table, size_t place) {
   const Column& column = table.columns[place];
@@ -26,8 +26,9 @@ Fill view_cell(const Cell& cell) {
   Fill out;
   if (const auto number = cell.number()) {
     out.set("classes", "number");
-    out.set("value", exact_text(*number));
-    out.set("text", number_text(*number, 6));
+    const std::string exact = exact_text(*number), shown = number_text(*number, 6);
+    if (exact != shown) out.set("value", exact);
+    out.set("text", shown);
   } else {
     const auto truth = cell.truth();
     const std::string text = truth ? (*truth ? "yes" : "no") : cell.text();

@@ -13,6 +13,11 @@
 namespace ricochet::report {
 namespace {
 
+constexpr size_t most_full_rows = 100;  // of the table of all cases with every column
+// What fits the width of a sheet of paper, and how many rows of it a reader turns over; the style sheet leaves out the
+// others.
+constexpr size_t columns_on_paper = 11, rows_on_paper = 150;
+
 /// Measures that at least one case has, in the declared order, others after them.
 std::vector<std::string> measures_present(const CaseView& view) {
   std::vector<std::string> out;
@@ -28,46 +33,40 @@ std::vector<std::string> measures_present(const CaseView& view) {
   return out;
 }
 
-// What fits the width of a sheet of paper, and how many rows of it a reader turns over.
-constexpr std::size_t columns_on_paper = 11, rows_on_paper = 150;
-
-Fill text_fill(const std::string& text, const std::string& classes) {
-  Fill out;
-  out.set("text", text);
-  out.set("classes", classes);
-  return out;
-}
-
-/// A number that sorts as it is, shown shorter; all its digits in the tooltip where `text` has fewer.
-Fill number_fill(double value, const std::string& text, bool tooltip = true) {
-  if (!std::isfinite(value)) return text_fill("–", "number absent");
-  Fill out = text_fill(text, "number");
-  out.set("value", exact_text(value));
-  if (tooltip) out.set("title", exact_text(value));
-  return out;
-}
-
-/// A column of the table of cases: its name in cases.csv, its header, and what a case has in it.
-struct CaseColumn {
-  std::string name, header, tooltip, classes;
-  bool extra = false;  ///< a first look leaves it out
-  std::function<Fill(const CaseRecord&)> cell;
+struct CaseCell {
+  std::string text, classes, swatch = "";
 };
 
-CaseColumn axis_column(const CaseView& view, const std::string& name) {
-  return {name,
-          with_unit({name, axis_unit(name)}),
-          "Axis of the study",
-          "axis",
-          !view.varies(name),
-          [name](const CaseRecord& record) {
-            const std::string text = CaseView::text(record, name);
-            if (const auto number = CaseView::number(record, name)) return number_fill(*number, text, false);
-            return text.empty() ? text_fill("–", "text absent") : text_fill(text, "text");
-          }};
+Fill cell_fill(const CaseCell& cell) {
+  Fill out;
+  out.set("text", cell.text);
+  if (!cell.classes.empty()) out.set("classes", cell.classes);
+  if (!cell.swatch.empty()) out.set("swatch", cell.swatch);
+  return out;
 }
 
-CaseColumn measure_column_of(const std::string& name) {
+/// A column of the table of all cases. `extra`: shown on demand, and only where there are few cases.
+struct CaseColumn {
+  std::string name;  ///< in cases.csv
+  std::string header, tooltip, classes;
+  bool extra = false;
+  std::function<CaseCell(const CaseRecord&)> cell;
+};
+
+/// A number, shown short; an empty cell where there is none, which the style sheet marks.
+CaseCell number_cell(std::optional<double> value, int digits) {
+  return value && std::isfinite(*value) ? CaseCell{number_text(*value, digits), ""} : CaseCell{"", ""};
+}
+
+CaseColumn axis_column(const CaseView& view, const std::string& column) {
+  const auto cell = [column](const CaseRecord& record) {
+    const std::string text = CaseView::text(record, column);
+    return CaseCell{text, text.empty() || CaseView::number(record, column) ? "" : "text"};
+  };
+  return {column, with_unit({column, axis_unit(column)}), "Axis of the study", "axis", !view.varies(column), cell};
+}
+
+CaseColumn measure_cells(const std::string& name) {
   const MeasureInfo* info = measure_info(name);
   // Ratios are near 1, where what counts is far behind the point.
   const int digits = info && std::string_view(info->unit) == "1" ? 9 : 5;
@@ -76,65 +75,51 @@ CaseColumn measure_column_of(const std::string& name) {
           info ? info->text : "",
           "number",
           info && info->aside,
-          [name, digits](const CaseRecord& record) {
-            const auto value = ricochet::measure(record, name);
-            return value ? number_fill(*value, number_text(*value, digits)) : text_fill("–", "number absent");
-          }};
+          [name, digits](const CaseRecord& record) { return number_cell(ricochet::measure(record, name), digits); }};
 }
 
 /// Which case it is, what became of it, what sets it apart, what it measured; last what a first look leaves out.
 std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures) {
-  const auto marched = [](const CaseRecord& record, Fill cell) {
-    return record.status == "refused" ? text_fill("–", "number absent") : cell;
+  const auto worked = [](const CaseRecord& record, double value) {
+    return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
   };
-  const bool reasons = std::any_of(view.results().cases.begin(), view.results().cases.end(),
-                                   [](const CaseRecord& record) { return !record.reason.empty(); });
   std::vector<CaseColumn> out = {
       {"case", "case", "Identity of the case: its row in cases.csv and its file in curves/", "text", false,
        [&view](const CaseRecord& record) {
-         Fill cell = text_fill(record.id, "text");
-         cell.set("swatch", view.colour(record));
-         return cell;
+         return CaseCell{record.id, "text", view.colour(record)};
        }},
       {"status", "status", "done, refused (does not apply), diverged or failed", "text", false,
        [](const CaseRecord& record) {
-         Fill cell = text_fill(status_mark(record.status) + " " + record.status, "status " + record.status);
-         cell.set("plain", record.status);
-         return cell;
+         return CaseCell{status_mark(record.status) + " " + record.status, "status " + record.status};
        }}};
-  for (const std::string& name : view.results().columns) out.push_back(axis_column(view, name));
-  out.push_back({"reason", "reason", "Why a case has no result", "text", !reasons,
-                 [](const CaseRecord& record) { return text_fill(record.reason, "reason"); }});
-  for (const std::string& name : measures) out.push_back(measure_column_of(name));
-  out.push_back({"steps", "steps", "Number of time steps marched", "number", false, [=](const CaseRecord& record) {
-                   return marched(record, number_fill(static_cast<double>(record.steps), std::to_string(record.steps)));
-                 }});
-  const auto timed = [&](const char* name, const char* header, const char* tooltip, bool extra,
-                         double CaseRecord::*seconds) {
-    out.push_back({name, header, tooltip, "number", extra, [=](const CaseRecord& record) {
-                     return marched(record, number_fill(record.*seconds, number_text(record.*seconds, 5)));
+  for (const std::string& column : view.results().columns) out.push_back(axis_column(view, column));
+  const Cases all = view.all();
+  if (std::any_of(all.begin(), all.end(), [](const CaseRecord* record) { return !record->reason.empty(); }))
+    out.push_back({"reason", "reason", "Why a case has no result", "text", false, [](const CaseRecord& record) {
+                     return CaseCell{record.reason, "reason"};
                    }});
-  };
-  timed("run_seconds", "run (s)", "Time of marching", false, &CaseRecord::run_seconds);
-  timed("setup_seconds", "set-up (s)", "Time before the first step", true, &CaseRecord::setup_seconds);
-  out.push_back({"operator", "operator", "How the matrices were stored and solved", "text", true,
-                 [](const CaseRecord& record) { return text_fill(record.operator_name, "text"); }});
+  for (const std::string& name : measures) out.push_back(measure_cells(name));
+  out.push_back({"steps", "steps", "Number of time steps marched", "number", false, [](const CaseRecord& record) {
+                   return CaseCell{record.status == "refused" ? "" : std::to_string(record.steps), ""};
+                 }});
+  out.push_back({"run_seconds", "run (s)", "Time of marching", "number", false,
+                 [worked](const CaseRecord& record) { return worked(record, record.run_seconds); }});
+  out.push_back({"setup_seconds", "set-up (s)", "Time before the first step", "number", true,
+                 [worked](const CaseRecord& record) { return worked(record, record.setup_seconds); }});
+  out.push_back(
+      {"operator", "operator", "How the matrices were stored and solved", "text", true, [](const CaseRecord& record) {
+         return CaseCell{record.operator_name, "text"};
+       }});
   std::stable_partition(out.begin(), out.end(), [](const CaseColumn& column) { return !column.extra; });
-  std::size_t shown = 0;
-  for (CaseColumn& column : out)
-    if (column.extra)
-      column.classes += " extra";
-    else if (++shown > columns_on_paper)
-      column.classes += " off-paper";
   return out;
 }
 
-/// What of the table's columns and rows does not fit on paper, "" where all does.
+/// What of the table's columns and rows is not on paper, "" where all is.
 std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& columns) {
-  const auto hidden = static_cast<std::size_t>(std::count_if(columns.begin(), columns.end(), [](const auto& column) {
-    return column.classes.ends_with("off-paper") || column.extra;
-  }));
-  const std::size_t cases = view.results().cases.size(), rows = cases > rows_on_paper ? cases - rows_on_paper : 0;
+  const size_t cases = view.results().cases.size(), rows = cases > rows_on_paper ? cases - rows_on_paper : 0;
+  const size_t shown = static_cast<size_t>(
+      std::count_if(columns.begin(), columns.end(), [](const CaseColumn& column) { return !column.extra; }));
+  const size_t hidden = columns.size() - std::min(shown, columns_on_paper);
   std::string out;
   if (hidden) out = count_text(hidden, "more column", "more columns");
   if (rows) out += (out.empty() ? "" : " and ") + count_text(rows, "more row", "more rows");
@@ -143,9 +128,8 @@ std::string off_paper(const CaseView& view, const std::vector<CaseColumn>& colum
 
 /// A condition that is true of something here, to show how one is written.
 std::string filter_example(const CaseView& view, const std::vector<std::string>& measures) {
-  std::string out = "words, or status = done";
-  if (!measures.empty()) out = fmt::format("words, or {} > 0", measures.front());
-  return view.with_status("refused").empty() ? out : "words, or status = refused";
+  if (!view.with_status("refused").empty()) return "words, or status = refused";
+  return measures.empty() ? "words, or status = done" : fmt::format("words, or {} > 0", measures.front());
 }
 
 /// Entries of lists that cases carry, each once with the cases that have it.
@@ -163,7 +147,7 @@ std::string case_table_html(const CaseView& view) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
-  Fill with, statuses{Fill::type::list}, heads{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
+  Fill with, statuses{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
   for (const char* status : {"done", "refused", "diverged", "failed"})
     if (const size_t count = view.with_status(status).size()) {
       Fill one;
@@ -172,36 +156,39 @@ std::string case_table_html(const CaseView& view) {
       one.set("count", std::to_string(count));
       statuses << one;
     }
-  const std::vector<CaseColumn> columns = case_columns(view, measures);
-  for (const CaseColumn& column : columns) {
+  std::vector<CaseColumn> columns = case_columns(view, measures);
+  // Cells that are out of sight are left out of a page of many cases, which they would fill.
+  const size_t all_columns = columns.size();
+  if (results.cases.size() > most_full_rows) std::erase_if(columns, [](const CaseColumn& one) { return one.extra; });
+  Fill headers{Fill::type::list};
+  for (const CaseColumn& one : columns) {
     Fill head;
-    head.set("column", column.name);
-    head.set("header", column.header);
-    head.set("tooltip", column.tooltip);
-    head.set("classes", column.classes);
-    heads << head;
+    head.set("column", one.name);
+    head.set("header", one.header);
+    head.set("tooltip", one.tooltip);
+    head.set("classes", one.classes + (one.extra ? " extra" : ""));
+    headers << head;
   }
-  for (std::size_t k = 0; k < results.cases.size(); ++k) {
-    const CaseRecord& record = results.cases[k];
+  if (const std::string left = off_paper(view, columns); !left.empty()) with.set("off_paper", left);
+  for (const CaseRecord& record : results.cases) {
     Fill row, cells{Fill::type::list};
-    row.set("status", record.status);
-    row.set("case", record.id);
-    if (k >= rows_on_paper) row.set("row_classes", "off-paper");
-    for (const CaseColumn& column : columns) {
-      Fill cell = column.cell(record);
-      const bool paper = column.classes.ends_with("off-paper");
-      if (column.extra || paper)
-        cell.set("classes", cell.get("classes")->string_value() + (column.extra ? " extra" : " off-paper"));
-      cells << cell;
+    for (const CaseColumn& one : columns) {
+      CaseCell cell = one.cell(record);
+      if (one.extra) cell.classes += cell.classes.empty() ? "extra" : " extra";
+      cells << cell_fill(cell);
     }
+    row.set("status", record.status);
     row.set("cells", cells);
     rows << row;
   }
   with.set("statuses", statuses);
-  with.set("columns", heads);
-  with.set("rows", rows);
   with.set("example", filter_example(view, measures));
-  if (const std::string left = off_paper(view, columns); !left.empty()) with.set("off_paper", left);
+  with.set("columns", headers);
+  if (columns.size() < all_columns)
+    with.set("hidden", fmt::format("{} more columns", all_columns - columns.size()));
+  else
+    with.set("full", Fill::type::bool_true);
+  with.set("rows", rows);
   const std::vector<std::string> constants = view.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
   bool any = false;

@@ -1,7 +1,7 @@
 // A figure at work: draws its charts when they come into sight, links their zoom, filters by the legend, and hands a click to what the chart knows of it.
 //
 // A figure is {id, title, caption, views, charts, legend, overTime, linked}: `views` are names, each chart has as many {option, x, y, notes} (or the one
-// that `only` names), `legend` has {name, colour, dash, symbol, heading}. In an option, a data set's `source` may be a function: it is asked when the
+// that `only` names), `legend` has {name, colour, dash, symbol, heading}; `atFirst`, where given, is the view that stands beside the answer. In an option, a data set's `source` may be a function: it is asked when the
 // chart is drawn.
 // A view may add `sources` (marks drawn by hand), `pick` (what lies at a place), `open` (shows it) and `hover` (says it).
 {
@@ -140,6 +140,10 @@
   const makers = [];
   // Registers a figure: `make` takes the page's data and returns its figures, none where the results have nothing of the kind.
   ricochet.figure = (name, make) => makers.push([name, make]);
+  // Names figures that show a kind's answer, the best first: the first that a study has stands beside its answer.
+  const answers = [];
+  ricochet.answeredBy = (...ids) => { answers.push(...ids.filter((id) => !answers.includes(id))); };
+  ricochet.answerAmong = (figures) => answers.map((id) => figures.find((figure) => figure.id === id)).find(Boolean);
   ricochet.makeFigures = (data) => makers.flatMap(([, make]) => make(data));
   ricochet.Figure = Figure;
 }

@@ -6,7 +6,7 @@
     arrow: '<path d="M15 1 L20 10 L10 10 Z"', "triangle-down": '<path d="M10 2 L20 2 L15 11 Z"', cross: '<path stroke="#222" d="M11 2 L19 10 M19 2 L11 10"', diamond: '<path d="M15 1 L20 6 L15 11 L10 6 Z"',
   };
 
-  function legend(entries) {
+  function legend(entries, used) {
     if (entries.length < 2) return "";
     let out = '<div class="legend" role="group" aria-label="Show or hide curves">', heading = "";
     for (const entry of entries) {
@@ -16,7 +16,7 @@
       }
       const line = '<line x1="0" y1="6" x2="30" y2="6" stroke="' + entry.colour + '" stroke-width="2.2"' + (entry.dash ? ' stroke-dasharray="' + entry.dash + '"' : "") + "/>";
       const mark = shapes[entry.symbol] ? shapes[entry.symbol] + ' fill="' + entry.colour + '"/>' : "";
-      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" + escape(entry.name) + "</button>";
+      out += '<button type="button" aria-pressed="true" data-name="' + escape(entry.name) + '" title="' + escape(entry.name) + '"><svg width="30" height="12" aria-hidden="true">' + line + mark + "</svg>" + escape(ricochet.shorten(entry.name, used)) + "</button>";
     }
     return out + "</div>";
   }
@@ -27,18 +27,22 @@
         figure.views.map((name, v) => '<button type="button" data-view="' + v + '" aria-pressed="' + (v === 0) + '">' + escape(name) + "</button>").join("") + "</span>";
     if (figure.charts.length > 1) out += '<label title="Off: the same vertical scale in all charts, so that they compare"><input type="checkbox" data-own> each chart its own scale</label>';
     if (figure.charts.length > 12) out += '<label>Show <input type="search" data-facets placeholder="words of a chart\'s title"></label>';
+    // Which of its forms the figure takes.
+    (figure.choices || []).forEach(({ name, options, at }) => {
+      out += "<label>" + escape(name) + " <select data-choice>" + options.map((option, k) => "<option" + (k === at ? " selected" : "") + ">" + escape(ricochet.shorten(option)) + "</option>").join("") + "</select></label>";
+    });
     return '<div class="controls">' + out + "</div>";
   }
-  function classes({ charts, linked, overTime }) {
+  function classes({ charts, linked, overTime }, strips) {
     if (linked && !overTime) return charts.length === 1 ? "grid single broad" : "grid stacked";
     if (charts.length === 1) return "grid single";
-    const out = charts.length > 12 ? "grid many" : charts.length === 2 ? "grid pair" : "grid";
-    return charts.some((chart) => chart.title.length > 40) ? out + " long-titles" : out;
+    if (strips.length > 1) return "grid strips";
+    return charts.length > 12 ? "grid many" : charts.length === 2 || charts.length === 4 ? "grid pair" : "grid";
   }
   const notes = (list) => (list.length ? '<ul class="notes">' + list.map((note) => "<li>" + escape(note) + "</li>").join("") + "</ul>" : "");
-  function place(figure, chart, index) {
-    const apart = chart.only !== undefined, wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only), title = escape(chart.title);
-    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") + (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + "><figcaption><span>" + title + "</span>";
+  function place(figure, { chart, index, label }, used) {
+    const single = figure.charts.length === 1 && /^all /.test(label), apart = chart.only !== undefined, wide = apart && figure.charts.every((other) => other === chart || other.only !== chart.only), title = escape(chart.title);
+    let out = '<figure data-title="' + title + '"' + (apart ? ' data-only="' + chart.only + '"' : "") + (apart && chart.only > 0 ? " hidden" : "") + (wide ? ' class="wide"' : "") + '><figcaption><span title="' + title + '">' + (single ? "" : escape(ricochet.shorten(label, used))) + "</span>";
     if (chart.views.length) out += '<span class="export"><button type="button" data-export="svg">SVG</button><button type="button" data-export="png">PNG</button></span>';
     out += "</figcaption>";
     if (chart.views.length)
@@ -53,8 +57,10 @@
     section.className = "figure";
     section.id = "figure-" + figure.id;
     section.dataset.figure = figure.id;
-    section.innerHTML = "<h3>" + escape(figure.title) + '</h3><p class="caption">' + escape(figure.caption) + "</p>" + controls(figure) + legend(figure.legend) +
-      '<div class="' + classes(figure) + '">' + figure.charts.map((chart, index) => place(figure, chart, index)).join("") + "</div>";
+    const used = new Set(), strips = ricochet.strips(figure.charts), across = Math.max(...strips.map((strip) => strip.charts.length));
+    const charts = strips.map(({ label, charts: own }) => (label ? '<h4 class="strip" title="' + escape(label) + '">' + escape(ricochet.shorten(label, used)) + "</h4>" : "") + own.map((one) => place(figure, one, used)).join("")).join("");
+    section.innerHTML = "<h3>" + escape(figure.title) + '</h3><p class="caption">' + escape(figure.caption) + "</p>" + controls(figure) + legend(figure.legend, used) +
+      '<div class="' + classes(figure, strips) + '" style="--across:' + across + '">' + charts + "</div>" + (used.size ? '<p class="fine key">' + escape(ricochet.keyTo(used)) + "</p>" : "");
     return section;
   };
 }

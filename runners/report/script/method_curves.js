@@ -18,6 +18,12 @@
     return facets;
   }
 
+  // A chart of some cases, which have columns `by` in common, whose views and notes are worked out when they are first looked at.
+  function chartOf(title, cases, by, views, notes) {
+    let seen = null, said = null;
+    return { title, cases, by, get views() { return seen || (seen = views()); }, get notes() { return said || (said = notes()); } };
+  }
+
   class MethodCurves {
     // `apart` must not share a chart, `ignored` tells nothing apart; facets are chosen over the cases `among`.
     constructor(view, cases, along, { apart = [], ignored = [], among = cases, byMass = view.masses.length > 1 } = {}) {
@@ -45,7 +51,7 @@
       });
     }
     // A chart per facet, with the views that `draw` makes of it.
-    charts(draw) { return this.facets.map((facet, f) => ({ title: facet.title, views: draw(facet, f), notes: this.view.outcomeNotes(facet.cases, this.said) })); }
+    charts(draw) { return this.facets.map((facet, f) => chartOf(facet.title, facet.cases, this.facetColumns, () => draw(facet, f), () => this.view.outcomeNotes(facet.cases, this.said))); }
     legend() {
       const entries = this.facets.flatMap((facet) => facet.curves).map(({ name, colour, style, across }) => ({ name, colour, dash: ricochet.svgDash(style), symbol: across ? "" : ricochet.symbol(style) }));
       return ricochet.firstOfName(entries);
@@ -54,5 +60,5 @@
     colours() { return this.byMass ? "One colour per mass matrix." : "One colour per curve (the study has one mass matrix)."; }
   }
 
-  Object.assign(ricochet, { MethodCurves, mostCurves, methodColours: colours });
+  Object.assign(ricochet, { MethodCurves, chartOf, mostCurves, methodColours: colours });
 }

@@ -20,6 +20,7 @@
     copy() { return new Interval(this.low, this.high); }
   }
 
+  const mostLabels = 6;   // of a logarithmic axis
   // Powers of ten to the last bit, which Math.pow does not give.
   const ten = (k) => Number("1e" + k);
   // Rounded outwards to a round step of about five ticks, at least `least` wide.
@@ -72,6 +73,12 @@
   function logAxis(quantity, range, vertical) {
     const decades = wholeDecades(range), out = Object.assign(axis(quantity, vertical), { type: "log", min: decades.low, max: decades.high });
     out.axisLabel.formatter = ricochet.format.power;
+    // Whole powers at even distances, from the lowest on.
+    const count = Math.round(Math.log10(decades.high / decades.low));
+    if (count > mostLabels) {
+      out.interval = Math.ceil(count / mostLabels);
+      out.axisLabel.showMaxLabel = count % out.interval === 0;
+    }
     if (Math.log10(decades.high / decades.low) < 6.5) Object.assign(out, { minorTick: { show: true, splitNumber: 9, length: 2 }, minorSplitLine: { show: false } });
     return out;
   }

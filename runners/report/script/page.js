@@ -20,31 +20,57 @@
   }
   ricochet.watchWidth = watchWidth;
 
+  const owner = new Map();
+  const later = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (!entry.isIntersecting) continue;
+      later.unobserve(entry.target);
+      const [figure, slot] = owner.get(entry.target) || [];
+      if (slot && !slot.chart) figure.draw(slot);
+    }
+  }, { rootMargin: "400px" });
+
+  // Brings a figure to the page: `put` places its section, and its charts are drawn as they come into sight.
+  ricochet.mount = (description, put) => {
+    const section = ricochet.figureSection(description);
+    put(section);
+    const figure = new (description.map ? ricochet.CaseMap : ricochet.Figure)(description, section);
+    figures.push(figure);
+    for (const slot of figure.slots) { owner.set(slot.element, [figure, slot]); later.observe(slot.element); }
+    // A figure that takes several forms is made anew in its place.
+    const choices = Array.from(section.querySelectorAll("[data-choice]"));
+    choices.forEach((choice, k) => choice.addEventListener("change", () => {
+      const next = ricochet.mount(description.remake(choices.map((one) => one.selectedIndex)), (fresh) => section.replaceWith(fresh));
+      ricochet.unmount(figure);
+      next.show(Math.min(figure.view, next.description.views.length - 1));
+      const again = next.section.querySelectorAll("[data-choice]")[k];
+      if (again) again.focus();
+    }));
+    return figure;
+  };
+  ricochet.unmount = (figure) => {
+    for (const { element, chart } of figure.slots) { owner.delete(element); later.unobserve(element); if (chart) chart.dispose(); }
+    figures.splice(figures.indexOf(figure), 1);
+    figure.section.remove();
+  };
+
   function startFigures() {
     const page = read("page-data"), place = document.getElementById("figures");
     if (!page || !place || typeof echarts === "undefined") return;
     const data = new ricochet.PageData(page, read("curve-data"));
     data.view = new ricochet.Cases(data);
     ricochet.data = data;
-    const owner = new Map();
-    const later = new IntersectionObserver((entries) => {
-      for (const entry of entries) {
-        if (!entry.isIntersecting) continue;
-        later.unobserve(entry.target);
-        const [figure, slot] = owner.get(entry.target);
-        if (!slot.chart) figure.draw(slot);
-      }
-    }, { rootMargin: "400px" });
+    const all = ricochet.bounded(ricochet.makeFigures(data)), answer = ricochet.answerAmong(all), beside = document.getElementById("answer-figure");
     let after = place, link = document.querySelector('nav a[href="#answer"]');
-    for (const description of ricochet.makeFigures(data)) {
-      const section = ricochet.figureSection(description), entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });
-      after.after(section);
-      after = section;
+    for (const description of all) {
+      const answers = beside && description === answer, put = (fresh) => (answers ? beside.append(fresh) : after.after(fresh));
+      const figure = ricochet.mount(description, put), { section } = figure, entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });
+      if (answers) {
+        beside.parentElement.classList.add("beside");
+        if (description.atFirst) figure.show(description.atFirst);
+      } else after = section;
       link.after(entry);
       link = entry;
-      const figure = new ricochet.Figure(description, section);
-      figures.push(figure);
-      for (const slot of figure.slots) { owner.set(slot.element, [figure, slot]); later.observe(slot.element); }
     }
     if (!figures.length) place.remove();
     // A link from elsewhere names a figure that was not there when the page was read.
@@ -74,6 +100,10 @@
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     ricochet.startCaseTable();
     document.querySelectorAll(".scroll").forEach(watchWidth);
+    document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
+    for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
+    // Every digit of a number that is shown short.
+    document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
     startFigures();
     startSummary();
     ricochet.theme.paint();

@@ -18,7 +18,7 @@
       const { grids } = this, compares = grids.length > 1, entry = ([name, colour], heading) => ricochet.swatch(name, colour, "rect", heading);
       const caption = this.xs.length + " × " + this.ys.length + " cells: the attractor that each ends in." + (compares ? " Difference: cells that end elsewhere than with " + this.name(grids[0]) + "." : "") +
         " White: not known yet. Click a cell for the command that marches it.";
-      const charts = grids.map((id) => ({ title: this.name(id) + (this.data.byId.get(id).partial ? " (partial)" : ""), height: 420, views: [this.image(id)].concat(compares ? [this.difference(id)] : []), notes: this.notes(id) }));
+      const charts = grids.map((id) => ({ cases: [this.data.byId.get(id)], title: this.name(id) + (this.data.byId.get(id).partial ? " (partial)" : ""), height: 420, views: [this.image(id)].concat(compares ? [this.difference(id)] : []), notes: this.notes(id) }));
       return { id: "basins", title: "Basins of attraction", caption, views: ["basins"].concat(compares ? ["difference"] : []), charts, linked: true, legend: this.labels.map((label) => entry(label, "Ends in")).concat(compares ? outcomes.map((one) => entry(one, "Difference")) : []) };
     }
     notes(id) {
@@ -107,5 +107,6 @@
     }
   }
 
+  ricochet.answeredBy("basins");
   ricochet.figure("basins", (data) => (data.page.basins && data.page.basins.grids.length ? [new Basins(data).figure()] : []));
 }

@@ -2,7 +2,7 @@
 // verdicts in panels under it that share its horizontal axis. Views: a chart per case, all cases in one chart, a chart per case and kind of start.
 {
   const { Interval, diagramPanels, methodColours } = ricochet;
-  const mostLanes = 24, mostStartCharts = 48;   // rows of a band of regimes; charts of the view by start
+  const mostLanes = 24, mostStartCharts = 24;   // rows of a band of regimes; charts of the view by start
   const tip = ["tip displacement", "m"];
 
   class Diagram {
@@ -39,7 +39,8 @@
       out.charts = cases.map((one, c) => this.chart({ title: this.title(one), cases: [one] }, frames[c], 0));
       if (several) {
         const all = frames.reduce((sum, frame) => sum.join(frame.range), new Interval());
-        out.charts.push(this.chart({ title: "all methods", cases, byMethod: true }, { range: all, own: false }, out.views.push("overlaid") - 1));
+        out.atFirst = out.views.push("overlaid") - 1;   // beside the answer
+        out.charts.push(this.chart({ title: "all methods", cases, byMethod: true }, { range: all, own: false }, out.atFirst));
       }
       if (kinds.length > 1 && kinds.length * cases.length <= mostStartCharts) {
         const view = out.views.push("by start") - 1;
@@ -81,7 +82,7 @@
       if (this.exponents && this.below > 0) view.notes.push("Over all cases, " + count(this.below, "exponent lies", "exponents lie") + " below " + text(this.exponents.low) + " 1/s, outside the panel.");
       if (lanes.length > mostLanes) view.notes.push(lanes.length + " starts and methods are too many for a band of regimes here: it stands in the views with fewer.");
       if (frame.own) view.notes.push("Own vertical scale: its points reach far beyond those of the other charts.");
-      return { title: panel.title, only, height, views: [view], notes: panel.cases.flatMap((one) => this.outcomes(one, panel)) };
+      return { title: panel.title, cases: panel.cases, only, height, views: [view], notes: panel.cases.flatMap((one) => this.outcomes(one, panel)) };
     }
     // "⊘ refused (3 orbits), between 0.11 and 0.12: the support passes the stop".
     outcomes(one, panel) {
@@ -189,6 +190,7 @@
     axisLabel: { show: labels, interval: 0, fontSize: 10, color: "#5c5c5c", margin: 6 },
   });
 
+  ricochet.answeredBy("diagram");
   ricochet.figure("diagram", (data) => {
     if (!data.page.orbits) return [];
     const diagram = new Diagram(data);

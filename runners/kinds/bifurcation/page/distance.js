@@ -37,7 +37,7 @@
     against(column, values) {
       const curves = new ricochet.MethodCurves(this.view, this.cases.filter((one) => numberOf(one, column) !== null), column);
       const out = this.figure("distance-" + ricochet.slug(column), "Distance to the reference against " + column, "Median over parameter and starts; bars: the middle 80 % of them.", curves, " " + curves.colours());
-      out.charts = curves.facets.map((facet) => ({ title: facet.title, notes: [], views: kinds.map((kind) => this.againstView(column, values, facet, kind)) }));
+      out.charts = curves.facets.map((facet) => ({ title: facet.title, cases: facet.cases, notes: [], views: kinds.map((kind) => this.againstView(column, values, facet, kind)) }));
       return out;
     }
     againstView(column, values, facet, kind) {
@@ -65,7 +65,7 @@
     along() {
       const curves = new ricochet.MethodCurves(this.view, this.cases, "");
       const out = this.figure("distance", "Distance to the reference along the parameter", "Median over the starts at each value of the parameter.", curves);
-      out.charts = curves.facets.map((facet) => ({ title: facet.title, notes: [], height: 300, views: kinds.map((kind) => this.alongView(facet, kind)) }));
+      out.charts = curves.facets.map((facet) => ({ title: facet.title, cases: facet.cases, notes: [], height: 300, views: kinds.map((kind) => this.alongView(facet, kind)) }));
       return { ...out, linked: true };
     }
     alongView(facet, kind) {

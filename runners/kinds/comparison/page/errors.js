@@ -46,6 +46,7 @@
       return {
         id: "error-" + this.refined, title: byStep ? "Errors against the step" : "Errors against the number of elements", caption, views: kinds.map(({ error }) => error), charts,
         legend: curves.legend().concat(ricochet.drawnNames(charts).has(errors.floorName) ? [errors.floorEntry] : []),
+        measured: { key: "errors", along: this.refined, values: errors.measured(kinds, (one, error) => this.error(one, [error])) },
       };
     }
     range(rows) {
@@ -60,17 +61,22 @@
       const quantity = errors.quantity(error), y = ricochet.logAxis(quantity, range, true), lowest = y.min, { exact, text, count } = ricochet.format;
       y.max = y.max * Math.pow(y.max / y.min, this.gutter / (1 - this.gutter));
       const out = ricochet.view(this.x, quantity, ricochet.logAxis(this.x, this.xRange, false), [y, ricochet.gutterAxis()]), mark = ricochet.outcomeMarks();
-      out.option.grid.right = 46;
+      out.option.grid.right = 78;
+      const ends = [];
       const ofCase = (curve, find) => curve.cases.map((one) => find(one, [this.refined, error])).find(Boolean), all = [], zeros = [];
       for (const curve of facet.curves) {
         const said = orderText(ofCase(curve, this.order)), line = ofCase(curve, this.line), done = curve.cases.filter((one) => one.status === "done");
         const rows = this.rows(done, error).map((row) => ({ ...row, text: pointText(row, quantity, said) }));
         all.push(...rows);
         zeros.push(...rows.filter((row) => !(row.value > 0)).map((row) => curve.name + " at " + exact(row.at)));
-        if (line) ricochet.draw(out, lineRows(line, said), { x: "at", y: "error" }, slope(curve, line));
+        if (line) {
+          ends.push({ line, place: Math.log(line.to) / Math.log(this.xRange.high / this.xRange.low), height: Math.log(Math.max(line.error_to, lowest)) / Math.log(y.max / y.min), series: out.option.series.length });
+          ricochet.draw(out, lineRows(line, said), { x: "at", y: "error" }, slope(curve, line));
+        }
         ricochet.draw(out, rows.filter((row) => row.value > 0), { x: "at", y: "value" }, errors.curve(curve));
         ricochet.drawMarks(out, curve, curve.cases.filter((one) => !done.includes(one)).map((one) => mark(one, this.place(one))));
       }
+      labelTogether(ends, out.option.series);
       // The highest at each place.
       const floors = all.filter((row) => row.floor > 0 && all.every((other) => other.at !== row.at || other.floor <= row.floor)).sort((a, b) => a.at - b.at);
       const seen = floors.filter((row, k) => row.floor >= lowest && (k === 0 || floors[k - 1].at !== row.at)).map(({ at, floor }) => ({ at, floor, text: text(floor, 3) }));
@@ -93,6 +99,22 @@
     return text(value, 5) + unit(quantity) + (floor > 0 ? (value <= floor ? ", at or below the floor of " : ", floor ") + text(floor, 3) : "") + (said ? "; " + said : "");
   }
   const lineRows = (line, text) => [{ at: line.from, error: line.error_from, text }, { at: line.to, error: line.error_to, text }];
+  // Ends of lines whose labels would lie on each other share one.
+  const labelWidth = 0.3, labelHeight = 0.085;   // of a chart
+  const cut = (list, along, gap) => list.sort((a, b) => a[along] - b[along]).reduce((groups, one) => {
+    const last = groups[groups.length - 1];
+    if (last && one[along] - last[last.length - 1][along] < gap) last.push(one);
+    else groups.push([one]);
+    return groups;
+  }, []);
+  function labelTogether(ends, series) {
+    const { order } = ricochet.format;
+    for (const same of cut(ends, "place", labelWidth).flatMap((column) => cut(column, "height", labelHeight))) {
+      const orders = same.map(({ line }) => line.order), low = order(Math.min(...orders)), high = order(Math.max(...orders)), middle = same[same.length >> 1];
+      for (const one of same) if (one !== middle) delete series[one.series].endLabel;
+      if (same.length > 1) Object.assign(series[middle.series].endLabel, { formatter: low === high ? low : low + " to " + high, color: ricochet.ink });
+    }
+  }
   const slope = ({ name, colour }, { order }) => ({
     type: "line", name, symbol: "none", z: 1, color: colour, lineStyle: { color: ricochet.lighten(colour, 0.72), width: 7, cap: "round" }, labelLayout: { moveOverlap: "shiftY" },
     endLabel: { show: true, formatter: ricochet.format.order(order), color: colour, fontSize: 11, distance: 8 },

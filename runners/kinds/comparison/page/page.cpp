@@ -4,7 +4,7 @@ namespace ricochet::report {
 
 KindPage comparison_page() {
   KindPage page;
-  page.scripts = scripts({"error_names", "errors"});
+  page.scripts = scripts({"error_names", "order_dots", "errors"});
   page.tables = {"errors", "orders", "order_lines"};
   page.derived = {order_lines};
   page.answer = orders_html;

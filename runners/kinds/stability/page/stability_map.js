@@ -52,7 +52,7 @@
         ...boundaries.map(([name, , colour, , dash]) => ({ name: name + " limit", colour, dash: ricochet.svgDash(dash) })),
       ]);
       return {
-        id: "stability-map-" + ricochet.slug(column), title: "Stability over step and " + column, views: ["map"], charts, legend: legend.filter((entry) => used.has(entry.name)),
+        id: "stability-map-" + ricochet.slug(column), title: "Stability over step and " + column, views: ["map"], charts, legend: legend.filter((entry) => used.has(entry.name)), measured: { ...this.stability.measured, along: column },
         caption: "Background: what one step's spectrum predicts, darker the faster it grows. Marks: what marching showed. Closed contact is predicted with points held on both sides and observed in the scene itself, which is open as well: its background is the worse of both.",
       };
     }
@@ -66,7 +66,7 @@
           const one = facet.cases.find((other) => numberOf(other, column) === value);
           return { value, low: at[k], high: at[k + 1], one, cells: stability.cells(one, contact), limits: stability.limits(one, contact) };
         });
-        return { title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
+        return { cases: facet.cases, by: others, title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
       }).filter(Boolean);
     }
     draw(bands) {

@@ -28,7 +28,7 @@
       const values = subject.values.map((value) => ({ value, frames: framesOf(value) })).filter(({ frames }) => frames.some((frame) => !frame.range.empty));
       if (!values.length) return null;
       const charts = this.curves.charts((facet, f) => values.map(({ value, frames }) => this.chart(value, facet, frames[f])));
-      return { id: subject.id + "-" + ricochet.slug(this.column), title: subject.title + " against " + this.x[0], caption: subject.caption, views: values.map(({ value }) => value.view), charts, legend: this.curves.legend() };
+      return { id: subject.id + "-" + ricochet.slug(this.column), title: subject.title + " against " + this.x[0], caption: subject.caption, views: values.map(({ value }) => value.view), charts, legend: this.curves.legend(), measured: { key: subject.id, along: this.column, values: subject.values } };
     }
     // Rows of finished cases that have the value.
     rows(cases, value) {
@@ -57,6 +57,8 @@
     }
   }
 
-  // The figures of a subject, one per axis.
-  ricochet.alongAxes = (data, subject) => axisColumns(data.view).map((column) => new AlongAxis(data.view, column).figure(subject)).filter(Boolean);
+  // The figures of a subject, one per axis; how cases lie along an axis is worked out once for all subjects.
+  const known = new Map();
+  const along = (view, column) => known.get(column) || known.set(column, new AlongAxis(view, column)).get(column);
+  ricochet.alongAxes = (data, subject) => axisColumns(data.view).map((column) => along(data.view, column).figure(subject)).filter(Boolean);
 }

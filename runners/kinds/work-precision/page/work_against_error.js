@@ -34,7 +34,7 @@
       const charts = curves.charts((facet) => kinds.map((kind) => this.chart(kind, facet))), legend = curves.legend();
       if (work.front) legend.push({ name: frontName, colour: frontColour });
       if (ricochet.drawnNames(charts).has(errors.floorName)) legend.push(errors.floorEntry);
-      return { id: work.id, title: work.title, caption: curves.colours() + work.caption, views: kinds.map(({ error }) => error), charts, legend };
+      return { id: work.id, title: work.title, caption: curves.colours() + work.caption, views: kinds.map(({ error }) => error), charts, legend, measured: { key: "errors", along: "step", values: errors.measured(kinds, (one, error) => this.row(one, error)) } };
     }
 
     chart({ error, x: xRange, y: yRange, gutter }, facet) {

@@ -141,12 +141,15 @@ void require_works(const Json& page, size_t cases) {
                          });
         // A curve across half of a small chart colours hundreds of pixels, a lone mark about 60.
         if (any) CHECK(view.at("coloured") > 40);
+        if (view.contains("collisions")) CHECK(view.at("collisions") == Json::array());
       }
     }
     for (const char* what : {"hidden", "linked", "aligned", "reset"})
       if (one.contains(what)) CHECK(one.at(what) == true);
     if (one.at("linked_along") == true) CHECK(one.contains("linked"));
     CHECK(one.at("anchored") == true);
+    CHECK(one.at("charts").size() <= 50);  // 24 and, in views of their own, those of each start or measure
+    if (one.at("charts").empty()) continue;
     CHECK(one.at("svg") > 5000);  // axes and their labels alone are about this many bytes
     CHECK(one.at("png") > 20000);
     CHECK(one.at("tooltip").get<std::string>().find(" = ") != std::string::npos);

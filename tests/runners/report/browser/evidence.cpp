@@ -59,14 +59,16 @@ void check_slopes(const Json& page) {
           if (is_curve(series))
             for (const Json& item : series.at("data")) sizes.insert(item.at("value")[0].get<double>());
         for (const Json& series : view.at("series")) {
-          if (!series.contains("endLabel")) continue;
+          if (!series.contains("lineStyle") || series.at("lineStyle").value("width", 0) != 7) continue;
           ++lines;
           const Json &from = series.at("data")[0].at("value"), &to = series.at("data")[1].at("value");
           const double slope = std::log(to[1].get<double>() / from[1].get<double>()) /
                                std::log(to[0].get<double>() / from[0].get<double>());
-          const double said = std::stod(series.at("endLabel").get<std::string>());
-          // The label has three digits.
-          CHECK(slope == Approx(one.at("id") == "error-step" ? said : -said).epsilon(1e-2));
+          // The label has three digits; lines that end together share one.
+          if (const std::string label = series.value("endLabel", ""); !label.empty() && !text_contains(label, " to ")) {
+            const double said = std::stod(label);
+            CHECK(slope == Approx(one.at("id") == "error-step" ? said : -said).epsilon(1e-2));
+          }
           CHECK(sizes.count(from[0].get<double>()));
           CHECK(sizes.count(to[0].get<double>()));
           CHECK(text_contains(series.at("data")[0].at("text"), "order "));

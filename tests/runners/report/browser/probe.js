@@ -21,6 +21,23 @@
     return count;
   }
 
+  // Pairs of words of a chart that lie on each other, read from what is painted. Single marks may: where they stand says something.
+  function collisions(chart) {
+    const boxes = [], out = [];
+    for (const part of chart.getZr().storage.getDisplayList(true)) {
+      if (part.type !== "tspan" || part.invisible || !part.style.text || part.style.text.trim().length < 2 || part.style.opacity === 0) continue;
+      // Without a font of all scripts the library takes lines for lower than they are painted.
+      const rect = part.getBoundingRect().clone(), size = 0.9 * parseFloat(/[\d.]+px/.exec(part.style.font)[0]);
+      if (rect.height < size) { rect.y -= 0.5 * (size - rect.height); rect.height = size; }
+      if (part.transform) rect.applyTransform(part.transform);
+      boxes.push([part.style.text, rect.x + 1, rect.y + 1, rect.x + rect.width - 1, rect.y + rect.height - 1]);
+    }
+    boxes.forEach(([name, left, top, right, bottom], k) => {
+      for (const [other, low, high, far, deep] of boxes.slice(k + 1)) if (left < far && low < right && top < deep && high < bottom) out.push(name + " | " + other);
+    });
+    return out;
+  }
+
   // ---- what the library holds ---------------------------------------------------------------------------------------
   const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined && from[name] !== null).map((name) => [name, from[name]]));
   // A point as the library has it: where it lies, the words of its row, and where it looks unlike a row with nothing to tell.
@@ -67,6 +84,7 @@
     out.grid = option.grid.map((grid) => pick(grid, ["left", "right", "top", "height"]));
     out.dataZoom = option.dataZoom.map((zoom) => pick(zoom, ["id", "xAxisIndex", "filterMode"]));
     out.series = seriesIn(slot.chart);
+    out.collisions = collisions(slot.chart);
     return out;
   }
   const notesIn = (figure, index, view) => all("figure", figure.section)[index] ? all(":scope > ul.notes li, :scope > div[data-notes]:not([hidden]) li", all("figure", figure.section)[index]).map((li) => li.textContent) : [];
@@ -117,6 +135,33 @@
     ricochet.sidePanel.close();
     return out;
   }
+  // A map has a cell for every case; a click on one of its rows draws the charts of that row.
+  function checkMap(figure) {
+    const before = ricochet.figures.length, out = { rows: all(".map tbody tr", figure.section).length, cells: all("td[data-case]", figure.section).length, marks: all("td[data-case]", figure.section).filter((cell) => cell.textContent).length };
+    all("[data-row]", figure.section)[0].click();
+    out.charts = ricochet.figures.slice(before).map((one) => one.description.charts.length);
+    ricochet.figures.slice(before).forEach(ricochet.unmount);
+    return out;
+  }
+  // Another overlay makes the figure anew in its place, and back.
+  function checkOverlay(figure) {
+    const place = () => ricochet.figures.find((one) => one.section.id === figure.section.id), pick = (k) => { const [choice] = all("[data-choice]", place().section); choice.selectedIndex = k; choice.dispatchEvent(new Event("change")); };
+    const first = figure.description.charts.length;
+    pick(1);
+    const next = place(), out = { charts: next.description.charts.length, names: next.description.legend.map((entry) => entry.name), anew: next !== figure && next.section.isConnected && !figure.section.isConnected };
+    pick(0);
+    out.back = place().description.charts.length === first;
+    return out;
+  }
+  // The "?" beside a word opens what it means, and closes it.
+  function checkExplained() {
+    const [button] = all(".why");
+    if (!button) return null;
+    button.click();
+    const note = document.getElementById(button.getAttribute("aria-controls")), out = { label: button.getAttribute("aria-label"), text: note ? note.textContent : "" };
+    button.click();
+    return Object.assign(out, { closed: !all(".meaning").length, count: all(".why").length });
+  }
   function checkFigure(figure, controls) {
     const { description } = figure, views = Math.max(1, all("[data-view]", figure.section).length);
     const out = { id: description.id, title: description.title, caption: figure.section.querySelector(".caption").textContent, views: description.views, linked_along: Boolean(description.linked),
@@ -124,6 +169,7 @@
       charts: description.charts.map((chart) => Object.assign(pick(chart, ["title", "only"]), { views: [] })) };
     const links = all("nav a").map((a) => a.getAttribute("href"));
     out.anchored = links.includes("#" + figure.section.id);
+    if (description.map) out.map = checkMap(figure);
     for (let view = 0; view < views; ++view) {
       if (view > 0) figure.show(view);
       figure.drawAll();
@@ -144,6 +190,7 @@
     out.tooltip = sample ? figure.option(first).tooltip.formatter([{ ...sample.getDataParams(0), marker: "" }]) : "";
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "basins") out.cell = checkCell(figure, first);
+    if ((description.choices || []).some((choice) => choice.name === "Overlay")) out.overlay = checkOverlay(figure);
     return out;
   }
   function checkTable() {
@@ -173,7 +220,7 @@
     const asked = JSON.parse(document.documentElement.dataset.asked);
     let out = null;
     try {
-      out = { figures: ricochet.figures.map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
     } catch (e) { errors.push(String((e && e.stack) || e)); }
     parent.postMessage(JSON.stringify(Object.assign({ errors }, out)), "*");
   });

@@ -207,10 +207,21 @@ TEST_CASE("reports of studies of every kind draw what their tables hold", "[repo
     pages.push_back(ran.emplace(kind, run(kind)).first->second.page);
   }
   const Json said = read_back("results", pages);
+  const std::map<std::string, std::string> answers = {{"trajectory", "choice-effects"}, {"convergence", "order-dots"},
+                                                      {"work-precision", "work-front"}, {"stability", "limit-dots"},
+                                                      {"bifurcation", "diagram"},       {"basins", "basins"}};
   for (const auto& [kind, one] : ran) {
     INFO(kind);
     require_works(said.at(kind), one.results.cases.size());
+    // One figure that shows the answer stands beside it.
+    CHECK(said.at(kind).at("answer") == Json::array({answers.at(kind)}));
+    if (const Json& word = said.at(kind).at("explained"); !word.is_null()) {
+      CHECK(word.at("label").get<std::string>().rfind("What “", 0) == 0);
+      CHECK(word.at("text").get<std::string>().size() > 40);
+      CHECK(word.at("closed") == true);
+    }
   }
+  CHECK(said.at("trajectory").at("explained").is_object());
   check_trajectory(ran.at("trajectory"), said.at("trajectory"));
   check_errors(ran.at("convergence"), said.at("convergence"));
   check_errors(ran.at("work-precision"), said.at("work-precision"));
