@@ -62,7 +62,7 @@ Fill html_section(const std::string& html) {
 /// What every page has, around the figures of its kind.
 constexpr const char* shared_scripts[] = {
     "format",         "data",  "cases",      "short_names", "dataset",  "options", "method_curves", "strips",
-    "figure_section", "theme", "chart_data", "figure",      "case_map", "picture", "dot_rows",      "paper"};
+    "figure_section", "theme", "chart_data", "figure",      "case_map", "picture", "paper",         "dot_rows"};
 constexpr const char* page_scripts[] = {"sorting", "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {

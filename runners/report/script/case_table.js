@@ -22,11 +22,14 @@ ricochet.startCaseTable = () => {
   const full = document.getElementById("all-columns");
   if (full) full.addEventListener("change", (e) => table.classList.toggle("full", e.target.checked));
 
-  // Columns and rows in sight, in their order, numbers with all digits.
+  // Columns and rows in sight, in their order; numbers with all digits where the page has them.
   ricochet.casesShown = () => {
-    const places = heads.map((head, k) => k).filter((k) => heads[k].getClientRects().length > 0);
-    const value = (cell) => cell.dataset.value || cell.dataset.text || (cell.textContent === "–" ? "" : cell.textContent);
-    return ricochet.csvText([places.map((k) => columns[k])].concat(Array.from(body.rows).filter((row) => !row.hidden).map((row) => places.map((k) => value(row.cells[k])))));
+    const places = heads.map((head, k) => k).filter((k) => heads[k].getClientRects().length > 0), { byId } = ricochet.data || { byId: new Map() };
+    const value = (row, k) => {
+      const one = byId.get(row.cells[0].textContent), exact = one && one.measures[columns[k]], axis = one && one.values[columns[k]], found = ricochet.cellValue(row.cells[k]);
+      return exact !== undefined ? exact : axis ? axis.text : found === null ? "" : typeof found === "number" ? found : ricochet.cellText(row.cells[k]);
+    };
+    return ricochet.csvText([places.map((k) => columns[k])].concat(Array.from(body.rows).filter((row) => !row.hidden).map((row) => places.map((k) => value(row, k)))));
   };
   document.getElementById("cases-csv").addEventListener("click", () => ricochet.download(document.title.split(" · ")[0] + "-cases", "csv", new Blob([ricochet.casesShown()], { type: "text/csv" })));
 };

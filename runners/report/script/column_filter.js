@@ -39,9 +39,11 @@
     const name = left[1], known = columns.some((column) => plain(column) === plain(name)), near = known ? "" : nearest(name, columns);
     return { words: [], conditions: [], wrong: known ? name + " " + left[2] + " expects a value" : "no column is called “" + name + "”" + (near ? "; did you mean " + near + "?" : "") };
   };
+  // The words of a cell, without the mark of a status.
+  ricochet.cellText = (cell) => cell.textContent.trim().replace(/^[✓⊘✕!?] /, "");
   // What a cell has: a number, a text, null for nothing.
   ricochet.cellValue = (cell) => {
-    const text = cell.textContent.trim(), number = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value);
-    return text === "" || text === "–" ? null : Number.isNaN(number) ? plain(cell.dataset.text || text) : number;
+    const text = ricochet.cellText(cell), number = cell.dataset.value === undefined && !cell.classList.contains("text") ? ricochet.numberWritten(text) : Number(cell.dataset.value);
+    return text === "" || text === "–" ? null : Number.isNaN(number) ? plain(text) : number;
   };
 }

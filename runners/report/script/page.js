@@ -3,6 +3,23 @@
   const read = (id) => { const e = document.getElementById(id); return e ? JSON.parse(e.textContent) : null; };
   const figures = ricochet.figures = [];
 
+  // A finger on a chart is the page's: the chart library hears of taps alone, as clicks.
+  const ofPage = (event) => { if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation(); };
+  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) document.addEventListener(name, ofPage, { capture: true, passive: true });
+
+  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys.
+  function watchWidth(box) {
+    const look = () => {
+      const more = box.scrollWidth - box.clientWidth;
+      if (more > 1) { box.dataset.wide = box.scrollLeft < more - 1 ? "more" : "all"; box.tabIndex = 0; }
+      else { delete box.dataset.wide; box.removeAttribute("tabindex"); }
+    };
+    box.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(box);
+    look();
+  }
+  ricochet.watchWidth = watchWidth;
+
   const owner = new Map();
   const later = new IntersectionObserver((entries) => {
     for (const entry of entries) {
@@ -36,23 +53,6 @@
     figures.splice(figures.indexOf(figure), 1);
     figure.section.remove();
   };
-
-  // A finger on a chart is the page's: the chart library hears of taps alone, as clicks.
-  const ofPage = (event) => { if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation(); };
-  for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) document.addEventListener(name, ofPage, { capture: true, passive: true });
-
-  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys.
-  function watchWidth(box) {
-    const look = () => {
-      const more = box.scrollWidth - box.clientWidth;
-      if (more > 1) { box.dataset.wide = box.scrollLeft < more - 1 ? "more" : "all"; box.tabIndex = 0; }
-      else { delete box.dataset.wide; box.removeAttribute("tabindex"); }
-    };
-    box.addEventListener("scroll", look, { passive: true });
-    new ResizeObserver(look).observe(box);
-    look();
-  }
-  ricochet.watchWidth = watchWidth;
 
   function startFigures() {
     const page = read("page-data"), place = document.getElementById("figures");
@@ -99,11 +99,11 @@
   document.addEventListener("DOMContentLoaded", () => {
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     ricochet.startCaseTable();
+    document.querySelectorAll(".scroll").forEach(watchWidth);
     document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
     for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
     // Every digit of a number that is shown short.
     document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
-    document.querySelectorAll(".scroll").forEach(watchWidth);
     startFigures();
     startSummary();
     ricochet.theme.paint();

@@ -56,9 +56,8 @@
   }
 
   function showFirst(place) {
-    // That of the answer, where it has charts.
-    const drawable = ricochet.figures.filter((one) => one.slots.some((slot) => one.visible(slot) && one.viewOf(slot).option));
-    const figure = drawable.find((one) => one.section.closest("#answer-figure")) || drawable[0];
+    // The figure that stands beside the answer, where there is one.
+    const usable = ricochet.figures.filter((one) => one.slots.some((slot) => one.visible(slot) && one.viewOf(slot).option)), figure = usable.find((one) => one.section.closest("#answer")) || usable[0];
     if (!figure || place.childElementCount) return;
     const slot = figure.slots.find((one) => figure.visible(one) && figure.viewOf(one).option), given = figure.chartOf(slot).height, drawing = drawn(figure, slot, sheet, given ? Math.min(given, 330) : 230);
     drawing.className = "drawing";

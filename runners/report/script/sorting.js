@@ -9,7 +9,7 @@ ricochet.startSorting = (table) => {
     const index = headers.indexOf(header), up = header.getAttribute("aria-sort") !== "ascending";
     headers.forEach((h) => h.setAttribute("aria-sort", "none"));
     header.setAttribute("aria-sort", up ? "ascending" : "descending");
-    const key = (row) => { const cell = row.cells[index], text = (cell.dataset.text || cell.textContent).trim(), v = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value); return Number.isNaN(v) ? text : v; };
+    const key = (row) => { const cell = row.cells[index], text = cell.textContent.trim(), v = cell.dataset.value === undefined ? ricochet.numberWritten(text) : Number(cell.dataset.value); return Number.isNaN(v) ? text : v; };
     const compare = (a, b) => {
       const x = key(a), y = key(b);
       if (absent(x) || absent(y)) return absent(x) - absent(y);

@@ -37,7 +37,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST_CASE("a sketch says the numbers of its scene, and what the study varies as a range", "[report]") {
   const Study study = beam();
   CHECK(value_of(study, "L") == "1.5 m");
-  CHECK(value_of(study, "EI") == "33.8 N m²");  // π(D⁴ − d⁴)/64 × E
+  CHECK(value_of(study, "EI") == "33.76 N m²");  // π(D⁴ − d⁴)/64 × E
   CHECK(value_of(study, "ρS") == "0.1194 kg/m");
   CHECK(value_of(study, "A₀ (clamp)") == "from 0.001 to 0.004 m (3 values)");
   CHECK(value_of(study, "u_t(x, 0)") == "-2*x");
