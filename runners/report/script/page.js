@@ -100,11 +100,12 @@
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
     ricochet.startCaseTable();
     document.querySelectorAll(".scroll").forEach(watchWidth);
-    document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
-    for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
     // Every digit of a number that is shown short.
     document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
     startFigures();
+    // With the names of the study.
+    document.querySelectorAll("#answer .first ul.answer").forEach(ricochet.shortenLines);
+    for (const id of ["answer", "methods"]) { const section = document.getElementById(id); if (section) ricochet.explainWords(section); }
     startSummary();
     ricochet.theme.paint();
   });

@@ -1,24 +1,40 @@
 // Short names of what labels say often, one table for the whole page: the full name stands in the tooltip and in a key below the figure.
 {
   const names = [
-    ["newmark-dumont-paoli", "NDP"], ["moreau-jean", "MJ"], ["structure.damping.stiffness", "α"], ["structure.damping.mass", "η"], ["support.amplitude", "A₀"], ["support.pulsation", "ω"],
+    ["structure.damping.stiffness", "α"], ["structure.damping.mass", "η"], ["support.amplitude", "A₀"], ["support.pulsation", "ω"],
     ["contact.stiffness", "κ"], ["contact.restitution", "e"], ["time.restitution", "e"], ["stiffness", "κ"], ["restitution", "e"], ["elements", "N"], ["step", "h"],
     ["time.beta", "β"], ["time.gamma", "γ"], ["time.theta", "θ"], ["beta", "β"], ["gamma", "γ"], ["theta", "θ"],
   ];
   const meanings = {
-    NDP: "newmark-dumont-paoli", MJ: "moreau-jean", "α": "structure.damping.stiffness (C = αK + ηM)", "η": "structure.damping.mass (C = αK + ηM)", "A₀": "support.amplitude", "ω": "support.pulsation",
+    "α": "structure.damping.stiffness (C = αK + ηM)", "η": "structure.damping.mass (C = αK + ηM)", "A₀": "support.amplitude", "ω": "support.pulsation",
     "κ": "stiffness of the contact", e: "restitution", N: "elements", h: "step", "β": "beta", "γ": "gamma", "θ": "theta",
   };
   // A word of everyday language is a name where a value or another choice follows it.
   const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| \\([^)]{1,6}\\)| [\\d−])" : "");
-  const short = new Map(names), whole = new RegExp("(?<![\\w.-])(?:" + names.map(([full]) => named(full)).join("|") + ")(?![\\w-]|\\.\\w)", "g");
+  // A scheme of several words goes by their initials, where no other of the study has these.
+  function initials(schemes) {
+    const several = schemes.filter((name) => /^[a-z]+(-[a-z]+)+$/.test(name)), first = (name) => name.split("-").map((word) => word[0].toUpperCase()).join("");
+    return several.filter((name) => several.every((other) => other === name || first(other) !== first(name))).map((name) => [name, first(name)]);
+  }
+  // The names of the page's study; before its data are read those that every study has.
+  let known = null;
+  function table() {
+    if (known && (known.whole || !ricochet.data)) return known;
+    const schemes = ricochet.data ? initials(ricochet.data.view.values("time")) : [], all = schemes.concat(names);
+    known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?:" + schemes.map(([full]) => full).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
+    for (const [full, brief] of schemes) meanings[brief] = full;
+    return known;
+  }
 
   // A label with short names; `used`, where given, takes those that it has.
-  ricochet.shorten = (label, used) => String(label).replace(whole, (full) => {
-    const found = short.get(full);
-    if (used) used.add(found);
-    return found;
-  });
+  ricochet.shorten = (label, used) => {
+    const { short, pattern } = table();
+    return String(label).replace(pattern, (full) => {
+      const found = short.get(full);
+      if (used) used.add(found);
+      return found;
+    });
+  };
   // What short names mean: "α structure.damping.stiffness · N elements".
   ricochet.keyTo = (used) => Array.from(used, (name) => name + " " + meanings[name]).join(" · ");
 }

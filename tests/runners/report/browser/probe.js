@@ -171,7 +171,7 @@
     out.anchored = links.includes("#" + figure.section.id);
     if (description.map) out.map = checkMap(figure);
     for (let view = 0; view < views; ++view) {
-      if (view > 0) figure.show(view);
+      if (figure.view !== view) figure.show(view);   // what stands beside the answer may begin with another
       figure.drawAll();
       for (const slot of figure.slots) if (figure.visible(slot)) out.charts[slot.index].views.push(Object.assign(readBack(figure, slot), { notes: notesIn(figure, slot.index) }));
     }
