@@ -16,23 +16,20 @@ std::vector<Field> comparison_keys() {
   using namespace keys;
   Field reference =
       methods("reference", Role::reference,
-              "What each case is compared with: a reference plugin, \"self\" (the method itself on finer "
-              "steps and meshes), or a list; the first is the reference, and its gap to the others is part "
-              "of the error floor.");
+              "Compared with: a reference, \"self\" (the method on finer steps and meshes) or a list, whose first is "
+              "the reference; its gap to the others is part of the error floor.");
   reference.marched = true;
-  Field errors = of_form(Field::Form::words, "errors", std::nullopt, "The errors to measure.");
+  Field errors = of_form(Field::Form::words, "errors", std::nullopt, "Errors.");
   errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());
   errors.fallback = Json(error_names());
-  return {
-      step(),
-      duration(),
-      samples(),
-      std::move(reference),
-      std::move(errors),
-      optional(real("horizon", "s", positive, std::nullopt,
-                    "Trajectories are compared up to this time; null: up to the end, or up to where two nearby runs "
-                    "have drifted apart, whichever comes first (the report says which).")),
-      budget()};
+  return {step(),
+          duration(),
+          samples(),
+          std::move(reference),
+          std::move(errors),
+          optional(real("horizon", "s", positive, std::nullopt,
+                        "End of the comparison; null: the end, or where two nearby runs have drifted apart.")),
+          budget()};
 }
 
 void check_comparison(const Json& study) {

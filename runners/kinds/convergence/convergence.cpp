@@ -22,6 +22,7 @@ Kind convergence_kind() {
   kind.format.settings = comparison_settings;
   kind.format.check = check_comparison;
   kind.plan = plan_case;
+  kind.march = run_case;
   kind.start = compare_cases;
   kind.tables = [](StudyResults& results) {
     results.derived.push_back(errors_table(results));
