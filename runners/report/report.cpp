@@ -58,9 +58,10 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {"format",        "data",           "cases",  "dataset", "options",
-                                          "method_curves", "figure_section", "figure", "picture"};
-constexpr const char* page_scripts[] = {"case_table", "page"};
+constexpr const char* shared_scripts[] = {"format",  "data",          "cases",          "dataset",
+                                          "options", "method_curves", "figure_section", "figure",
+                                          "picture", "side_panel",    "case_panel",     "case_pick"};
+constexpr const char* page_scripts[] = {"film_stage", "space_time", "film", "case_table", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
@@ -108,7 +109,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   Fill page;
   page.set("name", results.name);
   page.set("kind", results.kind);
-  page.set("style", std::string(asset("page.css")));
+  page.set("style", std::string(asset("page.css")) + std::string(asset("panel.css")));
   if (!results.question.empty()) page.set("question", results.question);
   page.set("counts", counts_text(view));
   page.set("banners", banners(results));

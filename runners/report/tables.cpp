@@ -140,6 +140,7 @@ std::string case_table_html(const CaseView& view) {
   for (const CaseRecord& record : results.cases) {
     Fill row;
     row.set("status", record.status);
+    row.set("case", record.id);
     row.set("cells", case_cells(view, record, measures));
     rows << row;
   }

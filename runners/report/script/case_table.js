@@ -17,6 +17,10 @@ ricochet.startCaseTable = () => {
   }
   words.addEventListener("input", filter);
   statuses.forEach((s) => s.addEventListener("change", filter));
+  // A row opens its case, by a click or by Enter; who marks text wants the text.
+  const open = (row) => { if (row && row.dataset.case && ricochet.data && !String(getSelection())) ricochet.showCase(ricochet.data, row.dataset.case); };
+  body.addEventListener("click", (event) => open(event.target.closest("tr")));
+  body.addEventListener("keydown", (event) => { if (event.key === "Enter" && event.target.matches("tr")) { event.preventDefault(); open(event.target); } });
   document.getElementById("all-columns").addEventListener("change", (e) => table.classList.toggle("full", e.target.checked));
 };
 

@@ -29,6 +29,7 @@
       figures.push(figure);
       for (const slot of figure.slots) { owner.set(slot.element, [figure, slot]); later.observe(slot.element); }
     }
+    ricochet.startFilm(data, after, link);
     if (!figures.length) place.remove();
     // A link from elsewhere names a figure that was not there when the page was read.
     const target = location.hash.startsWith("#figure-") && document.getElementById(decodeURIComponent(location.hash.slice(1)));
