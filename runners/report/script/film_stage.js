@@ -143,8 +143,8 @@
       context.fillText(film.name, beside ? boxes[f].left + 4 : 4 + f * width / films.length, 4, width / films.length - 8);
       draw(context, { ...film, row: beside ? 0.5 : films.length > 1 ? f : 0.5 }, scales, boxes[f], strongest, ink);
     });
-    const { text } = ricochet.format, arrows = strongest > 1e-299 ? " The longest arrow is a force of " + text(strongest, 3) + " N." : "";
-    return (scales.larger === undefined ? "" : "Displacements are drawn " + text(scales.larger, 2) + " times as large as lengths.") + arrows;
+    const { text, shown } = ricochet.format, arrows = strongest > 1e-299 ? " The longest arrow is a force of " + text(strongest, 3) + " N." : "";
+    return (scales.larger === undefined ? "" : "Displacements are drawn " + shown(scales.larger, 2) + " times as large as lengths.") + arrows;
   }
 
   Object.assign(ricochet, { Snapshots, drawStage, freshCanvas: fresh });
