@@ -36,7 +36,13 @@ po::options_description described(const Subcommand& command) {
     add("cell", po::value<std::string>()->value_name("X,Y"), "cell of a study of basins, as in cells.csv");
   if (has("periods"))
     add("periods", po::value<int>()->value_name("N"), "forcing periods that are marched (default: 8)");
-  if (has("samples")) add("samples", po::value<int>()->value_name("N"), "samples per period (default: 200)");
+  if (has("samples"))
+    add("samples", po::value<int>()->value_name("N"),
+        has("periods") ? "samples per period (default: 200)" : "print the curve instead, at N samples, as CSV");
+  if (has("snapshots"))
+    add("snapshots", po::value<int>()->value_name("N"),
+        "keep N instants of the motion beside the case instead: the next report shows them as a film");
+  if (has("study")) add("study", "print the study of this case alone instead, to be run");
   if (has("plugin"))
     add("plugin", po::value<std::vector<std::string>>()->value_name("FILE"),
         "also use this plugin library (repeatable)");
@@ -109,10 +115,12 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.fresh = values.count("fresh") > 0;
   arguments.table = values.count("table") > 0;
   arguments.cases = values.count("cases") > 0;
-  constexpr int most_jobs = 4096, most_samples = 1000000000;
+  arguments.study = values.count("study") > 0;
+  constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
   arguments.jobs = count_of(values, "jobs", most_jobs);
   arguments.periods = count_of(values, "periods", most_samples);
   arguments.samples = count_of(values, "samples", most_samples);
+  arguments.snapshots = count_of(values, "snapshots", most_snapshots);
   if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
   if (values.count("start")) arguments.start = values["start"].as<std::string>();
   if (values.count("cell")) arguments.cell = values["cell"].as<std::string>();

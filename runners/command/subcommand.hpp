@@ -30,10 +30,12 @@ struct Arguments {
   bool fresh = false;                            ///< --fresh
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
+  bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
   std::string cell;                              ///< --cell; "": none given
   int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
+  int snapshots = 0;                             ///< --snapshots; 0: none given
   bool help = false;
 };
 
@@ -43,8 +45,8 @@ struct Subcommand {
   std::string usage;  ///< operands and options as the help shows them
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
-  std::vector<std::string>
-      options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell, periods, samples
+  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell,
+                                     ///< periods, samples, study, snapshots
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 
@@ -72,6 +74,7 @@ int command_compare(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
 int command_league(const Arguments& arguments, std::ostream& out);
 int command_point(const Arguments& arguments, std::ostream& out);
+int command_case(const Arguments& arguments, std::ostream& out);
 int command_schema(const Arguments& arguments, std::ostream& out);
 int command_doctor(const Arguments& arguments, std::ostream& out);
 

@@ -74,6 +74,10 @@ struct Kind {
   /// What runs the cases of a study.
   std::function<CaseRunner(const RunContext&)> start;
 
+  /// Marches the scene of one case once, with its curve, whatever else the kind makes of it. Empty: its cases are more
+  /// than one march.
+  std::function<CaseRecord(const StudyCase&, const Registry&, const std::atomic<bool>& stop)> march;
+
   /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
   std::function<void(StudyResults&)> tables;
   /// The rows of `answers` (answers_head) where this kind answers in its own way. Empty: what each choice makes of the

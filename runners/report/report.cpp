@@ -60,10 +60,12 @@ Fill html_section(const std::string& html) {
 }
 
 /// What every page has, around the figures of its kind.
-constexpr const char* shared_scripts[] = {
-    "format",         "data",  "cases",      "short_names", "dataset",  "options", "method_curves", "strips",
-    "figure_section", "theme", "chart_data", "figure",      "case_map", "picture", "paper",         "dot_rows"};
-constexpr const char* page_scripts[] = {"sorting", "column_filter", "case_table", "verdict_words", "page"};
+constexpr const char* shared_scripts[] = {"format",     "data",          "cases",      "short_names",    "dataset",
+                                          "options",    "method_curves", "strips",     "figure_section", "theme",
+                                          "chart_data", "figure",        "case_map",   "picture",        "paper",
+                                          "dot_rows",   "side_panel",    "case_panel", "case_pick"};
+constexpr const char* page_scripts[] = {"film_stage",    "space_time", "film",          "sorting",
+                                        "column_filter", "case_table", "verdict_words", "page"};
 
 std::string page_program(const KindPage& kind) {
   std::string out = "\"use strict\";\n";
@@ -115,7 +117,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   Fill page;
   page.set("name", results.name);
   page.set("kind", results.kind);
-  page.set("style", std::string(asset("page.css")) + page_margins(results));
+  page.set("style", std::string(asset("page.css")) + std::string(asset("panel.css")) + page_margins(results));
   page.set("summary", summary_html(view));
   if (const std::string sketch = scene_svg(results.study); !sketch.empty()) page.set("sketch", sketch);
   if (!results.question.empty()) page.set("question", results.question);

@@ -178,6 +178,7 @@ std::string case_table_html(const CaseView& view) {
       cells << cell_fill(cell);
     }
     row.set("status", record.status);
+    row.set("case", record.id);
     row.set("cells", cells);
     rows << row;
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <functional>
 #include <map>
 
 #include "runners/store/record_values.hpp"
@@ -142,21 +143,42 @@ StudyResults read_tables(SQLite::Database& database) {
   return results;
 }
 
-StudyResults read_store(const std::filesystem::path& folder) {
+namespace {
+
+/// Opens the store of a folder, for who only reads.
+void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use) {
   const std::filesystem::path file = folder / "results.sqlite";
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw StoreError(fmt::format("{}: there is no results.sqlite here{}; expected the folder of a study that was run",
                                  folder.string(), error ? " (" + error.message() + ")" : ""));
-  StudyResults results;
   guarded(file, nullptr, [&] {
     // Opened for writing where possible: a store left by a killed process is rolled back by its first reader.
     constexpr int wait_ms = 10000;
     SQLite::Database database(file, SQLite::OPEN_READWRITE, wait_ms);
     prepare_schema(database, file, false);
-    guarded(file, &database, [&] { results = read_tables(database); });
+    guarded(file, &database, [&] { use(database); });
   });
+}
+
+}  // namespace
+
+StudyResults read_store(const std::filesystem::path& folder) {
+  StudyResults results;
+  with_store(folder, [&](SQLite::Database& database) { results = read_tables(database); });
   return results;
+}
+
+std::string read_motion(const std::filesystem::path& folder, const std::string& key) {
+  std::string content;
+  with_store(folder, [&](SQLite::Database& database) {
+    SQLite::Statement find(database, "SELECT content FROM motions WHERE key = ?");
+    find.bind(1, key);
+    if (!find.executeStep()) return;
+    const SQLite::Column blob = find.getColumn(0);
+    content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
+  });
+  return content;
 }
 
 }  // namespace ricochet

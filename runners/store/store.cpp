@@ -13,6 +13,7 @@
 #include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/merge_environments.hpp"
+#include "runners/store/number_rows.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
@@ -299,24 +300,8 @@ void Store::save_one(const CaseRecord& record, bool partial) {
 }
 
 void Store::save_numbers(const CaseRecord& record) {
-  SQLite::Statement add(*database_, "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
-  for (std::size_t t = 0; t < record.numbers.size(); ++t) {
-    const NumberTable& table = record.numbers[t];
-    for (std::size_t c = 0; c < table.values.size(); ++c) {
-      const std::string& column = table.columns.at(c).name;
-      add.reset();
-      add.bind(1, record.id);
-      add.bind(2, static_cast<int>(t));
-      add.bind(3, static_cast<int>(c));
-      add.bind(4, table.name);
-      add.bind(5, table.exported ? 1 : 0);
-      add.bind(6, column);
-      add.bind(7);
-      if (const auto* words = table.words_of(column)) add.bind(7, text_of(*words));
-      bind_series(add, 8, table.values[c]);
-      add.exec();
-    }
-  }
+  for (std::size_t t = 0; t < record.numbers.size(); ++t)
+    insert_numbers(*database_, record.id, static_cast<int>(t), record.numbers[t]);
 }
 
 std::string Store::motion(const std::string& key) const {

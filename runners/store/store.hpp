@@ -95,4 +95,7 @@ class Store {
 /// StoreError.
 StudyResults read_store(const std::filesystem::path& folder);
 
+/// What FOLDER/results.sqlite keeps under a key of Store::motion, "" where there is none.
+std::string read_motion(const std::filesystem::path& folder, const std::string& key);
+
 }  // namespace ricochet

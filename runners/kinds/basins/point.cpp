@@ -61,7 +61,7 @@ int march_cell_again(const StudyResults& results, const PointRequest& asked, std
     throw PointRefused("ricochet point: this is a study of kind basins; expected --cell X,Y, as in cells.csv");
   const auto [x, y] = two_numbers(asked.cell);
   const CaseRecord& record = find_case(results, asked.case_id);
-  const StoredStudy stored(results, asked);
+  const StoredStudy stored(results, asked.plugins);
   const StudyCase& study_case = stored.find(record.id);
   const std::vector<GridAxis> axes = grid_axes(study_case.settings);
   const std::size_t column = find_place(axes[0], x), line = find_place(axes[1], y);

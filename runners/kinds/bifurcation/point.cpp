@@ -73,7 +73,7 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
                              "fewer values or starts");
   task.entry = std::move(*entry);
 
-  const StoredStudy stored(results, asked);
+  const StoredStudy stored(results, asked.plugins);
   const StudyCase& study_case = stored.find(record.id);
   std::vector<double> strobes;  // as the run stored them; none where its section is another one
   if (study_case.settings.at("section") == "strobe")

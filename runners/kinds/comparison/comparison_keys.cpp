@@ -16,11 +16,10 @@ std::vector<Field> comparison_keys() {
   using namespace keys;
   Field reference =
       methods("reference", Role::reference,
-              "What each case is compared with: a reference plugin, \"self\" (the method itself on finer "
-              "steps and meshes), or a list; the first is the reference, and its gap to the others is part "
-              "of the error floor.");
+              "Compared with: a reference, \"self\" (the method on finer steps and meshes) or a list, whose first is "
+              "the reference; its gap to the others is part of the error floor.");
   reference.marched = true;
-  Field errors = of_form(Field::Form::words, "errors", std::nullopt, "The errors to measure.");
+  Field errors = of_form(Field::Form::words, "errors", std::nullopt, "Errors.");
   errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());
   errors.fallback = Json(error_names());
   return {step(),
@@ -29,8 +28,7 @@ std::vector<Field> comparison_keys() {
           std::move(reference),
           std::move(errors),
           optional(real("horizon", "s", positive, std::nullopt,
-                        "Trajectories are compared up to here; null: to the end, or to where two nearby runs have "
-                        "drifted apart.")),
+                        "End of the comparison; null: the end, or where two nearby runs have drifted apart.")),
           budget()};
 }
 

@@ -24,6 +24,7 @@ Kind convergence_kind() {
   kind.plan = plan_case;
   kind.watch = recorded;
   kind.beside = seconds_beside;
+  kind.march = run_case;
   kind.start = compare_cases;
   kind.tables = [](StudyResults& results) {
     results.derived.push_back(errors_table(results));

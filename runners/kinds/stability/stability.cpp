@@ -21,15 +21,14 @@ std::vector<Field> stability_keys() {
   ObjectForm steps;
   steps.fields = {single(real("from", "s", positive, std::nullopt, "Smallest step.")),
                   single(real("to", "s", positive, std::nullopt, "Largest step.")),
-                  integer("count", {1, 10000, false, false}, 20, "Number of steps, spaced evenly on a log scale.")};
+                  integer("count", {1, 10000, false, false}, 20, "Number of steps, even on a log scale.")};
   Field observe;
   observe.spec.type = ParameterSpec::Type::boolean;
   observe.spec.key = "observe";
-  observe.spec.text = "Whether the same cells are marched as well, and the limit found by bisection.";
+  observe.spec.text = "Whether cells are marched too.";
   observe.fallback = true;
   return {object("steps", std::nullopt, "The range of steps.", steps), observe,
-          optional(real("duration", "s", positive, std::nullopt,
-                        "Simulated time of each observed cell; null: as long as growth needs to show.")),
+          optional(real("duration", "s", positive, std::nullopt, "Time of each cell; null: as growth needs.")),
           budget()};
 }
 

@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <ricochet/contract/errors.hpp>
 #include <ricochet/measure/orbits/motion_class.hpp>
 
-#include "runners/study/load_study.hpp"
-#include "runners/study/stated_plan.hpp"
 #include "runners/table/csv_text.hpp"
 
 namespace ricochet {
@@ -21,23 +18,6 @@ constexpr double same_value = 1e-9;  // relative
 
 }  // namespace
 
-const CaseRecord& find_case(const StudyResults& results, const std::string& id) {
-  std::vector<const CaseRecord*> found;
-  std::vector<std::string> ids;
-  for (const CaseRecord& record : results.cases) {
-    if (record.id == id) return record;
-    if (record.id.starts_with(id)) found.push_back(&record);
-    ids.push_back(record.id);
-  }
-  if (found.size() == 1) return *found.front();
-  std::vector<std::string> named;
-  for (const CaseRecord* record : found) named.push_back(record->id);
-  if (!found.empty()) throw PointRefused(fmt::format("the case \"{}\" is one of {}", id, fmt::join(named, ", ")));
-  const std::string nearest = nearest_name(id, ids);
-  throw PointRefused(fmt::format("there is no case \"{}\"{}; its cases are {}", id,
-                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", fmt::join(ids, ", ")));
-}
-
 const Table& stored_table(const CaseRecord& record, const std::string& name) {
   if (const Table* table = find_table(record.tables, name)) return *table;
   throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
@@ -48,14 +28,6 @@ std::string stored_regime(const TableReader& rows, std::size_t row) {
   const std::string name = rows.text(row, "class");
   const auto motion = motion_class(name, rows.number(row, "period"));
   return motion ? text(*motion) : name;
-}
-
-StoredStudy::StoredStudy(const StudyResults& results, const PointRequest& asked)
-    : catalogue(standard_catalogue(asked.plugins)), study(parse_study(results.study.dump(), catalogue, registry)) {}
-
-const StudyCase& StoredStudy::find(const std::string& id) const {
-  if (const StudyCase* found = find_case(study, id)) return *found;
-  throw PointRefused(fmt::format("the stored study has no case {} any more: run it again", id));
 }
 
 SamplePrinter::SamplePrinter(std::ostream& out) : out_(out) {

@@ -1,33 +1,19 @@
 #pragma once
-#include <ricochet/contract/registry.hpp>
-#include <ricochet/loader/catalogue.hpp>
 #include <string>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/kinds/stored_study.hpp"
 #include "runners/kinds/sweep/march_point.hpp"
 #include "runners/store/record.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 
-/// The one case whose id begins so. Throws PointRefused with the nearest id or all of them.
-const CaseRecord& find_case(const StudyResults& results, const std::string& id);
-
 /// The table of this name that a case left. Throws PointRefused where it has none, with what became of it.
 const Table& stored_table(const CaseRecord& record, const std::string& name);
 
 /// "periodic 3": class and period of a row of `values` or `cells`.
 std::string stored_regime(const TableReader& rows, std::size_t row);
-
-/// The study of stored results, parsed again, and the case of this id. Throws PointRefused where there is none any
-/// more.
-struct StoredStudy {
-  StoredStudy(const StudyResults& results, const PointRequest& asked);
-  const StudyCase& find(const std::string& id) const;
-  Catalogue catalogue;
-  Registry registry;
-  Study study;
-};
 
 /// Samples as lines of CSV: t, tip_displacement, tip_velocity.
 class SamplePrinter {

@@ -2,44 +2,13 @@
 
 #include <algorithm>
 
+#include "runners/kinds/single_study.hpp"
 #include "runners/kinds/sweep/dynamics_tables.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
-#include "runners/kinds/trajectory/minimal_study.hpp"
 
 namespace ricochet {
-namespace {
-
-/// The study of one case of a sweep alone: its own methods, mesh and steps per period, the study's parameter and keys.
-nlohmann::ordered_json single_sweep(const StudyResults& results, const CaseRecord& record) {
-  nlohmann::ordered_json study = minimal_study(results, record);
-  study["kind"] = results.kind;
-  study.erase("step");
-  for (const auto& [name, value] : record.axes) {
-    const std::string role = name.substr(0, name.find('.'));
-    if (name == "steps_per_period") {
-      study["steps_per_period"] = value;
-    } else if (name != "elements" && !study["methods"].contains(role)) {
-      // An axis of the scene stays one: the case keeps its id.
-      std::string place = "/" + name;
-      std::replace(place.begin(), place.end(), '.', '/');
-      study["scene"][nlohmann::ordered_json::json_pointer(place)] = nlohmann::ordered_json::array({value});
-    } else if (value == "swept") {
-      // The parameter is one of the method's: the study has a number there, which it replaces.
-      const std::string key = name.substr(role.size() + 1);
-      for (const auto& method : results.study.at("methods").at(role))
-        if (method.at("name") == study["methods"][role].at("name") && method.contains(key))
-          study["methods"][role][key] = method[key];
-    }
-  }
-  study["scene"].erase("steps_per_period");
-  for (const auto& [key, value] : results.study.items())
-    if (!study.contains(key) && key != "exclude") study[key] = value;
-  return study;
-}
-
-}  // namespace
 
 Kind sweep_kind(RunSweep run) {
   Kind kind;
@@ -64,7 +33,7 @@ Kind sweep_kind(RunSweep run) {
     collect_tables(results, derived_as_dynamics);
     derive_dynamics(results);
   };
-  kind.alone = single_sweep;
+  kind.alone = single_study;
   return kind;
 }
 

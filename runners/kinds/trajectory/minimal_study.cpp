@@ -48,7 +48,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
       {"mesh", {{"elements", elements}}},
       {"methods", methods},
       {"step", step}};
-  for (const char* key : {"duration", "samples", "window", "budget"})
+  for (const char* key : {"duration", "samples", "window", "snapshots", "budget"})
     if (const auto found = results.study.find(key); found != results.study.end() && !found->is_null())
       study[key] = *found;
   return study;

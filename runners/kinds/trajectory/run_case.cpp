@@ -12,6 +12,7 @@
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/kinds/trajectory/curves_head.hpp"
 #include "runners/kinds/trajectory/force_window.hpp"
+#include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
@@ -179,7 +180,10 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   ImpactRecorder recorder(marcher, &audit);
   WindowMeans means(study_case.settings, audit, recorder);
   ForceWindow forces(study_case.settings, means);
-  Sampler sampler(audit, recorder, forces);
+  const int instants = snapshots_asked(study_case.settings);
+  SnapshotTaker snapshots(marcher, prepared.steps, instants, forces);
+  StepObserver& observed = instants > 0 ? static_cast<StepObserver&>(snapshots) : forces;
+  Sampler sampler(audit, recorder, observed);
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -214,6 +218,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   recorder.finish(marcher);
   fill_measures(record, marcher, audit, *problem);
   add_contact(record, recorder, marcher);
+  if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
   means.put(record);
   if (forces.told()) {

@@ -14,6 +14,7 @@
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/snapshots.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -163,12 +164,16 @@ namespace {
 Field window_key() {
   using namespace keys;
   ObjectForm window;
-  window.fields = {single(real("from", "s", non_negative, std::nullopt, "Where the window begins.")),
-                   single(real("to", "s", positive, std::nullopt, "Where it ends.")),
+  window.fields = {single(real("from", "s", non_negative, std::nullopt, "Begin.")),
+                   single(real("to", "s", positive, std::nullopt, "End.")),
                    optional(integer("parts", {WindowMeans::fewest_parts, 100000, false, false}, std::nullopt,
-                                    "Equal parts, for means with 95 % intervals; null: none."))};
-  return object("window", Json(nullptr), "The interval over which the contact force is measured; null: it is not.",
-                window);
+                                    "Equal parts, for means; null: none."))};
+  return object("window", Json(nullptr), "Where the contact force is measured; null: nowhere.", window);
+}
+
+Field snapshots_key() {
+  return keys::optional(keys::integer("snapshots", {1, Snapshots::most_instants, false, false}, std::nullopt,
+                                      "Instants of each film; null: none."));
 }
 
 void check_window(const Json& study) {
@@ -206,13 +211,20 @@ Kind trajectory_kind() {
   kind.format.name = "trajectory";
   kind.format.text = "Each case marches its scene once.";
   kind.measures = trajectory_measures();
-  kind.format.keys = {keys::step(),    keys::duration(),
-                      keys::samples(), keys::optional(window_key()),
-                      keys::budget(),  keys::observe(measure_names(kind.measures))};
+  kind.format.keys = {keys::step(),
+                      keys::duration(),
+                      keys::samples(),
+                      keys::optional(window_key()),
+                      snapshots_key(),
+                      keys::budget(),
+                      keys::observe(measure_names(kind.measures))};
   kind.format.check = check_window;
-  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"window", "budget"}); };
+  kind.format.settings = [](const Json& resolved) {
+    return given_settings(resolved, {"window", "snapshots", "budget"});
+  };
   kind.plan = plan_case;
   kind.watch = audited;
+  kind.march = run_case;
   kind.start = [](const RunContext& context) {
     CaseRunner runner;
     runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {

@@ -22,13 +22,13 @@ Kind work_precision_kind() {
   kind.format.name = "work-precision";
   kind.format.text = "Each case is compared with a reference and timed: error against processor time.";
   kind.format.keys = comparison_keys();
-  kind.format.keys.push_back(keys::integer("repeats", {1, 1000, false, false}, 5,
-                                           "How often each case is timed, one at a time, in turn with the others."));
+  kind.format.keys.push_back(keys::integer("repeats", {1, 1000, false, false}, 5, "How often each case is timed."));
   kind.format.settings = comparison_settings;
   kind.format.check = check_comparison;
   kind.plan = plan_case;
   kind.watch = recorded;
   kind.beside = seconds_beside;
+  kind.march = run_case;
   kind.start = [](const RunContext& context) {
     CaseRunner runner = compare_cases(context);
     runner.time = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {

@@ -21,6 +21,10 @@ ricochet.startCaseTable = () => {
   statuses.forEach((s) => s.addEventListener("change", filter));
   const full = document.getElementById("all-columns");
   if (full) full.addEventListener("change", (e) => table.classList.toggle("full", e.target.checked));
+  // A row opens its case, by a click or by Enter; who marks text wants the text.
+  const open = (row) => { if (row && row.dataset.case && ricochet.data && !String(getSelection())) ricochet.showCase(ricochet.data, row.dataset.case); };
+  body.addEventListener("click", (event) => open(event.target.closest("tr")));
+  body.addEventListener("keydown", (event) => { if (event.key === "Enter" && event.target.matches("tr")) { event.preventDefault(); open(event.target); } });
 
   // Columns and rows in sight, in their order; numbers with all digits where the page has them.
   ricochet.casesShown = () => {

@@ -1,6 +1,6 @@
 // What the page holds of the results: cases, tables, curves, and large columns of numbers as little-endian bytes in base64.
 {
-  const types = { f32: Float32Array, f64: Float64Array, u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
+  const types = { f32: Float32Array, f64: Float64Array, u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i16: Int16Array };
 
   class PageData {
     constructor(page, blocks) {

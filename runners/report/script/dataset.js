@@ -40,7 +40,7 @@
     return (one, at) => {
       const below = stacked.get(at) || 0;
       stacked.set(at, below + 1);
-      return { at, height: markAt(below), mark: ricochet.format.mark(one.status), text: one.status + ": " + one.reason };
+      return { case: one.id, at, height: markAt(below), mark: ricochet.format.mark(one.status), text: one.status + ": " + one.reason };
     };
   }
 

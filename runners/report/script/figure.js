@@ -85,6 +85,7 @@
     pick(slot, at) {
       const view = this.viewOf(slot), found = view.pick && view.pick(slot.chart, slot.drawn, this.hidden, at, false);
       if (found) view.open(found);
+      else ricochet.pickCase(slot, at);
     }
     applying(action) { this.busy = true; try { action(); } finally { this.busy = false; } }
     follow(from, event) {

@@ -93,8 +93,10 @@
   // A second vertical axis from 0 to 1 that places marks of cases without a value.
   const gutterAxis = () => ({ type: "value", min: 0, max: 1, show: false });
 
-  function tooltip(x, y) {
+  // `series`: those of the chart, where rows that are columns have their case.
+  function tooltip(x, y, series) {
     const { escape, shown, unit } = ricochet.format, { cell } = ricochet;
+    const caseOf = (p) => (p.value && p.value.case) || (series[p.seriesIndex] || {}).case;
     const row = (p) => {
       const name = '<div class="tip-row">' + p.marker + escape(p.seriesName), { text } = p.value;
       return name + (text ? '</div><div class="tip-text">' + escape(text) + "</div>" : "<b>" + shown(cell(p, "y"), 9) + escape(unit(y)) + "</b></div>");
@@ -103,25 +105,27 @@
       const list = [].concat(given).filter((p) => cell(p, "x") !== undefined);
       if (!list.length) return "";
       const head = escape(x[0]) + " = " + shown(cell(list[0], "x"), 7) + escape(unit(x));
-      return "<div>" + head + '</div><div class="fine">' + escape(y[0]) + "</div>" + list.map(row).join("");
+      const cases = ricochet.distinct(list.map(caseOf).filter(Boolean)), named = cases.length ? '<div class="fine">' + (cases.length > 1 ? "cases " : "case ") + escape(cases.join(", ")) + "; click: all of it</div>" : "";
+      return "<div>" + head + '</div><div class="fine">' + escape(y[0]) + "</div>" + list.map(row).join("") + named;
     };
   }
 
   // A view of a chart: its option with grid, tooltip, hidden legend, zoom and text style; x and y are quantities. `along`: hovering reads all curves at
   // one x, and what lies outside the window is left out along x, so that zooming in shows every sample; never along y, where that would cut curves.
   function view(x, y, xAxis, yAxis, along = false) {
+    const series = [];
     return {
       x, y, notes: [],
       option: {
         animation: false, backgroundColor: "#ffffff", textStyle: { fontFamily: "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif" },
         grid: { left: 70, right: 18, top: 14, bottom: 44 }, legend: { show: false },
-        tooltip: Object.assign({ trigger: along ? "axis" : "item", confine: true, transitionDuration: 0, formatter: tooltip(x, y), textStyle: { fontSize: 12, color: ink } },
+        tooltip: Object.assign({ trigger: along ? "axis" : "item", confine: true, transitionDuration: 0, formatter: tooltip(x, y, series), textStyle: { fontSize: 12, color: ink } },
           along ? { axisPointer: { type: "line", lineStyle: { color: faint } } } : {}),
         dataZoom: [
           { type: "inside", id: "along-x", xAxisIndex: 0, filterMode: along ? "filter" : "none", zoomOnMouseWheel: "shift", moveOnMouseMove: "shift", moveOnMouseWheel: false },
           { type: "inside", id: "along-y", yAxisIndex: 0, filterMode: "none", zoomOnMouseWheel: "alt", moveOnMouseMove: false, moveOnMouseWheel: false },
         ],
-        xAxis, yAxis, dataset: [], series: [],
+        xAxis, yAxis, dataset: [], series,
       },
     };
   }

@@ -72,6 +72,7 @@
       link.after(entry);
       link = entry;
     }
+    ricochet.startFilm(data, after, link);
     if (!figures.length) place.remove();
     // A link from elsewhere names a figure that was not there when the page was read.
     const target = location.hash.startsWith("#figure-") && document.getElementById(decodeURIComponent(location.hash.slice(1)));

@@ -1,5 +1,6 @@
 // Images of the basins of attraction, one per case, with the difference to the first case as their second view.
 {
+  ricochet.manyOrbits = true;
   const outcomes = [["differs", "#C2410C"], ["the same", "#CFE3F2"], ["not decided", "#DADADA"]], absent = 255;
 
   class Basins {

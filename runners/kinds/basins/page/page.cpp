@@ -6,7 +6,7 @@ namespace ricochet::report {
 
 KindPage basins_page() {
   KindPage page;
-  page.scripts = scripts({"side_panel", "basins"});
+  page.scripts = scripts({"basins"});
   page.tables = {"basin_counts", "basin_failures"};
   page.derived = {basin_counts, basin_failures};
   page.answer = basins_html;

@@ -72,4 +72,5 @@
   }
 
   ricochet.Orbits = Orbits;
+  ricochet.manyOrbits = true;
 }

@@ -6,8 +6,7 @@ namespace ricochet::report {
 
 KindPage bifurcation_page() {
   KindPage page;
-  page.scripts =
-      scripts({"orbits", "hand_drawn", "side_panel", "orbit_panel", "diagram_panels", "diagram", "distance"});
+  page.scripts = scripts({"orbits", "hand_drawn", "orbit_panel", "diagram_panels", "diagram", "distance"});
   page.tables = {"verdicts", "exponent_methods", "distance_spreads", "distance_medians"};
   page.own_tables = {"bifurcations"};
   page.derived = {distance_spreads, distance_medians, exponent_methods};

@@ -32,7 +32,7 @@
     place(one) { const value = numberOf(one, this.refined); return value === null ? this.xRange.low : value; }
     // Rows of the table for cases that have an error, each at its place.
     rows(cases, error) {
-      const found = cases.filter((one) => numberOf(one, this.refined) !== null).map((one) => ({ at: this.place(one), ...this.error(one, [error]) }));
+      const found = cases.filter((one) => numberOf(one, this.refined) !== null).map((one) => ({ case: one.id, at: this.place(one), ...this.error(one, [error]) }));
       return found.filter((row) => Number.isFinite(row.value)).map((row) => ({ ...row, floor: row.floor || 0 }));
     }
 

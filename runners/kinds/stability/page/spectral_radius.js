@@ -8,7 +8,7 @@
   // A cell that is not drawn interrupts the curve.
   function rowOf(height, cell) {
     const text = ["radius " + ricochet.format.text(cell.radius, 9), cell.marginal, cell.reason].filter(Boolean).join("; ");
-    return { step: cell.step, value: drawn(height, cell) ? cell[height.column] : null, hollow: Boolean(cell.marginal), text };
+    return { case: cell.case, step: cell.step, value: drawn(height, cell) ? cell[height.column] : null, hollow: Boolean(cell.marginal), text };
   }
 
   function chart(stability, height, facet, contact, range) {
@@ -24,7 +24,7 @@
         if (grows && !cells.some((cell) => drawn(height, cell))) flat.push(curve.name);
         const rows = cells.map((cell) => rowOf(height, cell));
         ricochet.draw(out, rows, { x: "step", y: "value" }, ricochet.hollowCurve(curve, rows, 7, 1.4));
-        ricochet.drawMarks(out, curve, cells.filter((cell) => cell.disagrees && cell.unstable).map((cell) => ({ at: cell.step, height: 0.95, mark: "✕", text: cell.reason })));
+        ricochet.drawMarks(out, curve, cells.filter((cell) => cell.disagrees && cell.unstable).map((cell) => ({ case: cell.case, at: cell.step, height: 0.95, mark: "✕", text: cell.reason })));
       }
     if (flat.length) out.notes.push("No growth at any step: " + flat.join("; ") + ".");
     return out;

@@ -83,7 +83,7 @@
         });
         ricochet.draw(out, rows, { x: "limit", y: "at" }, { ...ricochet.line(name + " limit", colour, width, ricochet.dash(dash)), z: 4 });
       }
-      const cells = bands.flatMap((band) => band.cells.map((cell) => ({ step: cell.step, value: band.value, seen: seen(cell), text: cellText(cell) })));
+      const cells = bands.flatMap((band) => band.cells.map((cell) => ({ case: band.one.id, step: cell.step, value: band.value, seen: seen(cell), text: cellText(cell) })));
       for (const [name, symbol, size, colour] of observations)
         ricochet.draw(out, cells, { x: "step", y: "value" }, { type: "scatter", name, symbol, symbolSize: size, z: 5, color: colour }, { seen: name });
       return out;

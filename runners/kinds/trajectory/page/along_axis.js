@@ -32,7 +32,7 @@
     }
     // Rows of finished cases that have the value.
     rows(cases, value) {
-      const rows = cases.filter((one) => one.status === "done").map((one) => ({ at: numberOf(one, this.column), height: value.of(one), hollow: Boolean(value.hollow && value.hollow(one)) }));
+      const rows = cases.filter((one) => one.status === "done").map((one) => ({ case: one.id, at: numberOf(one, this.column), height: value.of(one), hollow: Boolean(value.hollow && value.hollow(one)) }));
       return rows.filter((row) => row.height !== null);
     }
     range(facet, value) {

@@ -143,14 +143,14 @@
     }
     draw(out, curve, scale, range) {
       const { text, unit, mark } = ricochet.format, values = valuesOf(curve, scale), { name, width } = curve, { status, reason } = curve.one;
-      const look = { type: "line", name, color: curve.colour, showSymbol: values.length < 2, emphasis: { disabled: true }, lineStyle: { width, type: ricochet.dash(curve.dash) } };
+      const look = { type: "line", name, case: curve.one.id, color: curve.colour, showSymbol: values.length < 2, emphasis: { disabled: true }, lineStyle: { width, type: ricochet.dash(curve.dash) } };
       ricochet.draw(out, () => ({ t: curve.t, value: valuesOf(curve, scale) }), { x: "t", y: "value" }, values.length > drawnWhole ? { ...look, sampling: "minmax" } : look);
       const largest = values.reduce((most, y) => (Number.isFinite(y) && Math.abs(y) > Math.abs(most) ? y : most), 0);
       if (largest > range.high || largest < range.low) out.notes.push(name + ": leaves the frame, up to " + text(largest) + unit(out.y) + ".");
       // A mark where a curve that did not finish stops.
       const last = values.findLastIndex(Number.isFinite);
       if (status === "done" || last < 0) return;
-      const row = { at: curve.t[last], height: Math.min(Math.max(values[last], range.low), range.high), mark: mark(status), text: status + " at t = " + text(curve.t[last]) + " s: " + reason };
+      const row = { case: curve.one.id, at: curve.t[last], height: Math.min(Math.max(values[last], range.low), range.high), mark: mark(status), text: status + " at t = " + text(curve.t[last]) + " s: " + reason };
       ricochet.drawMarks(out, curve, [row], { yAxisIndex: 0 });
     }
     // Positions of the stops where the study gives them as plain numbers.

@@ -77,7 +77,7 @@
     gutterMark(one, error, count) {
       const done = one.status === "done", who = this.view.label(one, this.curves.said), why = done ? this.none(one, error) : one.status + ": " + one.reason;
       return {
-        at: "slot " + (slots - 1 - Math.floor(count / gutterRows) % gutterColumns), height: ricochet.markAt(count % gutterRows),
+        case: one.id, at: "slot " + (slots - 1 - Math.floor(count / gutterRows) % gutterColumns), height: ricochet.markAt(count % gutterRows),
         mark: done ? "–" : ricochet.format.mark(one.status), text: who ? who + ": " + why : why,
       };
     }

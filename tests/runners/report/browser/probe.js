@@ -162,6 +162,77 @@
     button.click();
     return Object.assign(out, { closed: !all(".meaning").length, count: all(".why").length });
   }
+  // A click on a drawn point, or on a curve, of a case opens that case.
+  function checkDoor(figure, slot) {
+    for (const series of slot.drawn.series) {
+      if (series.datasetIndex === undefined || slot.drawn.legend.selected[series.name] === false) continue;
+      const { source, fromDatasetIndex } = slot.drawn.dataset[series.datasetIndex], rows = source || slot.drawn.dataset[fromDatasetIndex].source, columns = !Array.isArray(rows);
+      const cell = (name) => (i) => (columns ? rows[name][i] : rows[i][name]), x = cell(series.encode.x), y = cell(series.encode.y), count = columns ? rows[series.encode.x].length : rows.length;
+      const isDrawn = (i) => (columns ? series.case : rows[i].case) && Number.isFinite(y(i)) && (columns || !source || source === rows);
+      const at = Array.from({ length: count }, (_, i) => i).filter(isDrawn), i = at[at.length >> 1];
+      if (i === undefined) continue;
+      const pixel = slot.chart.convertToPixel({ xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 }, [x(i), y(i)]);
+      if (!pixel.every(Number.isFinite)) continue;
+      figure.pick(slot, pixel);
+      const panel = ricochet.sidePanel.panel(), shown = ricochet.sidePanel.shown() || {}, text = panel ? panel.textContent : "";
+      // Curves of other cases may pass through the same pixel.
+      const sourceOf = ({ source: own, fromDatasetIndex: from }) => own || sourceOf(slot.drawn.dataset[from]);
+      const there = slot.drawn.series.filter((one) => one.datasetIndex !== undefined).flatMap((one) => { const own = sourceOf(slot.drawn.dataset[one.datasetIndex]); return Array.isArray(own) ? own.map((row) => row.case) : [one.case]; });
+      const out = { opened: Boolean(panel), id: shown.id || "", one_of: there.includes(shown.id), says_id: text.includes("case " + shown.id), facts: panel ? all("dt", panel).length : 0,
+        plots: ricochet.sidePanel.charts().length, headings: panel ? all("h4", panel).map((h) => h.textContent) : [], commands: panel ? all("pre", panel).map((pre) => pre.textContent) : [], text };
+      ricochet.sidePanel.close();
+      return out;
+    }
+    return null;
+  }
+  // A row of the table opens its case by Enter; › goes to the next; Escape closes and gives the focus back.
+  function checkRowDoor() {
+    const table = document.getElementById("cases"), row = table && Array.from(table.tBodies[0].rows).find((one) => one.dataset.case);
+    if (!row) return null;
+    const press = (target, key) => target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+    row.focus();
+    press(row, "Enter");
+    const { sidePanel } = ricochet, shown = sidePanel.shown(), out = { opened: Boolean(shown) && shown.id === row.dataset.case };
+    if (!out.opened) return out;
+    const next = sidePanel.panel().querySelector('[aria-label="next case"]'), index = ricochet.data.byId.get(row.dataset.case).index;
+    next.click();
+    out.next = index + 1 < ricochet.data.cases.length ? sidePanel.shown().id === ricochet.data.cases[index + 1].id : next.disabled;
+    press(document.body, "Escape");
+    out.closed = !sidePanel.panel();
+    out.focus = document.activeElement === row;
+    return out;
+  }
+  // The film: what the slider's place shows is the state of that instant, the map has its marks, and playing goes on.
+  async function checkFilm() {
+    const { film } = ricochet;
+    if (!film) return null;
+    film.load();
+    const slider = film.time, last = Number(slider.max), places = [0, last >> 2, last >> 1, last], states = [];
+    for (const place of places) {
+      slider.value = String(place);
+      slider.dispatchEvent(new Event("input"));
+      const { films } = film.state(), { one } = film.films[0].shots, curve = ricochet.data.curve(one, "tip_displacement");
+      let sample = -1;
+      if (curve) curve.x.forEach((t, i) => { if (Math.abs(t - films[0].t) <= 1e-6 * curve.x[curve.x.length - 1]) sample = i; });
+      states.push({ place, ...films[0], curve: sample < 0 ? null : curve.y[sample], said: film.now.textContent });
+    }
+    const key = (name) => film.stage.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true, cancelable: true }));
+    film.go(1);
+    key("ArrowRight");
+    const stepped = film.state().k;
+    key("ArrowLeft");
+    key("ArrowLeft");
+    const back = film.state().k;
+    film.length.value = "5";
+    key(" ");
+    const playing = film.state().playing;
+    await new Promise((done) => setTimeout(done, 1500));
+    const moved = film.state().k;
+    if (film.state().playing) key(" ");   // unless it came to its end
+    const hue = (canvas) => { const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data; let count = 0; for (let i = 0; i < data.length; i += 4) if (data[i + 3] && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count; return count; };
+    const maps = film.maps.map((map) => { const { one } = map.shots; return { id: one.id, marks: Number(map.canvas.dataset.marks), impacts: one.measures.impacts, coloured: hue(map.canvas) }; });
+    return { states, stepped, back, playing, moved, stopped: !film.state().playing, maps, stage: hue(film.stage), scale: film.scale.textContent, cases: film.cases.length };
+  }
   function checkFigure(figure, controls) {
     const { description } = figure, views = Math.max(1, all("[data-view]", figure.section).length);
     const out = { id: description.id, title: description.title, caption: figure.section.querySelector(".caption").textContent, views: description.views, linked_along: Boolean(description.linked),
@@ -188,6 +259,8 @@
     out.png = ricochet.picture(figure, first, "png").size;
     const sample = first.chart.getModel().getSeries().find((series) => series.getData().count());
     out.tooltip = sample ? figure.option(first).tooltip.formatter([{ ...sample.getDataParams(0), marker: "" }]) : "";
+    const apart = figure.viewOf(first).pick;   // has a panel of its own
+    out.door = apart ? null : seen.map((slot) => checkDoor(figure, slot)).find(Boolean) || null;
     if (description.id === "diagram") out.panel = checkPanel(figure, first, figure.viewOf(first));
     if (description.id === "basins") out.cell = checkCell(figure, first);
     if ((description.choices || []).some((choice) => choice.name === "Overlay")) out.overlay = checkOverlay(figure);
@@ -216,11 +289,11 @@
     return given.map(([low, high]) => ({ text: text(low), exact: exact(low), round: pick(roundOutwards(new Interval(low, high), 0), ["low", "high"]), decades: low > 0 ? pick(wholeDecades(new Interval(low, high)), ["low", "high"]) : null }));
   }
 
-  window.addEventListener("load", () => {
+  window.addEventListener("load", async () => {
     const asked = JSON.parse(document.documentElement.dataset.asked);
     let out = null;
     try {
-      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), row: asked.controls ? checkRowDoor() : null, film: await checkFilm(), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
     } catch (e) { errors.push(String((e && e.stack) || e)); }
     parent.postMessage(JSON.stringify(Object.assign({ errors }, out)), "*");
   });

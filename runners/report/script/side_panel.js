@@ -1,13 +1,20 @@
-// The panel beside the page that shows what a click chose: an orbit, or a cell of an image.
+// The panel beside the page that shows what a click chose: an orbit, a cell of an image, or a case.
 {
-  let panel = null, charts = [], shown = null;
+  let panel = null, charts = [], shown = null, before = null;   // before: what had the focus
   const element = (name, classes, text) => { const e = document.createElement(name); if (classes) e.className = classes; if (text !== undefined) e.textContent = text; return e; };
 
-  function close() {
+  function clear() {
     charts.forEach((chart) => chart.dispose());
     charts = [];
     if (panel) panel.remove();
     panel = shown = null;
+  }
+  // The focus goes back to where it was.
+  function close() {
+    const back = panel ? before : null;
+    clear();
+    before = null;
+    if (back && back.isConnected) back.focus({ preventScroll: true });
   }
   function button(text, label, action) {
     const out = element("button", "", text);
@@ -18,7 +25,8 @@
   }
   // An empty panel under a title; `keys` stand beside it, `what` is what it shows.
   function open(what, label, colour, title, keys) {
-    close();
+    if (!panel) before = document.activeElement;
+    clear();
     panel = element("aside", "orbit");
     panel.setAttribute("aria-label", label);
     panel.tabIndex = -1;
@@ -34,11 +42,42 @@
     return panel;
   }
   const say = (text) => panel.appendChild(element("p", "fine", text));
-  const command = (text) => panel.appendChild(element("pre", "", text));
-  function list(facts) {
+  // A command, and a button that copies it.
+  function command(text) {
+    const line = element("pre", "", text), copy = button("copy", "copy this command", () => {
+      const done = () => { copy.textContent = "copied"; };
+      const selected = () => { getSelection().selectAllChildren(line); if (document.execCommand("copy")) done(); };
+      if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, selected); else selected();
+    });
+    copy.className = "copy";
+    const box = element("div", "command");
+    box.append(line, copy);
+    panel.appendChild(box);
+  }
+  const heading = (text) => panel.appendChild(element("h4", "", text));
+  function list(facts, into = panel) {
     const out = element("dl", "glossary");
     for (const [name, value] of facts) out.append(element("dt", "", name), element("dd", "", value));
-    panel.appendChild(out);
+    into.appendChild(out);
+  }
+  // What is there for who asks.
+  function more(summary, facts) {
+    const box = element("details");
+    box.appendChild(element("summary", "", summary));
+    list(facts, box);
+    panel.appendChild(box);
+  }
+  // Rows of cells, the columns as [name, whether they are numbers].
+  function table(columns, rows) {
+    const box = element("div", "scroll"), out = element("table"), line = (into, cells, name) => {
+      const row = into.insertRow();
+      cells.forEach((cell, c) => row.appendChild(element(name, columns[c][1] ? "number" : "text", cell)));
+    };
+    line(out.createTHead(), columns.map(([name]) => name), "th");
+    const body = out.createTBody();
+    for (const cells of rows) line(body, cells, "td");
+    box.appendChild(out);
+    panel.appendChild(box);
   }
   // Series that give the columns they draw as `source`.
   function plot(x, y, series, classes) {
@@ -70,11 +109,11 @@
   }
 
   const quoted = (text) => (/^[\w./+-]+$/.test(text) ? text : "'" + text.replace(/'/g, "'\\''") + "'");
-  // Words of a command that speaks of a case of this study.
-  function commandOf(study, id) {
+  // Words of a command, `point` or `case`, that speaks of a case of this study.
+  function commandOf(study, id, word = "point") {
     const folder = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") || "/" : "results/" + study;
-    return "ricochet point " + quoted(folder) + " " + quoted(id);
+    return "ricochet " + word + " " + quoted(folder) + " " + quoted(id);
   }
 
-  ricochet.sidePanel = { open, close, say, command, list, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown, charts: () => charts };
+  ricochet.sidePanel = { open, close, say, command, heading, list, more, table, plot, button, hover, quoted, commandOf, panel: () => panel, shown: () => shown, charts: () => charts };
 }

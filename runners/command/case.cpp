@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "runners/command/case_again.hpp"
+#include "runners/command/command.hpp"
+#include "runners/command/subcommand.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/kinds/single_study.hpp"
+#include "runners/kinds/stored_study.hpp"
+#include "runners/run/stop_signal.hpp"
+#include "runners/store/number_rows.hpp"
+#include "runners/store/record_tables.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/store/snapshots.hpp"
+#include "runners/store/store.hpp"
+#include "runners/table/csv_text.hpp"
+#include "runners/table/plain_text.hpp"
+#include "runners/table/table_reader.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t rows_told = 20;
+
+/// One case of stored results, and all that marches it.
+struct OpenCase {
+  OpenCase(const Arguments& arguments)
+      : folder(arguments.operands[0]),
+        results(read_store(folder)),
+        kind(find_kind(results.kind)),
+        record(find_case(results, arguments.operands[1])) {}
+  const std::filesystem::path folder;
+  const StudyResults results;
+  const Kind* const kind;
+  const CaseRecord& record;
+};
+
+std::string parameters_text(const CaseRecord& record) {
+  TextTable table({"parameter", "value"});
+  for (const auto& [name, value] : record.axes) table.add({name, cell_of(value).text()});
+  return table.text(2);
+}
+
+std::string measures_text(const CaseRecord& record) {
+  TextTable table({"measure", "value", "unit"});
+  for (const auto& [name, value] : record.measures) {
+    const MeasureInfo* info = measure_info(name);
+    table.add({name, csv_number(value), info && std::string_view(info->unit) != "1" ? info->unit : ""});
+  }
+  return table.text(2);
+}
+
+std::string rows_text(const Table& rows, const std::vector<std::size_t>& columns) {
+  std::vector<std::string> header;
+  for (const std::size_t c : columns) header.push_back(rows.columns[c].name);
+  TextTable table(std::move(header));
+  for (std::size_t r = 0; r < rows.rows.size() && r < rows_told; ++r) {
+    std::vector<std::string> cells;
+    for (const std::size_t c : columns) cells.push_back(rows.rows[r][c].text());
+    table.add(std::move(cells));
+  }
+  std::string out = table.text(2);
+  if (rows.rows.size() > rows_told)
+    out += fmt::format("  and {} more in {}.csv\n", rows.rows.size() - rows_told, rows.name);
+  return out;
+}
+
+std::string own_tables_text(const CaseRecord& record) {
+  std::string out;
+  for (const Table& table : record.tables) {
+    std::vector<std::size_t> columns;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) columns.push_back(c);
+    if (!table.rows.empty()) out += fmt::format("\n{}:\n{}", table.name, rows_text(table, columns));
+  }
+  return out;
+}
+
+/// The row of this case in `energy_ledger`, one column a line; "" where the kind has no such table.
+std::string ledger_text(const OpenCase& open, const CaseRecord& again) {
+  StudyResults alone = open.results;
+  alone.cases = {again};
+  alone.derived.clear();
+  if (open.kind->tables) open.kind->tables(alone);
+  const Table* ledger = find_table(alone.derived, "energy_ledger");
+  if (!ledger || ledger->rows.empty()) return "";
+  TextTable table({"", "J"});
+  for (std::size_t c = 1 + alone.columns.size(); c < ledger->columns.size(); ++c)
+    table.add({ledger->columns[c].name, ledger->rows.front()[c].text()});
+  return "\nenergy ledger:\n" + table.text(2);
+}
+
+/// The case as a run of its study marches it: references that the store keeps are not computed again.
+CaseRecord run_again(const OpenCase& open, const StoredStudy& stored, const StudyCase& study_case,
+                     const std::atomic<bool>& stop) {
+  const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }, 1};
+  const CaseRunner runner = open.kind->start(context);
+  MotionShelf shelf;
+  shelf.find = [&](const std::string& key) { return read_motion(open.folder, key); };
+  if (runner.open) runner.open(shelf, stop);
+  return runner.run(study_case, stop);
+}
+
+int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase& study_case, std::ostream& out,
+                const std::atomic<bool>& stop) {
+  const CaseRecord again = run_again(open, stored, study_case, stop);
+  out << fmt::format("case {} of {} ({})\n", open.record.id, open.results.name, open.results.kind)
+      << parameters_text(open.record) << "\n"
+      << again.status << (again.reason.empty() ? "" : ": " + again.reason)
+      << (again.steps > 0 ? fmt::format(", {} steps", again.steps) : "");
+  if (const std::string outcome = open.kind->outcome && again.status == "done" ? open.kind->outcome(again) : "";
+      !outcome.empty())
+    out << ": " << outcome;
+  out << "\n";
+  if (!again.measures.empty()) out << "\n" << measures_text(again);
+  out << ledger_text(open, again) << own_tables_text(again) << "\n";
+  out << (open.record.partial ? std::string("nothing to compare with: the run had not finished this case\n")
+                              : text(compare(open.record, again)));
+  return exit_done;
+}
+
+/// The curve of a case that is marched once.
+int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int samples, std::ostream& out,
+                const std::atomic<bool>& stop) {
+  if (!open.kind->march)
+    throw PointRefused(fmt::format("a case of kind {} is more than one march: it has no curve", open.results.kind));
+  study_case.samples = samples;
+  const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
+  if (again.curve.columns.empty() || again.curve.columns.front().empty())
+    throw PointRefused(fmt::format("this case leaves no curve: it is {}{}", again.status,
+                                   again.reason.empty() ? "" : ", " + again.reason));
+  out << curve_csv(again.curve);
+  std::cerr << again.status << (again.reason.empty() ? "" : ": " + again.reason)
+            << (samples > again.steps ? fmt::format("; it takes {} steps, and has no more samples", again.steps) : "")
+            << "\n";
+  return exit_done;
+}
+
+/// Snapshots of a case that is marched once, kept in the store.
+int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int instants,
+                   std::ostream& out, const std::atomic<bool>& stop) {
+  if (!open.kind->march)
+    throw PointRefused(fmt::format("a case of kind {} is more than one march: it has no film", open.results.kind));
+  if (study_case.settings.is_null()) study_case.settings = Json::object();
+  study_case.settings["snapshots"] = instants;
+  const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
+  const NumberTable* table = find_table(again.numbers, snapshots_name);
+  if (!table)
+    throw PointRefused(fmt::format("this case leaves no snapshots: it is {}{}", again.status,
+                                   again.reason.empty() ? "" : ", " + again.reason));
+  keep_numbers(open.folder, open.record.id, *table);
+  out << fmt::format("kept beside the case {}: {} instants at {} places, {} forces; `ricochet report {}` shows them\n",
+                     open.record.id, table->numbers("t")->size(), table->numbers("x")->size(),
+                     snapshots_of(*table)->force.size(), open.folder.string());
+  return exit_done;
+}
+
+int print_study(const OpenCase& open, std::ostream& out) {
+  constexpr int indent = 2;
+  out << single_study(open.results, open.record)
+             .dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+      << "\n";
+  return exit_done;
+}
+
+int look_at(const Arguments& arguments, std::ostream& out) {
+  if ((arguments.samples > 0) + (arguments.snapshots > 0) + (arguments.study ? 1 : 0) > 1)
+    throw UsageError(
+        "case prints a curve, keeps snapshots or prints a study: expected one of --samples, --snapshots and --study");
+  const OpenCase open(arguments);
+  if (!open.kind)
+    throw PointRefused(fmt::format("{} holds a study of kind {}, which this program does not have",
+                                   arguments.operands[0], open.results.kind));
+  if (arguments.study) return print_study(open, out);
+  if (open.kind->point)
+    throw PointRefused(
+        fmt::format("a case of kind {} is many orbits: `ricochet point {} {}` marches one of them again; "
+                    "with --study this prints the study of the case alone",
+                    open.results.kind, arguments.operands[0], open.record.id));
+  const StoredStudy stored(open.results, arguments.plugins);
+  const StudyCase& study_case = stored.find(open.record.id);
+  if (study_case.excluded) throw PointRefused(fmt::format("the study excludes this case: {}", *study_case.excluded));
+  const StopSignal signals;
+  try {
+    if (arguments.samples > 0)
+      return print_curve(open, stored, study_case, arguments.samples, out, signals.requested());
+    if (arguments.snapshots > 0)
+      return keep_snapshots(open, stored, study_case, arguments.snapshots, out, signals.requested());
+    return print_again(open, stored, study_case, out, signals.requested());
+  } catch (const Interrupted&) {
+    return exit_interrupted;
+  }
+}
+
+}  // namespace
+
+int command_case(const Arguments& arguments, std::ostream& out) {
+  try {
+    return look_at(arguments, out);
+  } catch (const PointRefused& refused) {
+    throw UsageError(refused.what());
+  }
+}
+
+}  // namespace ricochet

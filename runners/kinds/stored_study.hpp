@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <ricochet/contract/registry.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// The one case whose id begins so. Throws PointRefused with the nearest id or all of them.
+const CaseRecord& find_case(const StudyResults& results, const std::string& id);
+
+/// The study of stored results, parsed again, and the case of this id. Throws PointRefused where there is none any
+/// more.
+struct StoredStudy {
+  StoredStudy(const StudyResults& results, const std::vector<std::filesystem::path>& plugins);
+  const StudyCase& find(const std::string& id) const;
+  Catalogue catalogue;
+  Registry registry;
+  Study study;
+};
+
+}  // namespace ricochet

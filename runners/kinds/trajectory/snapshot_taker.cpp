@@ -1,0 +1,110 @@
+#include "runners/kinds/trajectory/snapshot_taker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/scene/assembly.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double largest_count = 32767;
+
+double unit_of(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest / largest_count;
+}
+
+std::vector<std::int16_t> counted(const std::vector<double>& values, double unit) {
+  std::vector<std::int16_t> counts;
+  for (const double value : values)
+    counts.push_back(static_cast<std::int16_t>(unit > 0 ? std::lround(value / unit) : 0));
+  return counts;
+}
+
+// Places along the structure: its nodes where there are many, else as fine as the eye wants its cubics.
+std::vector<double> drawn_places(const FiniteElementSpace& space) {
+  if (space.elements.empty()) return {0};
+  const auto& last = space.elements.back();
+  const int elements = static_cast<int>(space.elements.size()), smooth = 25;
+  const int count = std::min(Snapshots::most_places, std::max(elements + 1, smooth));
+  return node_positions(last.left + last.length, count - 1);
+}
+
+}  // namespace
+
+int snapshots_asked(const Json& settings) {
+  return settings.is_object() ? settings.value("snapshots", 0) : 0;
+}
+
+SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count, StepObserver& behind)
+    : behind_(behind), steps_(steps), count_(std::min<long long>(count, steps)) {
+  if (count_ <= 0) return;
+  const SemiDiscrete& problem = *marcher.program().problem;
+  shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
+  shape_.x = drawn_places(problem.space);
+  at_ = problem.space.elements.empty() ? problem.tip : displacement_rows(problem.space, shape_.x);
+  const int points = marcher.program().contact ? problem.points() : 0;
+  group_ = std::max(1, (points + Snapshots::most_places - 1) / Snapshots::most_places);
+  for (int first = 0; first < points; first += group_) {
+    const int last = std::min(points, first + group_) - 1;
+    shape_.point.push_back(problem.contact_x[static_cast<std::size_t>((first + last) / 2)]);
+    shape_.lower.push_back(problem.lower.segment(first, last - first + 1).maxCoeff());
+    shape_.upper.push_back(problem.upper.segment(first, last - first + 1).minCoeff());
+  }
+  given_.assign(static_cast<std::size_t>(points), 0);
+  take(problem.position, marcher.support(0, 0), 0);
+}
+
+void SnapshotTaker::stage_solved(const Marcher& marcher, const StageView& view) {
+  behind_.stage_solved(marcher, view);
+  if (given_.empty() || !view.effort || (view.contact_lanes & 1u) == 0) return;
+  const double weight = view.program->momentum;
+  if (weight == 0) return;
+  for (std::size_t j = 0; j < given_.size(); ++j)
+    given_[j] += weight * view.effort[0][j * static_cast<std::size_t>(marcher.width())];
+  any_given_ = true;
+}
+
+void SnapshotTaker::step_done(Marcher& marcher) {
+  behind_.step_done(marcher);
+  if (next_ > count_ || marcher.step() < step_of(next_) || !marcher.status(0).running) return;
+  take(marcher.position(0), marcher.support(0, marcher.time()), marcher.time());
+  while (next_ <= count_ && step_of(next_) <= marcher.step()) ++next_;
+}
+
+void SnapshotTaker::take(const Eigen::VectorXd& position, double support, double time) {
+  const Eigen::VectorXd u = (at_ * position).array() + support;
+  if (!u.allFinite()) return;
+  const double since = t_.empty() ? 0 : time - t_.back();
+  const auto points = shape_.point.size();
+  for (std::size_t g = 0; any_given_ && since > 0 && g < points; ++g) {
+    double largest = 0;
+    const std::size_t first = g * static_cast<std::size_t>(group_),
+                      end = std::min(first + static_cast<std::size_t>(group_), given_.size());
+    for (std::size_t j = first; j < end; ++j)
+      if (std::abs(given_[j]) > std::abs(largest)) largest = given_[j];
+    if (largest == 0) continue;
+    pushed_.push_back(static_cast<std::uint32_t>(t_.size() * points + g));
+    force_.push_back(largest / since);
+  }
+  if (any_given_) std::fill(given_.begin(), given_.end(), 0.0);
+  any_given_ = false;
+  t_.push_back(time);
+  clamp_.push_back(support);
+  displacement_.insert(displacement_.end(), u.begin(), u.end());
+}
+
+Snapshots SnapshotTaker::finish() const {
+  Snapshots out = shape_;
+  out.t = t_;
+  out.clamp = clamp_;
+  out.metres = unit_of(displacement_);
+  out.displacement = counted(displacement_, out.metres);
+  out.newtons = unit_of(force_);
+  out.pushed = pushed_;
+  out.force = counted(force_, out.newtons);
+  return out;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,41 @@
+#pragma once
+#include <ricochet/engine/marcher.hpp>
+#include <vector>
+
+#include "runners/store/snapshots.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// How many instants the settings of a case ask for; 0 for none.
+int snapshots_asked(const Json& settings);
+
+/// Takes snapshots of one lane at `count` equal fractions of its `steps` steps, and at the start. Passes everything on
+/// to the observer behind it; without any to take it does nothing else.
+class SnapshotTaker final : public StepObserver {
+ public:
+  SnapshotTaker(const Marcher& marcher, long long steps, int count, StepObserver& behind);
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override;
+  void step_done(Marcher& marcher) override;
+
+  bool taken() const { return count_ > 0; }
+  Snapshots finish() const;
+
+ private:
+  void take(const Eigen::VectorXd& position, double support, double time);
+  long long step_of(long long k) const { return (steps_ * k + count_ / 2) / count_; }
+
+  StepObserver& behind_;
+  long long steps_, count_, next_ = 1;
+  int group_ = 1;                                    // contact points that are one
+  Eigen::SparseMatrix<double, Eigen::RowMajor> at_;  // places × n
+  Snapshots shape_;                                  // all that does not change
+  std::vector<double> t_, clamp_, displacement_;
+  std::vector<double> given_;  // per point since the last snapshot, N s
+  bool any_given_ = false;
+  std::vector<std::uint32_t> pushed_;
+  std::vector<double> force_;
+};
+
+}  // namespace ricochet

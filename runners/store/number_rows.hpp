@@ -1,0 +1,18 @@
+#pragma once
+#include <SQLiteCpp/Database.h>
+
+#include <filesystem>
+#include <string>
+
+#include "runners/table/number_table.hpp"
+
+namespace ricochet {
+
+/// Adds a table of numbers to the rows of a case, as its `position`th; inside a transaction.
+void insert_numbers(SQLite::Database& database, const std::string& case_id, int position, const NumberTable& table);
+
+/// Keeps a table of numbers beside what FOLDER/results.sqlite holds of a case, in place of one of the same name, while
+/// nobody else writes there. Throws StoreError.
+void keep_numbers(const std::filesystem::path& folder, const std::string& case_id, const NumberTable& table);
+
+}  // namespace ricochet
