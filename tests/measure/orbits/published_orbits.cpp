@@ -117,8 +117,10 @@ TEST_CASE("times of impacts follow the clock of the scene, and a transient of on
     plain.march(1);
     tips.push_back(plain.tip(0));
   }
+  // The clock of a section turns back every period, so that times round otherwise.
   for (std::size_t k = 0; k < done.strobed.size(); ++k)
-    CHECK(done.strobed[k].displacement == tips[(k + 2) * static_cast<std::size_t>(plan.steps_per_period)]);
+    CHECK(done.strobed[k].displacement ==
+          Approx(tips[(k + 2) * static_cast<std::size_t>(plan.steps_per_period)]).margin(1e-10));
   REQUIRE_FALSE(done.impacts.empty());
   CHECK(done.impacts.front().time >= period);
   CHECK(done.impacts.front().time < 3 * period);
