@@ -8,7 +8,7 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
-#include "runners/store/fingerprint.hpp"
+#include "runners/command/plan_contacts.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/plain_text.hpp"
 
@@ -20,7 +20,7 @@ using Group = std::vector<const PlannedCase*>;
 // So many steps of a period are told apart from the motion itself by any scheme of order two: its phase is then off by
 // less than (2π/20)²/12 = 0.8 %.
 constexpr double enough_steps = 20;
-constexpr std::size_t most_structures = 3, most_modes = 3, most_contacts = 4;
+constexpr std::size_t most_structures = 3, most_modes = 3;
 
 /// Coarsest and finest step of a study; one where all are the same.
 std::vector<double> steps_of(const Group& group) {
@@ -113,23 +113,6 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
   return text + modes_text(*physics, steps);
 }
 
-/// Half a period of an oscillator that a linear law holds at its stop, π√(m/(k + κ)): as long as a short contact lasts.
-std::string contact_text(const StudyCase& one, const std::vector<double>& steps, const Registry& registry) {
-  const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure);
-  if (!oscillator) return "";
-  const auto law = registry.contact(one.contact.name)->make(one.contact.parameters);
-  if (law->absent()) return "";
-  law->prepare(1, {&one.contact.parameters, 1});
-  const std::optional<double> stiffness = law->constant_stiffness(0);
-  if (!stiffness) return "";
-  const double half = std::numbers::pi * std::sqrt(oscillator->mass / (oscillator->stiffness + *stiffness));
-  std::string text = fmt::format("    against {} of {:.4g} N/m, half a period lasts {}:", one.contact.name, *stiffness,
-                                 duration_text(half));
-  for (const double h : steps)
-    text += fmt::format("{} {} steps of {}", h == steps.front() ? "" : ",", rounded(half / h), seconds(h));
-  return text + "\n";
-}
-
 }  // namespace
 
 std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
@@ -142,21 +125,10 @@ std::string physics_text(const std::vector<PlannedCase>& cases, const CasePlanne
     const std::vector<double> steps = steps_of(group);
     const StudyCase& one = representative(group);
     text += planner.ask(one, [&] { return structure_text(one, steps, registry); });
-    std::vector<std::pair<std::string, Group>> contacts;
-    for (const PlannedCase* planned : group)
-      in_order_met(contacts, content_of(planned->study_case->contact).dump()).push_back(planned);
-    std::size_t told = 0;
-    for (const auto& [content, with] : contacts) {
-      if (told == most_contacts) break;
-      const StudyCase& first = *with.front()->study_case;
-      const std::string line = planner.ask(first, [&] { return contact_text(first, steps_of(with), registry); });
-      text += line;
-      told += line.empty() ? 0 : 1;
-    }
   }
   if (groups.size() > most_structures)
     text += fmt::format("  and {} more structures\n", groups.size() - most_structures);
-  return text;
+  return text + contacts_text(cases, planner, registry);
 }
 
 }  // namespace ricochet

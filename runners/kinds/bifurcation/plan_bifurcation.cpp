@@ -1,12 +1,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
+namespace {
+
+/// Orbits that halving adds to one start, and how many of them march side by side: one per change of class and halving.
+struct Refined {
+  double orbits = 0;
+  int abreast = 1;
+};
+
+// One interval in four holds a change: of diagrams of the shaken beam, and of two values around a bifurcation the one.
+Refined refined(const std::vector<double>& values, const Json& tolerance) {
+  if (!tolerance.is_number() || values.size() < 2) return {};
+  const double spacing = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+  const double halvings = std::ceil(std::log2(std::max(1.0, spacing / tolerance.get<double>())));
+  const double changes = std::max(1.0, static_cast<double>(values.size() - 1) / 4);
+  return {changes * halvings, static_cast<int>(std::clamp(changes, 1.0, 8.0))};
+}
+
+}  // namespace
 
 CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
@@ -47,6 +66,9 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   const double orbit = (transient + kept) * period;
   out.steps = static_cast<long long>(orbit * count * (chains + singles));
   out.predicted_seconds = orbit * count * (singles * lanes(8) + chains * lanes(std::max(1, static_cast<int>(chains))));
+  const Refined more = refined(values, settings.value("refine", Json(nullptr)));
+  out.steps += static_cast<long long>(orbit * more.orbits * (chains + singles));
+  out.predicted_seconds += orbit * more.orbits * (chains + singles) * lanes(more.abreast);
   // The orbit again, one column more than exponents, and the twin.
   if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
   return out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -328,4 +329,39 @@ TEST_CASE("Every shipped study parses with the plugins of this build") {
     ++count;
   }
   CHECK(count >= 6);
+}
+
+TEST_CASE("A load is a formula, or a list of forces at points and of shapes with a history") {
+  const auto load = [](const Json& value) { return parse(with("/scene/load", value)); };
+  const Study listed = load(Json::parse(R"([{"at": 1.2, "force": "-3*t^2"}, {"shape": "x^2", "time": 2}])"));
+  REQUIRE(listed.cases.size() == parse(small_study()).cases.size());
+  const LoadSpec& read = listed.cases.front().scene.load;
+  REQUIRE(read.terms.size() == 2);
+  CHECK(read.terms[0].force);
+  CHECK(read.terms[0].at == 1.2);
+  CHECK(read.terms[0].history(0, 1) == -3);
+  CHECK_FALSE(read.terms[1].force);
+  CHECK(read.spread(3, 0) == 18 + read.terms[0].history(0, 0));
+  CHECK(read.uses_t());
+  // A list that holds anything but objects is an axis, of which such a list may be a value.
+  const Study axis = load(Json::parse(R"(["0", [{"at": 1, "force": 5}]])"));
+  CHECK(axis.cases.size() == 2 * listed.cases.size());
+  CHECK(axis.cases.back().scene.load.terms.size() == 1);
+
+  const auto refused = [&](const char* text) -> std::string {
+    try {
+      load(Json::parse(text));
+    } catch (const InputError& error) {
+      return error.pointer() + ": " + error.what();
+    }
+    return "no error";
+  };
+  CHECK_THAT(refused(R"([{"at": 1, "force": 1}, {"at": 2, "force": 1}])"),
+             StartsWith("/scene/load/1/at: ") && Contains("beyond the beam"));
+  CHECK_THAT(refused(R"([{"force": 1}])"), StartsWith("/scene/load/0/at: missing"));
+  CHECK_THAT(refused(R"([{"at": 1, "force": "x"}])"), StartsWith("/scene/load/0/force: ") && Contains("\"x\""));
+  CHECK_THAT(refused(R"([{"at": 1, "forse": 1}])"), Contains("did you mean \"force\"?"));
+  CHECK_THAT(refused(R"([{"at": 1, "force": 1, "shape": "x"}])"), Contains("does not go together with"));
+  CHECK_THAT(refused(R"({"at": 1, "force": 1})"), StartsWith("/scene/load: ") && Contains("or a list of objects"));
+  CHECK_THAT(refused("[]"), StartsWith("/scene/load: "));
 }

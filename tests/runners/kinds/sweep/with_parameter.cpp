@@ -87,6 +87,19 @@ TEST_CASE("A formula is multiplied, a formula without variables is a number") {
   CHECK(twice.scene.load.spread(1, 0.1) == Approx(10 * std::sin(1.0)));
 }
 
+TEST_CASE("A force of a list of loads is a number of the scene; a list of values of a formula is none of objects") {
+  Json study = small_sweep();
+  study["scene"]["load"] = Json::parse(R"load([{"shape": "x", "time": "cos(10*t)"}, {"at": 1, "force": -2}])load");
+  study["scene"]["stops"]["lower"] = {-0.1, -0.2};
+  const StudyCase one = first_case(study);
+  const SceneSpec pushed = with_parameter(one, "/scene/load/1/force", -3).scene;
+  CHECK(pushed.load.terms[1].history(0, 0) == -3);
+  CHECK(pushed.load.terms[0].history(0, 0) == 1);
+  CHECK(with_parameter(one, "/scene/load/0/time", 4).scene.load.terms[0].history(0, 0) == 4);
+  study["scene"]["load"][0]["time"] = "cos(11*t)";
+  CHECK_THAT(refusal(study), StartsWith("/scene/load/0/time: ") && Contains("does not repeat"));
+}
+
 TEST_CASE("A parameter of a method changes that method, and is checked like the study's") {
   Json study = small_sweep();
   study["methods"]["contact"] = Json::array({"rigid", {{"name", "spring"}, {"stiffness", 1000}}});

@@ -1,0 +1,181 @@
+#include "runners/command/plan_contacts.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <set>
+
+#include "runners/march/prepare_case.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/table/plain_text.hpp"
+#include "runners/table/table.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t most_lines = 8;
+constexpr int most_dofs = 240;           // of a dense problem of eigenvalues
+constexpr int phases = 8;                // of the instant at which a contact begins within a step
+constexpr double longest_contact = 2e4;  // steps that are marched
+
+/// A spring and the mass that it turns back.
+struct ContactSpring {
+  double stiffness = 0, mass = 0;  ///< N/m, kg
+  double pulsation = 0;            ///< rad/s, of the mass on it and on its own spring
+};
+
+std::optional<double> stiffness_of(const StudyCase& one, const Registry& registry) {
+  const auto law = make_law(one, registry);
+  if (law->absent() || !law->reads() || law->changes_problem()) return std::nullopt;
+  law->prepare(1, {&one.contact.parameters, 1});
+  const auto stiffness = law->constant_stiffness(0);
+  return stiffness && *stiffness > 0 ? stiffness : std::nullopt;
+}
+
+// The mode on the spring that has most of its energy in it: M φ = μ (K + κ hᵀh) φ, φᵀ(K + κ hᵀh)φ = 1.
+std::optional<ContactSpring> spring_of(const StudyCase& one, double stiffness, const Registry& registry) {
+  if (const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure))
+    return ContactSpring{stiffness, oscillator->mass,
+                         std::sqrt((oscillator->stiffness + stiffness) / oscillator->mass)};
+  const auto built = discretise(one.scene, one.elements, *make_mass(one, registry));
+  const auto* problem = std::get_if<SemiDiscrete>(&built);
+  if (!problem || problem->points() == 0 || problem->dofs() > most_dofs) return std::nullopt;
+  const Eigen::VectorXd h = Eigen::MatrixXd(problem->contact).row(problem->points() - 1).transpose();
+  const Eigen::MatrixXd held = Eigen::MatrixXd(problem->stiffness) + stiffness * h * h.transpose();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(dense_mass(problem->inertia), held);
+  if (modes.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd shares = stiffness * (modes.eigenvectors().transpose() * h).array().square();
+  Eigen::Index most = 0;
+  shares.maxCoeff(&most);
+  const double mu = modes.eigenvalues()[most];
+  constexpr double massless = 1e-12;  // of the largest
+  if (!(mu > massless * modes.eigenvalues().maxCoeff())) return std::nullopt;
+  return ContactSpring{stiffness, stiffness * mu, 1 / std::sqrt(mu)};
+}
+
+// A free mass that meets the law at one metre per second.
+StudyCase bounce(const StudyCase& one, const ContactSpring& spring, double h, double share) {
+  StudyCase thrown = one;
+  thrown.scene = SceneSpec{};
+  OscillatorSpec free;
+  free.mass = spring.stiffness / (spring.pulsation * spring.pulsation);
+  thrown.scene.structure = free;
+  thrown.scene.stops.lower = Formula(0.0);
+  thrown.scene.stops.place = StopsSpec::Place::tip;
+  thrown.scene.initial.displacement = Formula((2 + share) * h);
+  thrown.scene.initial.velocity = Formula(-1.0);
+  thrown.mass = MethodChoice{"consistent", {}, {}};
+  thrown.elements = 1;
+  thrown.step = h;
+  thrown.steps_per_period = 0;
+  return thrown;
+}
+
+/// The energy that is left of one bounce, least and most over the instants at which it begins; nothing where it cannot
+/// be marched, or does not leave.
+std::optional<std::pair<double, double>> left_by(const StudyCase& one, const ContactSpring& spring, double h,
+                                                 const Registry& registry) {
+  const double steps = std::numbers::pi / (spring.pulsation * h);
+  if (steps > longest_contact || !registry.manual(Role::mass, "consistent")) return std::nullopt;
+  double least = HUGE_VAL, most = 0;
+  for (int k = 0; k < phases; ++k) {
+    StudyCase thrown = bounce(one, spring, h, (k + 0.5) / phases);
+    thrown.duration = h * (2 * steps + 40);
+    Prepared prepared = prepare_case(thrown, registry);
+    if (!prepared.program) return std::nullopt;
+    Marcher marcher(std::move(*prepared.program));
+    marcher.start();
+    double before = marcher.tip(0), speed = 0;
+    for (long long n = marcher.step(); n < prepared.steps; ++n) {
+      marcher.march(1);
+      const double now = marcher.tip(0);
+      speed = (now - before) / h;
+      if (speed > 0 && before > 0) break;
+      before = now;
+    }
+    if (!marcher.status(0).running || !(speed > 0 && before > 0)) return std::nullopt;
+    least = std::min(least, speed * speed);
+    most = std::max(most, speed * speed);
+  }
+  return std::pair(least, most);
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.2g}", 100 * share);
+}
+
+// "4.1 %", "2.8 to 5.3 %", a gain said as one.
+std::string loss_text(double least_left, double most_left) {
+  constexpr double round_off = 1e-9;
+  const double low = 1 - most_left, high = 1 - least_left;
+  if (std::abs(low) < round_off && std::abs(high) < round_off) return "keeps its energy";
+  if (low >= -round_off)
+    return percent(low) == percent(high)
+               ? fmt::format("loses {} % of its energy", percent(high))
+               : fmt::format("loses {} to {} % of its energy", percent(std::max(0.0, low)), percent(high));
+  if (high <= round_off)
+    return percent(low) == percent(high)
+               ? fmt::format("gains {} % of its energy", percent(-low))
+               : fmt::format("gains {} to {} % of its energy", percent(std::max(0.0, -high)), percent(-low));
+  return fmt::format("keeps its energy within {} %", percent(std::max(-low, high)));
+}
+
+// "penalty of 1e+06 N/m, implicit": the law with the words among its parameters.
+std::string law_text(const MethodChoice& law, double stiffness) {
+  std::string text = fmt::format("{} of {:.4g} N/m", law.name, stiffness);
+  for (const auto& [key, value] : law.parameters.values())
+    if (const auto* word = std::get_if<std::string>(&value)) text += ", " + *word;
+  return text;
+}
+
+std::string line_of(const StudyCase& one, double h, const Registry& registry) {
+  const auto stiffness = stiffness_of(one, registry);
+  if (!stiffness) return "";
+  const auto spring = spring_of(one, *stiffness, registry);
+  if (!spring) return "";
+  const double half = std::numbers::pi / spring->pulsation;
+  const double steps = half / h;
+  std::string text = fmt::format("    {}; {}, h = {} s: half a period lasts {}: {} steps",
+                                 law_text(one.contact, *stiffness), one.time.name, Cell(h).text(), duration_text(half),
+                                 steps >= 1000 ? fmt::format("{:.0f}", steps) : fmt::format("{:.3g}", steps));
+  if (!std::holds_alternative<OscillatorSpec>(one.scene.structure))
+    text += fmt::format(" ({:.3g} kg move)", spring->mass);
+  if (const auto left = left_by(one, *spring, h, registry))
+    text += "; a bounce " + loss_text(left->first, left->second);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlanner& planner, const Registry& registry) {
+  std::set<std::string> met;
+  std::string text;
+  std::size_t told = 0, more = 0;
+  for (const PlannedCase& planned : cases) {
+    const StudyCase& one = *planned.study_case;
+    for (const double h : {planned.plan.coarsest_step, planned.plan.finest_step}) {
+      if (h <= 0) continue;
+      const std::string key = one.scene_json.at("structure").dump() + content_of(one.contact).dump() +
+                              content_of(one.time).dump() + Cell(h).text();
+      if (!met.insert(key).second) continue;
+      if (told == most_lines) {
+        more += stiffness_of(one, registry).has_value();
+        continue;
+      }
+      const std::string line = planner.ask(one, [&] { return line_of(one, h, registry); });
+      text += line;
+      told += !line.empty();
+    }
+  }
+  if (text.empty()) return text;
+  if (more > 0) text += fmt::format("    and {} more contacts\n", more);
+  return "  contacts, a mass against the law's spring:\n" + text;
+}
+
+}  // namespace ricochet
