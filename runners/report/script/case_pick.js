@@ -20,12 +20,20 @@
     return Math.hypot(x - a[0] - share * along[0], y - a[1] - share * along[1]);
   }
 
-  function nearestOnCurve(series, source, pixel, at, found) {
-    const xs = source[series.encode.x], ys = source[series.encode.y];
+  // The first place of a rising list whose value is not below.
+  function firstFrom(values, wanted) {
+    let low = 0, high = values.length;
+    while (low < high) { const middle = (low + high) >> 1; if (values[middle] < wanted) low = middle + 1; else high = middle; }
+    return low;
+  }
+  // Curves are over time, which rises: the samples around the place are enough, however many there are.
+  function nearestOnCurve(chart, series, source, pixel, at, found) {
+    const xs = source[series.encode.x], ys = source[series.encode.y], along = (x) => chart.convertFromPixel({ xAxisIndex: series.xAxisIndex || 0, yAxisIndex: series.yAxisIndex || 0 }, [x, at[1]])[0];
+    const last = Math.min(xs.length - 1, firstFrom(xs, along(at[0] + reach)));
     let before = null;
-    for (let i = 0; i < xs.length; ++i) {
+    for (let i = Math.max(0, firstFrom(xs, along(at[0] - reach)) - 1); i <= last; ++i) {
       const here = pixel(xs[i], ys[i]);
-      if (before && Math.min(before[0], here[0]) - reach <= at[0] && at[0] <= Math.max(before[0], here[0]) + reach) found(toSegment(at, before, here), series.case);
+      if (before) found(toSegment(at, before, here), series.case);
       before = here;
     }
   }
@@ -36,7 +44,7 @@
     for (const series of drawn.series) {
       if (series.datasetIndex === undefined || drawn.legend.selected[series.name] === false) continue;
       const rows = rowsOf(drawn, series.datasetIndex), pixel = pixelsOf(chart, series);
-      if (!Array.isArray(rows)) { if (series.case) nearestOnCurve(series, rows, pixel, at, found); continue; }
+      if (!Array.isArray(rows)) { if (series.case) nearestOnCurve(chart, series, rows, pixel, at, found); continue; }
       for (const row of rows) {
         if (!row.case) continue;
         const [x, y] = pixel(row[series.encode.x], row[series.encode.y]);
