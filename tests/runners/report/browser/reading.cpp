@@ -176,9 +176,9 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
     }
 }
 
-TEST_CASE("a chart that is open turns dark with the screen", "[report][browser]") {
+TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
   if (left_out()) return;
-  // Printed, the same page is light: what stands on paper is drawn from the colours as they are said.
+  // What stands on paper is drawn from the colours as they are said.
   const char* const drawn = R"js((() => {
     ricochet.paper.prepare();
     const svg = document.querySelector(".on-paper svg"), ground = svg.querySelector("rect").getAttribute("fill"), width = Number(svg.getAttribute("width"));
