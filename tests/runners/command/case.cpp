@@ -1,34 +1,16 @@
 // `ricochet case`: a case of a stored study, marched again from a shell.
 #include <SQLiteCpp/Database.h>
-#include <sys/wait.h>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/command/said.hpp"
 
 using Catch::Matchers::Contains;
 
 namespace {
 
 using Json = nlohmann::json;
-
-struct Said {
-  int code = -1;
-  std::string out, err;
-};
-
-/// Runs the command in a folder; `words` is a piece of shell.
-Said say(const ScratchFolder& here, const std::string& words) {
-  const std::string line = "cd '" + here.path().string() +
-                           "' && RICOCHET_PLUGIN_PATH='" RICOCHET_PLUGIN_DIR "' '" RICOCHET_COMMAND "' " + words +
-                           " 2>.err </dev/null";
-  const bool redirected = words.find('>') != std::string::npos;
-  const int status = std::system((redirected ? line : line + " >.out").c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, redirected ? "" : read_text(here / ".out"),
-          read_text(here / ".err")};
-}
 
 Json study(const std::string& kind) {
   Json out = Json::parse(R"({

@@ -1,31 +1,14 @@
 // `ricochet point`: an orbit of a stored diagram, asked for from a shell.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/command/said.hpp"
 
 using Catch::Matchers::Contains;
 
 namespace {
-
-struct Said {
-  int code = -1;
-  std::string out, err;
-};
-
-/// Runs the command in a folder; `words` is a piece of shell.
-Said say(const ScratchFolder& here, const std::string& words) {
-  const std::string line = "cd '" + here.path().string() +
-                           "' && RICOCHET_PLUGIN_PATH='" RICOCHET_PLUGIN_DIR "' '" RICOCHET_COMMAND "' " + words +
-                           " >.out 2>.err </dev/null";
-  const int status = std::system(line.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(here / ".out"), read_text(here / ".err")};
-}
 
 std::string field(const std::string& line, int number) {
   std::istringstream fields(line);

@@ -9,16 +9,12 @@
 
 using namespace ricochet;
 
+using synthetic::count;
+
 namespace {
 
 bool page_contains(const std::string& page, const std::string& text) {
   return page.find(text) != std::string::npos;
-}
-
-size_t count(const std::string& page, const std::string& text) {
-  size_t n = 0;
-  for (size_t at = 0; (at = page.find(text, at)) != std::string::npos; at += text.size()) ++n;
-  return n;
 }
 
 const std::string no_library = "/* charts */";  // stands for the library where only the page around it is tested

@@ -7,12 +7,14 @@
 
 using namespace ricochet;
 using Catch::Matchers::Contains;
-using Study = nlohmann::ordered_json;
+using Scene = nlohmann::ordered_json;
+
+using synthetic::count;
 
 namespace {
 
-Study beam() {
-  return Study::parse(R"({"scene": {
+Scene beam() {
+  return Scene::parse(R"({"scene": {
     "structure": {"type": "beam", "length": 1.5, "young": 2e11, "density": 8000,
                   "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}, "damping": {"stiffness": 1e-4, "mass": 0}},
     "stops": {"lower": "x>1.4 ? 0 : -0.0003", "upper": 0.0006, "at": [0.5, 1.5]},
@@ -20,22 +22,16 @@ Study beam() {
     "initial": {"displacement": "0", "velocity": "-2*x"}}, "duration": 0.5})");
 }
 
-std::string value_of(const Study& study, const std::string& symbol) {
+std::string value_of(const Scene& study, const std::string& symbol) {
   for (const auto& [name, text] : report::scene_numbers(study))
     if (name == symbol) return text;
   return "";
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
-
 }  // namespace
 
 TEST_CASE("a sketch says the numbers of its scene, and what the study varies as a range", "[report]") {
-  const Study study = beam();
+  const Scene study = beam();
   CHECK(value_of(study, "L") == "1.5 m");
   CHECK(value_of(study, "EI") == "33.76 N m²");  // π(D⁴ − d⁴)/64 × E
   CHECK(value_of(study, "ρS") == "0.1194 kg/m");
@@ -53,22 +49,22 @@ TEST_CASE("stops stand where they are, each with its gap", "[report]") {
   CHECK(count(svg, ">0 m<") == 1);  // the formula at the tip
   CHECK_THAT(svg, Contains("A₀ sin(ωt)"));
   CHECK_THAT(svg, !Contains("f(x, t)"));
-  Study one_sided = beam();
+  Scene one_sided = beam();
   one_sided["scene"]["stops"]["lower"] = nullptr;
   CHECK(count(report::scene_svg(one_sided), "class=\"stop\"") == count(svg, "class=\"stop\"") / 2);
 }
 
 TEST_CASE("every structure is drawn; a study without a scene has no sketch", "[report]") {
-  const Study oscillator = Study::parse(R"({"scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 3,
+  const Scene oscillator = Scene::parse(R"({"scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 3,
     "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
     "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.2, "to": 1.2, "count": 6}})");
   CHECK_THAT(report::scene_svg(oscillator), Contains("F cos(ωt + ψ)"));
   CHECK(value_of(oscillator, "F") == "from 0.2 to 1.2 N, swept");
-  const Study bar = Study::parse(R"({"scene": {"structure": {"type": "bar", "length": 2, "EA": 3, "rhoA": 1,
+  const Scene bar = Scene::parse(R"({"scene": {"structure": {"type": "bar", "length": 2, "EA": 3, "rhoA": 1,
     "fixed": "right"}, "stops": {"lower": -0.5, "at": "tip"}}})");
   CHECK_THAT(report::scene_svg(bar), Contains("0.5 m"));
-  CHECK(report::scene_svg(Study::object()).empty());
-  Study broken = beam();
+  CHECK(report::scene_svg(Scene::object()).empty());
+  Scene broken = beam();
   broken["scene"]["stops"]["lower"] = "no formula";
   CHECK_THAT(report::scene_svg(broken), Contains("0.0006 m"));
 }

@@ -134,4 +134,11 @@ inline StudyResults results(const Shape& shape = {}) {
   return out;
 }
 
+/// How often a text has a part.
+inline std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++n;
+  return n;
+}
+
 }  // namespace ricochet::synthetic

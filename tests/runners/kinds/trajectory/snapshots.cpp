@@ -12,7 +12,7 @@ using namespace ricochet;
 
 namespace {
 
-const std::atomic<bool> never = false;
+const std::atomic<bool> not_stopped = false;
 
 Json beam_study() {
   return Json::parse(R"({
@@ -27,11 +27,11 @@ Json beam_study() {
     "step": 1e-4, "duration": 0.2, "samples": 40, "snapshots": 40})");
 }
 
-struct Runs {
+struct FilmRuns {
   Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
   Registry registry;
   CaseRecord of(const Json& text) {
-    return run_case(parse_study(text.dump(1), catalogue, registry).cases.front(), registry, never);
+    return run_case(parse_study(text.dump(1), catalogue, registry).cases.front(), registry, not_stopped);
   }
 };
 
@@ -50,7 +50,7 @@ double tip(const Snapshots& shots, std::size_t k) {
 }  // namespace
 
 TEST_CASE("a snapshot's last place is the tip of the curve at that time, to half a count") {
-  const CaseRecord record = Runs().of(beam_study());
+  const CaseRecord record = FilmRuns().of(beam_study());
   REQUIRE(record.status == "done");
   const Snapshots shots = snapshots(record);
   REQUIRE(shots.t.size() == 41);
@@ -70,7 +70,7 @@ TEST_CASE("a snapshot's last place is the tip of the curve at that time, to half
 TEST_CASE("the forces of snapshots give the impulse of the run") {
   Json text = beam_study();
   text["scene"]["stops"]["at"] = "tip";
-  const CaseRecord record = Runs().of(text);
+  const CaseRecord record = FilmRuns().of(text);
   const Snapshots shots = snapshots(record);
   REQUIRE_FALSE(shots.force.empty());
   double impulse = 0;
@@ -85,7 +85,7 @@ TEST_CASE("the forces of snapshots give the impulse of the run") {
 
 TEST_CASE("results are the same with snapshots as without, and without there is no table") {
   Json text = beam_study();
-  Runs runs;
+  FilmRuns runs;
   const CaseRecord with = runs.of(text);
   text.erase("snapshots");
   const CaseRecord without = runs.of(text);
@@ -103,7 +103,7 @@ TEST_CASE("an oscillator has one place, and a bar moves along its axis") {
                                   "initial": {"displacement": -1, "velocity": 0}})");
   text.erase("mesh");
   text.update(Json::parse(R"({"step": 0.01, "duration": 8})"));
-  const Snapshots mass = snapshots(Runs().of(text));
+  const Snapshots mass = snapshots(FilmRuns().of(text));
   CHECK(mass.x == std::vector<double>{0});
   CHECK_FALSE(mass.along);
   CHECK(mass.upper == std::vector<double>{0.5});
@@ -112,11 +112,11 @@ TEST_CASE("an oscillator has one place, and a bar moves along its axis") {
   text["scene"] = Json::parse(R"({"structure": {"type": "bar", "length": 10, "EA": 900, "rhoA": 1, "fixed": "right"},
                                   "stops": {"lower": -0.1, "at": "tip"}, "initial": {"displacement": 0, "velocity": 0}})");
   text["mesh"] = {{"elements", 10}};
-  CHECK(snapshots(Runs().of(text)).along);
+  CHECK(snapshots(FilmRuns().of(text)).along);
 }
 
 TEST_CASE("a table that is cut short is no film") {
-  NumberTable table = *find_table(Runs().of(beam_study()).numbers, snapshots_name);
+  NumberTable table = *find_table(FilmRuns().of(beam_study()).numbers, snapshots_name);
   REQUIRE(snapshots_of(table));
   for (std::vector<double>& column : table.values) column.resize(column.size() / 2);
   CHECK_FALSE(snapshots_of(table));
