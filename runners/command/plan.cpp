@@ -8,7 +8,6 @@
 #include "runners/command/command.hpp"
 #include "runners/command/plan_physics.hpp"
 #include "runners/command/study_file.hpp"
-#include "runners/march/prepare_case.hpp"
 #include "runners/run/forecast.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/store/record_values.hpp"
@@ -147,8 +146,7 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
       ++all.costs.excluded;
       why = "excluded: " + *study_case.excluded;
     } else {
-      const double begin = thread_seconds();
-      auto [plan, failure] = planner.plan(study_case);
+      auto [plan, failure, seconds] = planner.plan(study_case);
       if (!failure.empty()) {
         ++all.costs.failed;
         why = fails + failure;
@@ -159,7 +157,7 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
         ++all.costs.runnable;
         for (const auto& [item, reason] : plan.left_out) ++all.left_out[item + ": " + reason];
         for (const std::string& note : plan.notes) ++all.notes[note];
-        all.runnable.push_back({&study_case, std::move(plan), thread_seconds() - begin});
+        all.runnable.push_back({&study_case, std::move(plan), seconds});
       }
     }
     if (!why.empty()) ++all.reasons[why];

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
-#include "runners/command/plan_contacts.hpp"
+#include "runners/run/plan_contacts.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/plain_text.hpp"
 

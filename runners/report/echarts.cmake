@@ -5,7 +5,7 @@ option(RICOCHET_CHARTS "Inline the chart library in reports where node_modules h
 set(report_dir ${CMAKE_CURRENT_LIST_DIR})
 set(echarts ${report_dir}/node_modules/echarts/dist/echarts.min.js)
 set(RICOCHET_ECHARTS_VERSION "")
-file(GLOB embedded CONFIGURE_DEPENDS ${report_dir}/*.css ${report_dir}/effects.js ${report_dir}/script/*.js
+file(GLOB embedded CONFIGURE_DEPENDS ${report_dir}/*.css ${report_dir}/*.js ${report_dir}/script/*.js
   ${report_dir}/templates/*.html ${report_dir}/../kinds/*/page/*.js)
 
 # A glob, so that a build notices when the library comes or goes.

@@ -169,7 +169,7 @@ std::string comparison_text(const StudyComparison& found, const StudyResults& a,
 
 Table comparison_table(const StudyComparison& found) {
   Table table{
-      "comparison",
+      "differences",
       "What two results folders have: an input, an entry of the environment, a case, a measure of a case, a line "
       "of the answer.",
       {{"part", "", "input, environment, case, measure or answer."},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <ricochet/loader/child.hpp>
 
+#include "runners/march/prepare_case.hpp"
 #include "runners/run/run_study.hpp"
 
 namespace ricochet {
@@ -53,15 +54,22 @@ bool CasePlanner::uses_foreign(const StudyCase& study_case) const {
 }
 
 PlanOutcome CasePlanner::plan(const StudyCase& study_case) {
+  const double begin = thread_seconds();
+  PlanOutcome outcome = planned(study_case);
+  outcome.seconds = thread_seconds() - begin;
+  return outcome;
+}
+
+PlanOutcome CasePlanner::planned(const StudyCase& study_case) {
   if (uses_foreign(study_case)) return plan_in_child(study_case);
   try {
-    return {plan_for(study_.kind, study_case, registry_), ""};
+    return {.plan = plan_for(study_.kind, study_case, registry_), .failure = ""};
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    return {{}, "not enough memory"};
+    return {.plan = {}, .failure = "not enough memory"};
   } catch (const std::exception& error) {
-    return {{}, error.what()};
+    return {.plan = {}, .failure = error.what()};
   }
 }
 
@@ -79,7 +87,8 @@ std::string CasePlanner::ask(const StudyCase& study_case, const std::function<st
 
 PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
   for (const Method& method : methods_of(study_case))
-    if (const auto found = endless_.find(method); found != endless_.end()) return {{}, found->second};
+    if (const auto found = endless_.find(method); found != endless_.end())
+      return {.plan = {}, .failure = found->second};
   const ChildOutcome outcome = run_in_child(
       [&] {
         try {
@@ -95,11 +104,11 @@ PlanOutcome CasePlanner::plan_in_child(const StudyCase& study_case) {
     if (outcome.end == ChildOutcome::End::timeout && !outcome.function.empty())
       endless_[{outcome.plugin.role, outcome.plugin.name}] =
           sentence + " in case " + study_case.id + "; not tried again";
-    return {{}, sentence};
+    return {.plan = {}, .failure = sentence};
   }
   const Json json = Json::parse(outcome.text);
   if (json.contains("wrong")) throw InputError(json["pointer"].get<std::string>(), json["wrong"].get<std::string>());
-  return {from_text(json), ""};
+  return {.plan = from_text(json), .failure = ""};
 }
 
 }  // namespace ricochet

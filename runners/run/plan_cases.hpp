@@ -20,6 +20,7 @@ struct PlannedCase {
 struct PlanOutcome {
   CasePlan plan;
   std::string failure;  ///< "" when there is a plan; else what went wrong, and whose fault it is
+  double seconds = 0;   ///< processor time of planning it
 };
 
 /// Plans the cases of a study one by one, as `ricochet plan` shows them. A case that uses a foreign plugin is planned
@@ -35,6 +36,7 @@ class CasePlanner {
   std::string ask(const StudyCase& study_case, const std::function<std::string()>& question) const;
 
  private:
+  PlanOutcome planned(const StudyCase& study_case);
   PlanOutcome plan_in_child(const StudyCase& study_case);
   bool uses_foreign(const StudyCase& study_case) const;
   const Study& study_;

@@ -223,8 +223,7 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
   DiscreteProblem discrete;
   if (!solver->of_the_mesh() && study_case.scene.load.has_point_forces()) {
     known.refusal =
-        "the load has a force at a point, and this reference knows loads that are spread: use one of the mesh, "
-        "event-driven-semi-discrete or self";
+        "the load has a force at a point, and this reference knows loads that are spread: use a reference of the mesh";
     return known;
   }
   if (solver->of_the_mesh()) {

@@ -1,4 +1,4 @@
-#include "runners/command/plan_contacts.hpp"
+#include "runners/run/plan_contacts.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t most_lines = 8;
+constexpr std::size_t most_contact_lines = 8;
 constexpr int most_dofs = 240;           // of a dense problem of eigenvalues
 constexpr int phases = 8;                // of the instant at which a contact begins within a step
 constexpr double longest_contact = 2e4;  // steps that are marched
@@ -70,7 +70,6 @@ StudyCase bounce(const StudyCase& one, const ContactSpring& spring, double h, do
   thrown.scene.stops.place = StopsSpec::Place::tip;
   thrown.scene.initial.displacement = Formula((2 + share) * h);
   thrown.scene.initial.velocity = Formula(-1.0);
-  thrown.mass = MethodChoice{"consistent", {}, {}};
   thrown.elements = 1;
   thrown.step = h;
   thrown.steps_per_period = 0;
@@ -82,7 +81,7 @@ StudyCase bounce(const StudyCase& one, const ContactSpring& spring, double h, do
 std::optional<std::pair<double, double>> left_by(const StudyCase& one, const ContactSpring& spring, double h,
                                                  const Registry& registry) {
   const double steps = std::numbers::pi / (spring.pulsation * h);
-  if (steps > longest_contact || !registry.manual(Role::mass, "consistent")) return std::nullopt;
+  if (steps > longest_contact) return std::nullopt;
   double least = HUGE_VAL, most = 0;
   for (int k = 0; k < phases; ++k) {
     StudyCase thrown = bounce(one, spring, h, (k + 0.5) / phases);
@@ -106,7 +105,7 @@ std::optional<std::pair<double, double>> left_by(const StudyCase& one, const Con
   return std::pair(least, most);
 }
 
-std::string percent(double share) {
+std::string loss_percent(double share) {
   return fmt::format("{:.2g}", 100 * share);
 }
 
@@ -116,14 +115,14 @@ std::string loss_text(double least_left, double most_left) {
   const double low = 1 - most_left, high = 1 - least_left;
   if (std::abs(low) < round_off && std::abs(high) < round_off) return "keeps its energy";
   if (low >= -round_off)
-    return percent(low) == percent(high)
-               ? fmt::format("loses {} % of its energy", percent(high))
-               : fmt::format("loses {} to {} % of its energy", percent(std::max(0.0, low)), percent(high));
+    return loss_percent(low) == loss_percent(high)
+               ? fmt::format("loses {} % of its energy", loss_percent(high))
+               : fmt::format("loses {} to {} % of its energy", loss_percent(std::max(0.0, low)), loss_percent(high));
   if (high <= round_off)
-    return percent(low) == percent(high)
-               ? fmt::format("gains {} % of its energy", percent(-low))
-               : fmt::format("gains {} to {} % of its energy", percent(std::max(0.0, -high)), percent(-low));
-  return fmt::format("keeps its energy within {} %", percent(std::max(-low, high)));
+    return loss_percent(low) == loss_percent(high)
+               ? fmt::format("gains {} % of its energy", loss_percent(-low))
+               : fmt::format("gains {} to {} % of its energy", loss_percent(std::max(0.0, -high)), loss_percent(-low));
+  return fmt::format("keeps its energy within {} %", loss_percent(std::max(-low, high)));
 }
 
 // "penalty of 1e+06 N/m, implicit": the law with the words among its parameters.
@@ -164,7 +163,7 @@ std::string contacts_text(const std::vector<PlannedCase>& cases, const CasePlann
       const std::string key = one.scene_json.at("structure").dump() + content_of(one.contact).dump() +
                               content_of(one.time).dump() + Cell(h).text();
       if (!met.insert(key).second) continue;
-      if (told == most_lines) {
+      if (told == most_contact_lines) {
         more += stiffness_of(one, registry).has_value();
         continue;
       }

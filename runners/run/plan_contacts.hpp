@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/command/plan_physics.hpp"
+#include "runners/run/plan_cases.hpp"
 
 namespace ricochet {
 
