@@ -130,8 +130,11 @@ Fill identity_fill(const StudyResults& results) {
 
 /// Text as a CSS string.
 std::string css_string(const std::string& text) {
+  // What is no UTF-8 is replaced on the way through JSON.
+  using Json = nlohmann::ordered_json;
+  const auto legible = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
   std::string out = "\"";
-  for (const char c : text)
+  for (const char c : legible)
     if (c == '"' || c == '\\' || c == '<' || static_cast<unsigned char>(c) < 0x20)
       out += fmt::format("\\{:x} ", static_cast<unsigned char>(c));
     else

@@ -198,7 +198,7 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
        {"core/contract", "core/loader", "core/scene", "core/engine", "core/measure", "runners/table", "runners/study",
         "runners/store", "runners/march", "runners/report"}},
       {"runners/run",
-       {"core/contract", "core/loader", "core/measure", "runners/table", "runners/study", "runners/store",
+       {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
         "runners/march", "runners/kinds", "runners/report"}},
       {"runners/check",
        {"core/contract", "core/loader", "core/algebra", "core/scene", "core/engine", "core/measure", "runners/study",

