@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
@@ -215,14 +216,20 @@ std::string sentence_of(const std::vector<const Said*>& same) {
   return as_sentence(out);
 }
 
-/// What each choice explains of the spread of what is observed, where effects.csv has shares.
+/// What each choice explains of the spread of what is observed, where effects.csv tells most of it.
 void say_shares(const report::CaseView& view, const std::vector<std::string>& observed, Table& table) {
-  if (!find_table(view.results().derived, "effects")) return;
+  const Table* effects = find_table(view.results().derived, "effects");
+  if (!effects) return;
+  constexpr double most = 0.5;
+  std::map<std::string, double> told;
+  const TableReader parts(*effects);
+  for (std::size_t row = 0; row < parts.size(); ++row)
+    told[parts.text(row, "measure")] += parts.number(row, "share").value_or(0);
   const Table shares = report::effects_said(view);
   const TableReader rows(shares);
   for (std::size_t row = 0; row < rows.size(); ++row)
     if (const std::string name = rows.text(row, "measure");
-        std::find(observed.begin(), observed.end(), name) != observed.end())
+        told[name] >= most && std::find(observed.begin(), observed.end(), name) != observed.end())
       table.rows.push_back(
           AnswerRow{.measure = name, .verdict = "shares", .sentence = rows.text(row, "sentence")}.row());
 }

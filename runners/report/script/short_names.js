@@ -9,7 +9,7 @@
     "α": "structure.damping.stiffness (C = αK + ηM)", "η": "structure.damping.mass (C = αK + ηM)", "A₀": "support.amplitude", "ω": "support.pulsation",
     "κ": "stiffness of the contact", e: "restitution", N: "elements", h: "step", "β": "beta", "γ": "gamma", "θ": "theta",
   };
-  // A word of everyday language is a name where a value or another choice follows it.
+  // A word of everyday language is a name where a value or another choice follows it, and no article stands before it.
   const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| \\([^)]{1,6}\\)| [\\d−])" : "");
   // A scheme of several words goes by their initials, where no other of the study has these.
   function initials(schemes) {
@@ -21,7 +21,7 @@
   function table() {
     if (known && (known.whole || !ricochet.data)) return known;
     const schemes = ricochet.data ? initials(ricochet.data.view.values("time")) : [], all = schemes.concat(names);
-    known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?:" + schemes.map(([full]) => full).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
+    known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?<!\\bthe )(?:" + schemes.map(([full]) => full).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
     for (const [full, brief] of schemes) meanings[brief] = full;
     return known;
   }
