@@ -16,8 +16,8 @@ struct Forecast {
 /// what those did of the same law and mesh; adds what the kind does beside (references, repeats), what setting up,
 /// storing and describing a case costs. Fills predicted_seconds of each plan with what was found.
 ///
-/// It knows neither orbits that settle early or never, nor cases that will diverge. Of 24 studies that ship 18 took
-/// what was predicted within a factor of 1.8, the others (solved references, thousands of tiny cases) within 3.
+/// It knows neither orbits that settle early or never, nor cases that will diverge. Of 23 studies that ship 19 took
+/// what was predicted within a factor of 1.8, the others (references that are solved or shared) within 3.
 Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const CasePlanner& planner,
                   const Registry& registry);
 
