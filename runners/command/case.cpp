@@ -9,6 +9,7 @@
 #include "runners/kinds/single_study.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/run/stop_signal.hpp"
+#include "runners/run/study_cases.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
@@ -51,13 +52,13 @@ std::string measures_text(const CaseRecord& record) {
   return table.text(2);
 }
 
-std::string rows_text(const Table& rows, const std::vector<std::size_t>& columns) {
+std::string rows_text(const Table& rows) {
   std::vector<std::string> header;
-  for (const std::size_t c : columns) header.push_back(rows.columns[c].name);
+  for (const Column& column : rows.columns) header.push_back(column.name);
   TextTable table(std::move(header));
   for (std::size_t r = 0; r < rows.rows.size() && r < rows_told; ++r) {
     std::vector<std::string> cells;
-    for (const std::size_t c : columns) cells.push_back(rows.rows[r][c].text());
+    for (const Cell& cell : rows.rows[r]) cells.push_back(cell.text());
     table.add(std::move(cells));
   }
   std::string out = table.text(2);
@@ -68,20 +69,16 @@ std::string rows_text(const Table& rows, const std::vector<std::size_t>& columns
 
 std::string own_tables_text(const CaseRecord& record) {
   std::string out;
-  for (const Table& table : record.tables) {
-    std::vector<std::size_t> columns;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) columns.push_back(c);
-    if (!table.rows.empty()) out += fmt::format("\n{}:\n{}", table.name, rows_text(table, columns));
-  }
+  for (const Table& table : record.tables)
+    if (!table.rows.empty()) out += fmt::format("\n{}:\n{}", table.name, rows_text(table));
   return out;
 }
 
 /// The row of this case in `energy_ledger`, one column a line; "" where the kind has no such table.
-std::string ledger_text(const OpenCase& open, const CaseRecord& again) {
-  StudyResults alone = open.results;
+std::string ledger_text(const Kind& kind, const Study& study, const CaseRecord& again) {
+  StudyResults alone = results_header(study);
   alone.cases = {again};
-  alone.derived.clear();
-  if (open.kind->tables) open.kind->tables(alone);
+  if (kind.tables) kind.tables(alone);
   const Table* ledger = find_table(alone.derived, "energy_ledger");
   if (!ledger || ledger->rows.empty()) return "";
   TextTable table({"", "J"});
@@ -113,7 +110,7 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
     out << ": " << outcome;
   out << "\n";
   if (!again.measures.empty()) out << "\n" << measures_text(again);
-  out << ledger_text(open, again) << own_tables_text(again) << "\n";
+  out << ledger_text(*open.kind, stored.study, again) << own_tables_text(again) << "\n";
   out << (open.record.partial ? std::string("nothing to compare with: the run had not finished this case\n")
                               : text(compare(open.record, again)));
   return exit_done;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/report/html.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/study/stated_plan.hpp"
 
@@ -13,14 +13,6 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t ids_told = 12;
-
-/// "a, b and 240 more".
-std::string told(const std::vector<std::string>& ids) {
-  const std::vector<std::string> first(ids.begin(),
-                                       ids.begin() + static_cast<std::ptrdiff_t>(std::min(ids.size(), ids_told)));
-  const std::string text = fmt::format("{}", fmt::join(first, ", "));
-  return ids.size() > first.size() ? fmt::format("{} and {} more", text, ids.size() - first.size()) : text;
-}
 
 }  // namespace
 
@@ -35,10 +27,12 @@ const CaseRecord& find_case(const StudyResults& results, const std::string& id) 
   if (found.size() == 1) return *found.front();
   std::vector<std::string> named;
   for (const CaseRecord* record : found) named.push_back(record->id);
-  if (!found.empty()) throw PointRefused(fmt::format("the case \"{}\" is one of {}", id, told(named)));
+  if (!found.empty())
+    throw PointRefused(fmt::format("the case \"{}\" is one of {}", id, report::list_text(named, ids_told)));
   const std::string nearest = nearest_name(id, ids);
   throw PointRefused(fmt::format("there is no case \"{}\"{}; its cases are {}", id,
-                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?", told(ids)));
+                                 nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?",
+                                 report::list_text(ids, ids_told)));
 }
 
 StoredStudy::StoredStudy(const StudyResults& results, const std::vector<std::filesystem::path>& plugins)

@@ -5,8 +5,9 @@
 #include "runners/report/answer_lines.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/status_counts.hpp"
 #include "runners/report/template.hpp"
-#include "runners/store/record_values.hpp"
+#include "runners/store/environment_entries.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -30,13 +31,12 @@ Fill study_fill(const IndexEntry& entry) {
   out.set("lines", lines);
   if (all.size() > most_index_lines)
     out.set("more", count_text(all.size() - most_index_lines, "more line", "more lines") + " in the report");
-  for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const std::size_t count = ricochet::with_status(all_cases(results), status).size()) {
-      Fill one;
-      one.set("status", status);
-      one.set("text", status_mark(status) + " " + std::to_string(count) + " " + status);
-      statuses << one;
-    }
+  for (const auto& [status, count] : status_counts(results)) {
+    Fill one;
+    one.set("status", status);
+    one.set("text", status_mark(status) + " " + std::to_string(count) + " " + status);
+    statuses << one;
+  }
   if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0) {
     Fill one;
     one.set("status", "missing");
@@ -44,8 +44,8 @@ Fill study_fill(const IndexEntry& entry) {
     statuses << one;
   }
   out.set("statuses", statuses);
-  for (const auto& [name, value] : results.environment.entries)
-    if (name == kStarted) out.set("date", value.substr(0, value.find('T')));
+  if (const std::string started = environment_entry(results.environment, kStarted); !started.empty())
+    out.set("date", started.substr(0, started.find('T')));
   return out;
 }
 
@@ -65,11 +65,7 @@ std::string index_markdown(const std::vector<IndexEntry>& studies) {
   std::string out;
   for (const IndexEntry& entry : studies) {
     const StudyResults& results = entry.results;
-    std::string counts;
-    for (const char* status : {"done", "refused", "diverged", "failed"})
-      if (const std::size_t count = ricochet::with_status(all_cases(results), status).size())
-        counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + status;
-    out += "**`" + results.name + "`** " + plain_markdown(results.question) + " (" + counts + ")\n\n";
+    out += "**`" + results.name + "`** " + plain_markdown(results.question) + " (" + statuses_text(results) + ")\n\n";
     for (const std::string& line : answer_lines(results)) out += "* " + plain_markdown(line) + "\n";
     out += "\n";
   }

@@ -12,6 +12,7 @@
 #include "runners/report/page.hpp"
 #include "runners/report/page_data.hpp"
 #include "runners/report/scene_sketch.hpp"
+#include "runners/report/status_counts.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/report/table_view.hpp"
 #include "runners/report/tables.hpp"
@@ -20,15 +21,6 @@
 namespace ricochet {
 namespace report {
 namespace {
-
-/// "24 cases: 20 done, 4 refused."
-std::string counts_text(const CaseView& view) {
-  std::string counts;
-  for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const size_t count = view.with_status(status).size())
-      counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, status);
-  return count_text(view.results().cases.size(), "case", "cases") + counts + ".";
-}
 
 Fill banner(const std::string& first, const std::string& rest) {
   Fill out;
@@ -121,7 +113,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   page.set("summary", summary_html(view));
   if (const std::string sketch = scene_svg(results.study); !sketch.empty()) page.set("sketch", sketch);
   if (!results.question.empty()) page.set("question", results.question);
-  page.set("counts", counts_text(view));
+  page.set("counts", counts_text(results));
   page.set("banners", banners(results));
   page.set("answer", answer_html(view, kind));
   page.set("charts", truth(!library.empty()));

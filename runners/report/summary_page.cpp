@@ -7,7 +7,9 @@
 #include "runners/report/answer_lines.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
+#include "runners/report/status_counts.hpp"
 #include "runners/report/template.hpp"
+#include "runners/store/environment_entries.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
@@ -17,12 +19,6 @@ namespace {
 
 // So much stands on one sheet beside a sketch and a figure.
 constexpr std::size_t most_summary_lines = 6, most_values = 8, most_reasons = 3;
-
-std::string entry(const Environment& environment, const std::string& name) {
-  const auto found = std::find_if(environment.entries.begin(), environment.entries.end(),
-                                  [&](const auto& one) { return one.first == name; });
-  return found == environment.entries.end() ? "" : found->second;
-}
 
 Fill pair_fill(const char* first, const std::string& name, const char* second, const std::string& value) {
   Fill out;
@@ -86,14 +82,9 @@ Fill methods_fill(const CaseView& view) {
   return out;
 }
 
-Fill limits_fill(const CaseView& view) {
+Fill limits_fill(const StudyResults& results) {
   Fill out{Fill::type::list};
-  const StudyResults& results = view.results();
-  std::string counts;
-  for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const std::size_t count = view.with_status(status).size())
-      counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, status);
-  out << line_fill(count_text(results.cases.size(), "case", "cases") + counts + ".");
+  out << line_fill(counts_text(results));
   if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0)
     out << line_fill(count_text(static_cast<std::size_t>(missing), "case", "cases") + " not run yet.");
   if (const Table* reasons = find_table(results.derived, "reasons")) {
@@ -123,7 +114,7 @@ Fill identity_fill(const StudyResults& results) {
   out << pair_fill("name", "fingerprint", "value",
                    study_fingerprint(results) + " (resolved study, commit and plugins)");
   for (const char* name : {"program", "commit", kStarted, "compiler", "flags", "processor", "kernel"})
-    if (const std::string value = entry(results.environment, name); !value.empty())
+    if (const std::string value = environment_entry(results.environment, name); !value.empty())
       out << pair_fill("name", name, "value", value);
   return out;
 }
@@ -147,12 +138,9 @@ std::string css_string(const std::string& text) {
 std::string study_fingerprint(const StudyResults& results) {
   constexpr std::size_t digits = 16;
   std::string content = results.study.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  content += entry(results.environment, "commit");
-  for (const auto& [name, value] : results.environment.entries) {
-    // "…/libricochet-x.so (hash)": the same library is the same wherever it lies.
-    const std::size_t open = value.rfind('(');
-    if (name.starts_with("plugin ")) content += name + (open == std::string::npos ? value : value.substr(open));
-  }
+  content += environment_entry(results.environment, "commit");
+  for (const auto& [name, value] : results.environment.entries)
+    if (name.starts_with("plugin ")) content += name + without_place(name, value);
   return content_hash(content).substr(0, digits);
 }
 
@@ -169,13 +157,14 @@ std::string summary_html(const CaseView& view) {
   with.set("numbers", numbers);
   with.set("lines", answer_fill(results));
   with.set("methods", methods_fill(view));
-  with.set("limits", limits_fill(view));
+  with.set("limits", limits_fill(results));
   with.set("identity", identity_fill(results));
   return filled("summary", with);
 }
 
 std::string page_margins(const StudyResults& results) {
-  const std::string commit = entry(results.environment, "commit"), started = entry(results.environment, kStarted);
+  const std::string commit = environment_entry(results.environment, "commit"),
+                    started = environment_entry(results.environment, kStarted);
   const std::string left = fmt::format("{} · fingerprint {}{}", results.name, study_fingerprint(results),
                                        commit.empty() ? "" : " · commit " + commit);
   return fmt::format(

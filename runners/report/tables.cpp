@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "runners/report/html.hpp"
+#include "runners/report/status_counts.hpp"
 #include "runners/report/template.hpp"
 #include "runners/table/in_order_met.hpp"
 
@@ -148,14 +149,13 @@ std::string case_table_html(const CaseView& view) {
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
   Fill with, statuses{Fill::type::list}, rows{Fill::type::list}, entries{Fill::type::list};
-  for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const size_t count = view.with_status(status).size()) {
-      Fill one;
-      one.set("status", status);
-      one.set("mark", status_mark(status));
-      one.set("count", std::to_string(count));
-      statuses << one;
-    }
+  for (const auto& [status, count] : status_counts(results)) {
+    Fill one;
+    one.set("status", status);
+    one.set("mark", status_mark(status));
+    one.set("count", std::to_string(count));
+    statuses << one;
+  }
   std::vector<CaseColumn> columns = case_columns(view, measures);
   // Cells that are out of sight are left out of a page of many cases, which they would fill.
   const size_t all_columns = columns.size();

@@ -38,8 +38,7 @@ struct Reading {
 struct FinestLevel {
   std::vector<Reading> cases;
 
-  const CaseRecord* finest() const { return best().record; }
-  const Reading& best() const {
+  const Reading& finest() const {
     return *std::max_element(cases.begin(), cases.end(), [](const Reading& a, const Reading& b) {
       const double mesh_a = number_on(*a.record, "elements"), mesh_b = number_on(*b.record, "elements");
       return mesh_a != mesh_b ? mesh_a < mesh_b : number_on(*a.record, "step") > number_on(*b.record, "step");
@@ -47,7 +46,7 @@ struct FinestLevel {
   }
   /// By how much the value moved from the next coarser size of `refined` to the finest, all else being the same.
   std::optional<double> last_move(const char* refined, const char* other) const {
-    const Reading& chosen = best();
+    const Reading& chosen = finest();
     const bool step = std::string_view(refined) == "step";
     const double size = number_on(*chosen.record, refined);
     std::optional<double> next, move;
@@ -65,7 +64,7 @@ struct FinestLevel {
 GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
   GroupEffect out;
   double largest = 0, floor = 0;
-  for (const FinestLevel& level : levels) largest = std::max(largest, std::abs(level.best().value));
+  for (const FinestLevel& level : levels) largest = std::max(largest, std::abs(level.finest().value));
   if (own_scale && largest > 0)
     for (FinestLevel& level : levels)
       for (Reading& one : level.cases) {
@@ -74,15 +73,15 @@ GroupEffect group_effect(std::vector<FinestLevel>& levels, bool own_scale) {
       }
   std::vector<LevelValue> values;
   for (const FinestLevel& level : levels) {
-    const CaseRecord* best = level.finest();
-    out.levels.push_back(best);
-    out.elements = std::max(out.elements, number_on(*best, "elements"));
-    const double step = number_on(*best, "step");
+    const Reading& best = level.finest();
+    out.levels.push_back(best.record);
+    out.elements = std::max(out.elements, number_on(*best.record, "elements"));
+    const double step = number_on(*best.record, "step");
     if (out.step == 0 || (step > 0 && step < out.step)) out.step = step;
-    values.push_back({level.best().value, level.last_move("step", "elements"), level.last_move("elements", "step"),
-                      level.best().sampling});
+    values.push_back(
+        {best.value, level.last_move("step", "elements"), level.last_move("elements", "step"), best.sampling});
     // A measure that is its own scale is known to all its digits, but for those that a run loses.
-    if (!own_scale) floor = std::max(floor, round_off(*best));
+    if (!own_scale) floor = std::max(floor, round_off(*best.record));
   }
   out.found = resolved_effect(values, answer_threshold, floor);
   return out;

@@ -7,7 +7,9 @@
 
 #include "runners/report/answer_lines.hpp"
 #include "runners/run/measure_scale.hpp"
+#include "runners/store/environment_entries.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/study/json_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -18,42 +20,27 @@ std::string json_said(const Json* value) {
   return value ? value->dump(-1, ' ', false, Json::error_handler_t::replace) : "";
 }
 
-/// One reference token of a pointer (RFC 6901).
-std::string pointer_token(const std::string& key) {
-  std::string out;
-  for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-  return out;
-}
-
 /// Objects member by member, lists of equal length entry by entry; a list that grew or shrank is one value.
 void add_changes(const Json* a, const Json* b, const std::string& pointer, std::vector<ChangedText>& out) {
   if (a && b && *a == *b) return;
   if (a && b && a->is_object() && b->is_object()) {
     for (const auto& [key, value] : a->items())
-      add_changes(&value, b->contains(key) ? &(*b)[key] : nullptr, pointer + "/" + pointer_token(key), out);
+      add_changes(&value, b->contains(key) ? &(*b)[key] : nullptr, pointer_to(pointer, key), out);
     for (const auto& [key, value] : b->items())
-      if (!a->contains(key)) add_changes(nullptr, &value, pointer + "/" + pointer_token(key), out);
+      if (!a->contains(key)) add_changes(nullptr, &value, pointer_to(pointer, key), out);
     return;
   }
   if (a && b && a->is_array() && b->is_array() && a->size() == b->size()) {
-    for (std::size_t k = 0; k < a->size(); ++k) add_changes(&(*a)[k], &(*b)[k], pointer + "/" + std::to_string(k), out);
+    for (std::size_t k = 0; k < a->size(); ++k) add_changes(&(*a)[k], &(*b)[k], pointer_to(pointer, k), out);
     return;
   }
   out.push_back({pointer, json_said(a), json_said(b)});
 }
 
-/// A library is the same wherever it lies: its entry ends in "(hash)".
-std::string without_place(const std::string& entry, const std::string& value) {
-  const std::size_t open = value.rfind('(');
-  return entry.starts_with("plugin ") && open != std::string::npos ? value.substr(open) : value;
-}
-
 std::vector<ChangedText> environment_changes(const Environment& a, const Environment& b) {
   std::vector<ChangedText> out;
   const auto find = [](const Environment& in, const std::string& name) {
-    const auto found =
-        std::find_if(in.entries.begin(), in.entries.end(), [&](const auto& entry) { return entry.first == name; });
-    return found == in.entries.end() ? std::string() : without_place(name, found->second);
+    return without_place(name, environment_entry(in, name));
   };
   std::vector<std::string> names;
   for (const Environment* one : {&a, &b})

@@ -6,6 +6,7 @@
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/compare_studies.hpp"
+#include "runners/store/environment_entries.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {
@@ -143,13 +144,12 @@ std::string comparison_verdict(const StudyComparison& found) {
 }
 
 std::string folder_line(const char* which, const StudyResults& results) {
-  std::string commit, started;
-  for (const auto& [name, value] : results.environment.entries) {
-    if (name == "commit") commit = ", commit " + value;
-    if (name == kStarted) started = ", " + value;
-  }
-  return fmt::format("{}: {}, {}{}{}\n", which, results.name, count_text(results.cases.size(), "case", "cases"), commit,
-                     started);
+  std::string line = fmt::format("{}: {}, {}", which, results.name, count_text(results.cases.size(), "case", "cases"));
+  if (const std::string commit = environment_entry(results.environment, "commit"); !commit.empty())
+    line += ", commit " + commit;
+  if (const std::string started = environment_entry(results.environment, kStarted); !started.empty())
+    line += ", " + started;
+  return line + "\n";
 }
 
 }  // namespace

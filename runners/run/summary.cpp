@@ -9,6 +9,7 @@
 #include "runners/report/answer_lines.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/report/status_counts.hpp"
 #include "runners/run/answers_table.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
@@ -114,8 +115,8 @@ std::string case_table(const StudyResults& results) {
 
 std::string totals_text(const StudyResults& results) {
   std::vector<std::string> parts;
-  for (const char* status : {"done", "refused", "diverged", "failed"})
-    if (const int number = count(results, status)) parts.push_back(fmt::format("{} {}", number, status));
+  for (const auto& [status, number] : report::status_counts(results))
+    parts.push_back(fmt::format("{} {}", number, status));
   if (const auto number = std::count_if(results.cases.begin(), results.cases.end(),
                                         [](const CaseRecord& record) { return record.partial; }))
     parts.push_back(fmt::format("{} under way", number));

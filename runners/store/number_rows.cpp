@@ -1,22 +1,29 @@
 #include "runners/store/number_rows.hpp"
 
 #include <SQLiteCpp/Column.h>
-#include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
+#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "runners/store/folder_lock.hpp"
-#include "runners/store/schema.hpp"
+#include "runners/store/read_store.hpp"
 
 namespace ricochet {
+
+static_assert(std::endian::native == std::endian::little, "series are stored as little-endian doubles");
+
+void bind_series(SQLite::Statement& statement, int index, const std::vector<double>& series) {
+  // An empty vector may have no address, and SQLite would store NULL.
+  statement.bindNoCopy(index, series.empty() ? static_cast<const void*>("") : series.data(),
+                       static_cast<int>(series.size() * sizeof(double)));
+}
 
 void insert_numbers(SQLite::Database& database, const std::string& case_id, int position, const NumberTable& table) {
   using Json = nlohmann::ordered_json;
   SQLite::Statement add(database, "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t c = 0; c < table.values.size(); ++c) {
     const std::string& column = table.columns.at(c).name;
-    const std::vector<double>& series = table.values[c];
     add.reset();
     add.bind(1, case_id);
     add.bind(2, position);
@@ -27,34 +34,26 @@ void insert_numbers(SQLite::Database& database, const std::string& case_id, int 
     add.bind(7);
     if (const auto* words = table.words_of(column))
       add.bind(7, Json(*words).dump(-1, ' ', false, Json::error_handler_t::replace));
-    // An empty vector may have no address, and SQLite would store NULL.
-    add.bindNoCopy(8, series.empty() ? static_cast<const void*>("") : series.data(),
-                   static_cast<int>(series.size() * sizeof(double)));
+    bind_series(add, 8, table.values[c]);
     add.exec();
   }
 }
 
 void keep_numbers(const std::filesystem::path& folder, const std::string& case_id, const NumberTable& table) {
-  const std::filesystem::path file = folder / "results.sqlite";
   const FolderLock lock(folder);
-  guarded(file, nullptr, [&] {
-    constexpr int wait_ms = 10000;
-    SQLite::Database database(file, SQLite::OPEN_READWRITE, wait_ms);
-    prepare_schema(database, file, false);
-    guarded(file, &database, [&] {
-      SQLite::Transaction transaction(database);
-      SQLite::Statement remove(database, "DELETE FROM case_numbers WHERE case_id = ? AND name = ?");
-      remove.bind(1, case_id);
-      remove.bind(2, table.name);
-      remove.exec();
-      SQLite::Statement last(database, "SELECT coalesce(max(position), -1) FROM case_numbers WHERE case_id = ?");
-      last.bind(1, case_id);
-      last.executeStep();
-      const int position = last.getColumn(0).getInt() + 1;
-      last.reset();
-      insert_numbers(database, case_id, position, table);
-      transaction.commit();
-    });
+  with_store(folder, [&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database);
+    SQLite::Statement remove(database, "DELETE FROM case_numbers WHERE case_id = ? AND name = ?");
+    remove.bind(1, case_id);
+    remove.bind(2, table.name);
+    remove.exec();
+    SQLite::Statement last(database, "SELECT coalesce(max(position), -1) FROM case_numbers WHERE case_id = ?");
+    last.bind(1, case_id);
+    last.executeStep();
+    const int position = last.getColumn(0).getInt() + 1;
+    last.reset();
+    insert_numbers(database, case_id, position, table);
+    transaction.commit();
   });
 }
 

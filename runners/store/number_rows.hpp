@@ -1,12 +1,17 @@
 #pragma once
 #include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "runners/table/number_table.hpp"
 
 namespace ricochet {
+
+/// Binds numbers as a blob of little-endian doubles; they stay where they are until the statement has run.
+void bind_series(SQLite::Statement& statement, int index, const std::vector<double>& series);
 
 /// Adds a table of numbers to the rows of a case, as its `position`th; inside a transaction.
 void insert_numbers(SQLite::Database& database, const std::string& case_id, int position, const NumberTable& table);

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <functional>
 #include <map>
 
 #include "runners/store/record_values.hpp"
@@ -143,9 +142,6 @@ StudyResults read_tables(SQLite::Database& database) {
   return results;
 }
 
-namespace {
-
-/// Opens the store of a folder, for who only reads.
 void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use) {
   const std::filesystem::path file = folder / "results.sqlite";
   std::error_code error;
@@ -160,8 +156,6 @@ void with_store(const std::filesystem::path& folder, const std::function<void(SQ
     guarded(file, &database, [&] { use(database); });
   });
 }
-
-}  // namespace
 
 StudyResults read_store(const std::filesystem::path& folder) {
   StudyResults results;

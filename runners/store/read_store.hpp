@@ -1,9 +1,15 @@
 #pragma once
 #include <SQLiteCpp/Database.h>
 
+#include <filesystem>
+#include <functional>
+
 #include "runners/store/record.hpp"
 
 namespace ricochet {
+
+/// Opens FOLDER/results.sqlite, which is there, for `use`. Throws StoreError.
+void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use);
 
 /// Reads every table in one read transaction: the state after some whole number of finished cases.
 StudyResults read_tables(SQLite::Database& database);

@@ -25,8 +25,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-static_assert(std::endian::native == std::endian::little, "series are stored as little-endian doubles");
-
 std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -49,12 +47,6 @@ void remove_curve(const std::filesystem::path& folder, const std::string& id) {
   std::error_code error;
   std::filesystem::remove(file, error);
   if (error) throw StoreError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
-}
-
-void bind_series(SQLite::Statement& statement, int index, const std::vector<double>& series) {
-  // An empty vector may have no address, and SQLite would store NULL.
-  statement.bindNoCopy(index, series.empty() ? static_cast<const void*>("") : series.data(),
-                       static_cast<int>(series.size() * sizeof(double)));
 }
 
 }  // namespace

@@ -165,8 +165,7 @@ Json check_objects(const Field& field, const Json& value, const std::string& poi
 // A list of positions or of objects is one value; a list that holds words or lists is an axis.
 bool is_axis(const Field& field, const Json& value) {
   if (!field.axis || !value.is_array()) return false;
-  if (field.form == Field::Form::formula && !field.nested.empty())
-    return value.empty() || std::any_of(value.begin(), value.end(), [](const Json& item) { return !item.is_object(); });
+  if (field.form == Field::Form::formula) return !is_object_list(field, value);
   if (field.form != Field::Form::places) return true;
   return std::any_of(value.begin(), value.end(), [](const Json& item) { return item.is_string() || item.is_array(); });
 }
@@ -295,6 +294,11 @@ std::string quoted_list(const std::vector<std::string>& words) {
   std::string result;
   for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + word + "\"";
   return result;
+}
+
+bool is_object_list(const Field& field, const Json& value) {
+  return field.form == Field::Form::formula && !field.nested.empty() && value.is_array() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& item) { return item.is_object(); });
 }
 
 std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, const std::string& pointer) {

@@ -18,6 +18,9 @@ struct Axis {
 /// that does not parse, an empty list.
 Json check_object(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Axis>& axes);
 
+/// Whether a list is one value of a formula that may also be a list of objects, and no axis.
+bool is_object_list(const Field& field, const Json& value);
+
 /// The fields that an object has, its variants resolved. Throws InputError when a discriminator is missing or unknown.
 std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, const std::string& pointer);
 

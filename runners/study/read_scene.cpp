@@ -1,5 +1,7 @@
 #include "runners/study/read_scene.hpp"
 
+#include "runners/study/json_text.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -12,7 +14,7 @@ LoadSpec read_load(const Json& value, const std::string& pointer) {
   if (!value.is_array()) return read_formula(value, pointer, "xt");
   LoadSpec load;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    const std::string here = pointer + "/" + std::to_string(i);
+    const std::string here = pointer_to(pointer, i);
     LoadTerm& term = load.terms.emplace_back();
     term.force = value[i].contains("force");
     if (term.force && !value[i].at("at").is_null()) term.at = value[i].at("at").get<double>();

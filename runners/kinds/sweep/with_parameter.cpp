@@ -24,12 +24,6 @@ struct Scalar {
   const Field* field = nullptr;
 };
 
-// One value made of objects, and no list of values.
-bool is_list_of_objects(const Field& field, const Json& value) {
-  return field.form == Field::Form::formula && !field.nested.empty() && value.is_array() &&
-         std::all_of(value.begin(), value.end(), [](const Json& item) { return item.is_object(); });
-}
-
 void collect(const ObjectForm& form, const Json& value, const std::string& pointer, std::vector<Scalar>& scalars) {
   for (const Field* field : fields_of(form, value, pointer)) {
     const std::string here = pointer_to(pointer, field->key());
@@ -37,7 +31,7 @@ void collect(const ObjectForm& form, const Json& value, const std::string& point
     if (found == value.end()) continue;
     if (field->form == Field::Form::object)
       collect(field->nested.front(), *found, here, scalars);
-    else if (is_list_of_objects(*field, *found))
+    else if (is_object_list(*field, *found))
       for (std::size_t i = 0; i < found->size(); ++i)
         collect(field->nested.front(), (*found)[i], pointer_to(here, i), scalars);
     else if (field->form == Field::Form::formula ||

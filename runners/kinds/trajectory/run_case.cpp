@@ -176,8 +176,9 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   if (!prepared.program) return record;
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
-  EnergyAudit audit(marcher);
-  ImpactRecorder recorder(marcher, &audit);
+  Audited watched(marcher);
+  EnergyAudit& audit = watched.audit;
+  ImpactRecorder& recorder = watched.recorder;
   WindowMeans means(study_case.settings, audit, recorder);
   ForceWindow forces(study_case.settings, means);
   const int instants = snapshots_asked(study_case.settings);

@@ -1,7 +1,6 @@
 // Every kind of study, run by the command: what its report draws is what its tables hold.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -11,6 +10,7 @@
 #include "runners/run/derive.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/browser/driven.hpp"
 
 using namespace ricochet;
 using namespace ricochet::browser;
@@ -27,17 +27,9 @@ struct Ran {
 
 /// Runs a study of tests/runners/report/studies.
 Ran run(const std::string& kind) {
-  const fs::path out = fs::path(RICOCHET_BINARY_DIR) / "browser" / "studies" / kind;
-  fs::remove_all(out);
-  fs::create_directories(out.parent_path());
-  const std::string command = std::string(RICOCHET_COMMAND) +
-                              " run '" RICOCHET_SOURCE_DIR "/tests/runners/report/studies/" + kind + ".json' --out '" +
-                              out.string() + "' >'" + out.string() + ".txt' 2>&1";
-  INFO(command);
-  REQUIRE(std::system(command.c_str()) != -1);
-  REQUIRE(fs::exists(out / "report.html"));
-  std::ifstream file(out / "report.html", std::ios::binary);
-  return {with_tables(Store(out, false).load()), {kind, {std::istreambuf_iterator<char>(file), {}}}};
+  const fs::path report = report_of("studies", kind);
+  std::ifstream file(report, std::ios::binary);
+  return {with_tables(Store(report.parent_path(), false).load()), {kind, {std::istreambuf_iterator<char>(file), {}}}};
 }
 
 const Table& stored_table(const StudyResults& results, const std::string& name) {
