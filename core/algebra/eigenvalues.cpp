@@ -1,5 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
 #include <ricochet/algebra/eigenvalues.hpp>
 
 namespace ricochet {
@@ -50,6 +52,26 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A) {
   map << A.real(), -A.imag(), A.imag(), A.real();
   const Eigen::VectorXd twice = singular_values(map);
   return twice(Eigen::seqN(0, twice.size() / 2, 2));
+}
+
+Eigen::VectorXd balance(Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.rows();
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double column = A.col(i).lpNorm<1>() - std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - std::abs(A(i, i));
+      // Against round-off there is nothing to balance: it would make a defective matrix look diagonal.
+      if (std::min(column, row) <= 1e-13 * std::max(column, row)) continue;
+      const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (!std::isfinite(factor) || (column * factor + row / factor) >= 0.95 * (column + row)) continue;
+      scale[i] *= factor;
+      A.col(i) *= factor;
+      A.row(i) /= factor;
+      moved = true;
+    }
+  }
+  return scale;
 }
 
 }  // namespace ricochet

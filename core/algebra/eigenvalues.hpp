@@ -36,4 +36,8 @@ GeneralModes general_modes(const Eigen::MatrixXd& A, EigenVectors vectors = Eige
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A);
 
+/// A becomes D⁻¹ A D with D of powers of two, its rows and columns of about the same size (Parlett and Reinsch 1969);
+/// returns D. Eigenvalues stay, and are found more accurately.
+Eigen::VectorXd balance(Eigen::MatrixXd& A);
+
 }  // namespace ricochet

@@ -16,6 +16,8 @@ class ClampMotion {
 
   /// When the step begins, s.
   void set_time(double t);
+  /// A sin(ωt + ψ) and A cos(ωt + ψ) of a lane, then.
+  void drive(int lane, double& sine, double& cosine) const;
   /// Σ_k w_k A sin(ω(t + c_k h) + ψ), or its rate, per lane; `phase` holds the levels (w_k, c_k).
   void offsets(const PhaseWeights& phase, double* out, bool rate) const;
   /// ω² times the first of these: what the clamp's acceleration gives to a load.

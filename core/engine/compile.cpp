@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -169,6 +170,41 @@ void say_what_is_left_out(Program& program) {
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
 }
 
+Refusal refuse_flight(const std::string& cause) {
+  return Refusal{"the steps in which nothing happens cannot be left out (" + cause + "): march every step"};
+}
+
+// Why a march cannot leave out steps, by what is known before anything is worked out; empty: nothing speaks against it.
+std::string why_grounded(const Program& program, const CompileOptions& options) {
+  if (program.lanes.size() > 1) return "several lanes march as one block";
+  if (program.tangents > 0) return "tangents are asked for";
+  if (program.load && !program.load_constant) return "the load depends on time";
+  if (!kind_applies(OperatorKind::modal, *program.problem))
+    return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
+  if (options.kind != OperatorKind::automatic && options.kind != OperatorKind::modal)
+    return "another operator than the modal one is asked for";
+  return "";
+}
+
+// The tables of flights; why there are none, where there are none.
+std::string let_fly(Program& program, const CompileOptions& options) {
+  double layer = 0;
+  if (program.contact) {
+    const Parameters parameters[] = {program.lanes.front().law};
+    program.law->prepare(program.problem->points(), parameters);
+    layer = program.law->layer(0);
+  }
+  auto flight = std::make_shared<Flight>(program, layer, options.expected_steps);
+  if (!flight->cause().empty()) return flight->cause();
+  program.flight = std::move(flight);
+  program.left_out.push_back(
+      {"steps in which no contact changes", program.flight->held_cause().empty()
+                                                ? "open or closed, they are composed"
+                                                : "those without contact are composed; with it (" +
+                                                      program.flight->held_cause() + ") every step is marched"});
+  return "";
+}
+
 StageEfforts efforts_read(const std::vector<StageProgram>& stages) {
   StageEfforts efforts(stages.size());
   for (std::size_t k = 0; k < stages.size(); ++k)
@@ -282,6 +318,10 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     work.without_stiffness = work.without_stiffness && folded.stiffness == 0;
   }
   program.kind = options.kind;
+  const std::string grounded = options.march == MarchWay::every_step ? "" : why_grounded(program, options);
+  if (options.march == MarchWay::flights && !grounded.empty()) return refuse_flight(grounded);
+  const bool flies = options.march != MarchWay::every_step && grounded.empty();
+  if (flies && program.kind == OperatorKind::automatic) program.kind = OperatorKind::modal;
   if (program.kind == OperatorKind::automatic)
     program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
   else if (!kind_applies(program.kind, *problem))
@@ -323,6 +363,11 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     if (diagonal) program.kind = OperatorKind::diagonal;
   }
   say_what_is_left_out(program);
+  if (options.march == MarchWay::every_step) return program;
+  if (const std::string cause = flies ? let_fly(program, options) : grounded; !cause.empty()) {
+    if (options.march == MarchWay::flights) return refuse_flight(cause);
+    program.left_out.push_back({"flights over steps in which nothing happens", cause});
+  }
   return program;
 }
 

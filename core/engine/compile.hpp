@@ -12,6 +12,8 @@
 
 namespace ricochet {
 
+class Flight;
+
 /// One trajectory of a block: what may differ between lanes that share a factorisation.
 struct LaneSpec {
   double amplitude = 0, phase = 0;     ///< of the support motion, m and rad
@@ -22,6 +24,13 @@ struct LaneSpec {
 
 /// The lane that the scene itself describes.
 LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law);
+
+/// How a march goes from step to step.
+enum class MarchWay {
+  automatic,  ///< by flights where they are expected to cost less, else every step
+  every_step,
+  flights,  ///< refused where the motion cannot fly
+};
 
 /// Something that a run does without, and why.
 struct LeftOut {
@@ -34,6 +43,7 @@ struct CompileOptions {
   bool eager_delassus = false;        ///< all columns at once (tests)
   int tangents = 0;                   ///< tangent columns per lane
   bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
+  MarchWay march = MarchWay::every_step;
 };
 
 /// What the facts of a scheme need to know about a problem.
@@ -91,6 +101,7 @@ struct Program {
   double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;
+  std::shared_ptr<Flight> flight;  ///< null: every step is marched
 };
 
 using ProgramOrRefusal = std::variant<Program, Refusal>;

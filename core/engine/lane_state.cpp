@@ -72,6 +72,7 @@ void Marcher::set_state_at(int column, const LaneState& state) {
   const double* memory = state.memory.data();
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, column) = *memory++;
   combined_for_ = nullptr;
+  quiet_ = 0;
 }
 
 LaneState Marcher::lane_state(int lane) const {

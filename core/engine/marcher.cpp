@@ -61,6 +61,8 @@ Marcher::Marcher(Program program)
     stage_states_.push_back(make_state(program_.stages[k], program_.plan.stages[k]));
   connect_efforts();
   connect_works();
+  for (const auto& state : stage_states_)
+    quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()) + 1);
 }
 
 // Which stage's work each gives back.
@@ -141,10 +143,12 @@ void Marcher::start(StepObserver* observer) {
 long long Marcher::march(long long steps, StepObserver* observer) {
   const FlushDenormals flush;
   for (long long n = 0; n < steps; ++n) {
+    if (program_.flight) n += fly(steps - n - 1, observer);
     if (program_.support) clamp_.set_time(time());
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
       run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer);
     ++step_;
+    ++visited_;
     if (observer) observer->step_done(*this);
     if (step_ % check_interval == 0) {
       check_lanes();

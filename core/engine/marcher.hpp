@@ -3,6 +3,7 @@
 #include <memory>
 #include <ricochet/engine/clamp_motion.hpp>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/held_point.hpp>
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/lane_status.hpp>
 #include <ricochet/engine/step_observer.hpp>
@@ -29,6 +30,8 @@ class Marcher {
   void start(StepObserver* observer = nullptr);
   /// Makes up to `steps` steps; returns early (with how many it made) only when no lane runs any more.
   long long march(long long steps, StepObserver* observer = nullptr);
+  /// Steps that were marched, and not left out.
+  long long steps_visited() const { return visited_; }
 
   /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
   /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
@@ -98,6 +101,10 @@ class Marcher {
   void show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
             StepObserver& observer) const;
 
+  // flight_march.cpp: steps in which nothing happens.
+  long long fly(long long most, StepObserver* observer);
+  bool contact_set();
+
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
   void contact(StageProgram& program, StageState& state, double* z);
   void remember_efforts(const StageProgram& program, StageState& state, double* z);
@@ -156,7 +163,9 @@ class Marcher {
   int held_steps_ = 0;
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
-  long long step_ = 0;
+  long long step_ = 0, visited_ = 0;
+  int quiet_ = 0, quiet_after_ = 0;  // steps without contact, and how many until nothing of it acts any more
+  std::vector<HeldPoint> held_;      // closed points, where flights ask for them
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

@@ -5,6 +5,7 @@
 namespace ricochet {
 
 class Marcher;
+struct SkippedSteps;
 
 /// What an observer sees while a step is made. Blocks are rows × T or points × T.
 struct StageView {
@@ -33,6 +34,11 @@ class StepObserver {
   virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
   /// The step is complete.
   virtual void step_done(Marcher& marcher) = 0;
+  /// How many steps from now on it need not be shown, as long as contact stays what it is: it is told of them by
+  /// skipped(), and the step after them is shown, with the same contact. None, unless it says otherwise.
+  virtual long long may_skip(const Marcher& /*marcher*/) { return 0; }
+  /// Steps were left out; the marcher stands at their end.
+  virtual void skipped(Marcher& /*marcher*/, const SkippedSteps& /*steps*/) {}
 };
 
 }  // namespace ricochet

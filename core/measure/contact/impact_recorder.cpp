@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <utility>
 
@@ -57,6 +58,49 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
 
 void ImpactRecorder::step_done(Marcher& marcher) {
   if (behind_) behind_->step_done(marcher);
+}
+
+// The velocities over two sub-steps have to be seen of what opened, and those over the last one of what closes next.
+long long ImpactRecorder::may_skip(const Marcher& marcher) {
+  if (marcher.program().contact && (known_ < 2 || !lanes_.front().leaving.empty())) return 0;
+  return behind_ ? behind_->may_skip(marcher) : std::numeric_limits<long long>::max();
+}
+
+void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  if (behind_) behind_->skipped(marcher, steps);
+  if (steps.held.empty()) return;
+  Lane& lane = lanes_.front();
+  const double lasts = marcher.program().stages.front().momentum;
+  steps.flight->each_effort([&](std::span<const double> efforts) {
+    lane.force = 0;
+    for (std::size_t i = 0; i < efforts.size(); ++i) {
+      Point& one = lane.points[static_cast<std::size_t>(steps.held[i].point)];
+      one.given = lasts * std::abs(efforts[i]);
+      press(lane, steps.held[i].point, lasts);
+    }
+  });
+}
+
+// One more instant of a closed point.
+void ImpactRecorder::press(Lane& lane, int point, double lasts) {
+  Point& one = lane.points[static_cast<std::size_t>(point)];
+  const double force = lasts > 0 ? one.given / lasts : 0.0;
+  lane.force += force;
+  lane.peak = std::max(lane.peak, force);
+  StopTotals& totals = stop(lane, point, one.side);
+  totals.impulse += one.given;
+  totals.contact_time += lasts;
+  totals.squares += one.given * force;
+  totals.peak_force = std::max(totals.peak_force, force);
+  if (one.row < lane.impacts.size()) {
+    Impact& impact = lane.impacts[one.row];
+    impact.impulse += one.given;
+    impact.duration += lasts;
+    impact.peak_force = std::max(impact.peak_force, force);
+    impact.release_force = force;
+  }
+  one.pushed = one.given;
+  one.given = 0;
 }
 
 // What the last sub-step was, for the points that wait for it.
@@ -156,23 +200,7 @@ void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view
     one.side = now;
     if (now == 0) return;
     if (now != before) begin(marcher, view, lane, point, now);
-    const double force = lasts_ > 0 ? one.given / lasts_ : 0.0;
-    state.force += force;
-    state.peak = std::max(state.peak, force);
-    StopTotals& totals = stop(state, point, now);
-    totals.impulse += one.given;
-    totals.contact_time += lasts_;
-    totals.squares += one.given * force;
-    totals.peak_force = std::max(totals.peak_force, force);
-    if (one.row < state.impacts.size()) {
-      Impact& impact = state.impacts[one.row];
-      impact.impulse += one.given;
-      impact.duration += lasts_;
-      impact.peak_force = std::max(impact.peak_force, force);
-      impact.release_force = force;
-    }
-    one.pushed = one.given;
-    one.given = 0;
+    press(state, point, lasts_);
   });
   if (state.closed.idle() && state.leaving.empty()) busy_ &= ~(1U << lane);
 }

@@ -70,6 +70,8 @@ class ImpactRecorder final : public StepObserver {
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
   /// To be called once, when the march is over: what its last sub-step was, for those who wait for it.
   void finish(const Marcher& marcher);
 
@@ -115,6 +117,7 @@ class ImpactRecorder final : public StepObserver {
   double velocity(const Marcher& marcher, int lane, int point) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
+  static void press(Lane& lane, int point, double lasts);
 
   const MarchModel& model_;
   StepObserver* behind_;

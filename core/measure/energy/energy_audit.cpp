@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
@@ -264,6 +266,30 @@ void EnergyAudit::step_done(Marcher& marcher) {
     else if (marcher.beyond_bound(lane, energy))
       marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
   }
+}
+
+long long EnergyAudit::may_skip(const Marcher& marcher) {
+  const Lane& state = lanes_.front();
+  const bool told = state.energy.own_energy && state.has_scheme && marcher.program().flight->free_never_gains();
+  return told ? std::numeric_limits<long long>::max() : 0;
+}
+
+// Flights march one lane.
+void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  Lane& state = lanes_.front();
+  EnergyTotals& totals = state.energy;
+  totals.work_of_loads += steps.works.loads;
+  totals.work_of_damping += steps.works.damping;
+  totals.work_of_contact += steps.works.contact;
+  totals.work_of_scheme += steps.works.scheme;
+  state.now.scheme = scheme_energy(marcher, 0);
+  if (steps.held.empty()) return;
+  ContactTotals& contact = state.contact;
+  contact.contact_steps += steps.steps;
+  const double momentum = marcher.program().stages.front().momentum;
+  steps.flight->each_effort([&](std::span<const double> efforts) {
+    for (const double p : efforts) contact.impulse += momentum * std::abs(p);
+  });
 }
 
 }  // namespace ricochet

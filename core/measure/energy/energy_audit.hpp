@@ -65,6 +65,9 @@ class EnergyAudit final : public StepObserver {
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
+  /// Any number, where the scheme has an energy of its own whose balance no step can gain by.
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
 
   const EnergySample& energy(int lane) const { return lanes_[static_cast<std::size_t>(lane)].now; }
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }

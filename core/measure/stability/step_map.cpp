@@ -127,27 +127,6 @@ class StageRows {
   MatrixXd unknown_, jump_, effort_;  // z, w and p over the state
 };
 
-// D⁻¹ A D with D of powers of two, rows and columns of about the same size; returns D.
-Eigen::VectorXd balance(MatrixXd& A) {
-  const Index n = A.rows();
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (Index i = 0; i < n; ++i) {
-      const double column = A.col(i).lpNorm<1>() - std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - std::abs(A(i, i));
-      // Against round-off there is nothing to balance: it would make a defective matrix look diagonal.
-      if (std::min(column, row) <= 1e-13 * std::max(column, row)) continue;
-      const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
-      if (!std::isfinite(factor) || (column * factor + row / factor) >= 0.95 * (column + row)) continue;
-      scale[i] *= factor;
-      A.col(i) *= factor;
-      A.row(i) /= factor;
-      moved = true;
-    }
-  }
-  return scale;
-}
-
 }  // namespace
 
 StepMapOrRefusal step_map(const LinearProblem& problem, const StepPlan& plan, const ClosedContact& law) {

@@ -1,0 +1,92 @@
+#pragma once
+#include <memory>
+#include <ricochet/engine/flight/flight_set.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them and in the step after.
+class Flight;
+struct SkippedSteps {
+  long long steps = 0;
+  double from = 0, to = 0;          ///< s
+  FlightSums works;                 ///< over these steps, where the plan has work forms
+  std::span<const HeldPoint> held;  ///< points that stayed closed; none: nothing was touched
+  Flight* flight = nullptr;         ///< what else may be asked of them
+};
+
+/// Leaves out the steps of one lane in which nothing happens.
+class Flight {
+ public:
+  /// Below it a flight costs more than its steps.
+  static constexpr long long least = 4;
+
+  /// For a march of about `steps` steps. `layer` (m): the law acts from so far before the stops.
+  Flight(const Program& program, double layer, long long steps);
+
+  /// Why it cannot fly at all; empty where it can.
+  const std::string& cause() const { return free_->cause(); }
+  /// Whether closed contact flies too, and if not, why.
+  const std::string& held_cause() const { return held_cause_; }
+
+  /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
+  /// march. `slots`, `e`: the lane's state; `held`: its closed points.
+  long long look(const Program& program, const double* const* slots, const double* e, std::span<const HeldPoint> held,
+                 long long most);
+  /// Leaves them out: the slots k steps later. Right after look().
+  FlightSums fly(long long k, double* const* slots, bool works);
+
+  /// Widens [low, high] by the tip's displacement, absolute, after each of the steps last left out.
+  void tip_extremes(double& low, double& high);
+  /// The efforts of the held points in each of them, in their order: `see`(efforts), N.
+  template <class See>
+  void each_effort(See&& see) {
+    x_ = start_;
+    std::copy(start_e_, start_e_ + 3, e_);
+    for (long long k = 0; k < flown_; ++k) {
+      set_->efforts(x_.data(), e_, efforts_);
+      see(std::span<const double>(efforts_));
+      set_->motion().leap(0, x_.data(), e_);
+    }
+  }
+  /// Whether no step of it can gain energy beyond what loads bring, whatever the state.
+  bool never_gains() const { return set_->works().never_gains(); }
+  bool free_never_gains() const { return free_->works().never_gains(); }
+
+ private:
+  struct Pace {
+    long long next = 2 * least;
+    long long wait = 0, penalty = least;
+  };
+  struct Kept {
+    std::vector<HeldPoint> held;
+    long long seen = 0;  // steps that began with these points closed
+    std::unique_ptr<FlightSet> set;
+    Pace pace;
+  };
+  Kept& kept(std::span<const HeldPoint> held);
+  void search(std::size_t depth, long long k, double& low, double& high);
+
+  static std::string why_not_held(const Program& program);
+
+  double layer_;
+  int powers_;
+  std::unique_ptr<FlightSet> free_;
+  Pace pace_;
+  std::string held_cause_;
+  std::vector<std::unique_ptr<Kept>> sets_;
+  // Of the last flight:
+  FlightSet* set_ = nullptr;
+  std::vector<double> start_, x_, efforts_;
+  double start_e_[3] = {}, e_[3] = {};
+  long long flown_ = 0;
+  struct Leg {
+    std::vector<double> x;
+    double e[3] = {};
+  };
+  std::vector<Leg> legs_;  // of a search, by depth
+};
+
+}  // namespace ricochet

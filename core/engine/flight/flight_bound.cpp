@@ -1,0 +1,289 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/algebra/infinity.hpp>
+#include <ricochet/engine/flight/flight_bound.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXcd;
+using Eigen::RowVectorXd;
+using Complex = std::complex<double>;
+
+constexpr double nothing = 1e-3;         // a root below: zero as often as it is found, known to the root of round-off
+constexpr double grows = 1e-10;          // of a root beyond the unit circle: what round-off makes of one on it
+constexpr double ill_conditioned = 1e6;  // of eigenvectors: roots that coincide
+constexpr double slack = 1e-12;          // of a bound: its own round-off
+
+std::size_t place(Index row, int modes, int mode) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(modes) + static_cast<std::size_t>(mode);
+}
+
+void put(std::vector<double>& table, const RowVectorXd& row, int modes, int mode) {
+  for (Index k = 0; k < row.size(); ++k) table[place(k, modes, mode)] = row[k];
+}
+
+}  // namespace
+
+// A = I + D of a mode, with x = X e + (right · left + rest)(x − X e): the steady motion, the roots that are not zero,
+// and what is over after `rest_steps` steps.
+struct FlightBound::ModeRoots {
+  Eigen::VectorXcd change;  // λ − 1
+  MatrixXcd right, left;
+  MatrixXd rest;
+  int rest_steps = 0;
+  MatrixXd steady;          // X
+  Eigen::VectorXcd phasor;  // of the harmonic part
+};
+
+FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches)
+    : modes_(rows.modes()),
+      slots_(rows.slots()),
+      drives_(rows.drive().count()),
+      drive_(rows.drive()),
+      turn_(drive_.change(1)) {
+  const auto n = static_cast<std::size_t>(modes_), width = static_cast<std::size_t>(rows.width());
+  for (FlightWatch& watch : watches) {
+    Watched& watched = watches_.emplace_back();
+    const Index points = watch.rows.rows();
+    for (Index i = 0; i < points; ++i)
+      for (Index j = 0; j < watch.rows.cols(); ++j) watched.points.push_back(watch.rows(i, j));
+    watched.watch = std::move(watch);
+    for (auto* table : {&watched.value, &watched.change}) table->assign(width * n, 0.0);
+    for (auto* array : {&watched.steady_amplitude, &watched.steady_bend, &watched.rest, &watched.now, &watched.step,
+                        &watched.amplitude, &watched.bend})
+      array->assign(n, 0.0);
+    for (auto* array : {&watched.offset, &watched.offset_step, &watched.offset_bend})
+      array->assign(static_cast<std::size_t>(points), 0.0);
+  }
+  places_.resize(4 * n);
+  real_.resize(n);
+  imaginary_.resize(n);
+  for (int mode = 0; mode < modes_; ++mode) {
+    const ModeRoots found = roots(rows, mode);
+    if (!cause_.empty()) return;
+    for (Watched& watched : watches_) shares(rows, mode, found, watched);
+  }
+}
+
+FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
+  ModeRoots found;
+  const MatrixXd D = rows.change(mode).leftCols(slots_);
+  MatrixXd scaled = D;
+  const Eigen::VectorXd scale = balance(scaled);
+  const GeneralModes modes = general_modes(scaled);
+  if (!modes.found) {
+    cause_ = "the roots of a step are not found";
+    return found;
+  }
+  std::vector<Index> kept;
+  for (Index l = 0; l < modes.values.size(); ++l) {
+    const Complex change = modes.values[l];
+    if (std::abs(1.0 + change) < nothing) continue;
+    // |λ|² − 1, without the loss of digits that |λ| − 1 has.
+    if (2 * change.real() + std::norm(change) > 2 * grows) {
+      cause_ = "a mode grows by itself";
+      return found;
+    }
+    kept.push_back(l);
+  }
+  const auto count = static_cast<Index>(kept.size());
+  MatrixXcd V(slots_, count);
+  found.change.resize(count);
+  for (Index l = 0; l < count; ++l) {
+    V.col(l) = modes.vectors.col(kept[static_cast<std::size_t>(l)]).normalized();
+    found.change[l] = modes.values[kept[static_cast<std::size_t>(l)]];
+  }
+  if (count > 0) {
+    const Eigen::VectorXd sizes = singular_values(V);
+    if (sizes[sizes.size() - 1] * ill_conditioned < sizes[0]) {
+      cause_ = "roots of a step coincide: it may grow with the number of steps";
+      return found;
+    }
+  }
+  MatrixXcd W;
+  if (count == slots_) {
+    W = V.inverse();
+  } else {
+    // Aˢ leaves nothing of what is over after s steps: W = Λ⁻ˢ V⁺ Aˢ.
+    found.rest_steps = slots_ - static_cast<int>(count);
+    MatrixXd power = MatrixXd::Identity(slots_, slots_);
+    for (int k = 0; k < slots_; ++k) power += scaled * power.eval();
+    W = (V.adjoint() * V).inverse() * V.adjoint() * power.cast<Complex>();
+    for (Index l = 0; l < count; ++l) W.row(l) *= std::pow(1.0 + found.change[l], -slots_);
+  }
+  found.right = scale.cast<Complex>().asDiagonal() * V;
+  found.left = W * scale.cwiseInverse().cast<Complex>().asDiagonal();
+  found.rest = MatrixXd::Identity(slots_, slots_) - (found.right * found.left).real();
+  found.steady = MatrixXd::Zero(slots_, drives_);
+  const MatrixXd B = rows.change(mode).rightCols(drives_);
+  // In the scaled slots: these are of one size.
+  const MatrixXd scaled_B = scale.cwiseInverse().asDiagonal() * B;
+  if (drive_.harmonic) {
+    const double half = std::sin(drive_.angle / 2);
+    const Complex turn(-2 * half * half, std::sin(drive_.angle));  // e^{iωh} − 1
+    const MatrixXcd shifted = turn * MatrixXcd::Identity(slots_, slots_) - scaled.cast<Complex>();
+    const Eigen::VectorXcd force = scaled_B.col(1).cast<Complex>() - Complex(0, 1) * scaled_B.col(0).cast<Complex>();
+    found.phasor = scale.cast<Complex>().asDiagonal() * shifted.fullPivLu().solve(force);
+    found.steady.col(0) = -found.phasor.imag();
+    found.steady.col(1) = found.phasor.real();
+  }
+  if (drive_.constant)
+    found.steady.col(drive_.one()) = scale.asDiagonal() * (-scaled).fullPivLu().solve(scaled_B.col(drive_.one()));
+  if (!found.steady.allFinite()) cause_ = "a mode is in resonance with the drive";
+  return found;
+}
+
+// Of one mode in one measure: its value and change, and what bounds them.
+void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched) {
+  const RowVectorXd row = rows.of(mode, watched.watch.stage, watched.watch.value);
+  put(watched.value, row, modes_, mode);
+  RowVectorXd change = row.head(slots_) * rows.change(mode);
+  if (drives_ > 0) change.tail(drives_) += row.tail(drives_) * turn_;
+  put(watched.change, change, modes_, mode);
+  const auto n = static_cast<std::size_t>(modes_), width = static_cast<std::size_t>(rows.width());
+  const auto at = static_cast<std::size_t>(mode);
+  std::size_t used = 0;
+  const auto add = [&](const RowVectorXcd& share, double weight) {
+    if (used == watched.real.size()) {
+      watched.real.emplace_back(width * n, 0.0);
+      watched.imaginary.emplace_back(width * n, 0.0);
+      watched.weight.emplace_back(n, 0.0);
+    }
+    RowVectorXcd whole(rows.width());
+    whole.head(slots_) = share;
+    if (drives_ > 0) whole.tail(drives_) = -share * found.steady.cast<Complex>();
+    put(watched.real[used], whole.real(), modes_, mode);
+    put(watched.imaginary[used], whole.imag(), modes_, mode);
+    watched.weight[used][at] = weight;
+    ++used;
+  };
+  const RowVectorXcd own = row.head(slots_).cast<Complex>();
+  for (Index l = 0; l < found.change.size(); ++l) {
+    const Complex lambda = found.change[l];
+    if (lambda.imag() < 0) continue;  // of a conjugate pair
+    const double times = lambda.imag() > 0 ? 2 : 1;
+    add(times * (own * found.right.col(l))[0] * found.left.row(l), std::norm(lambda));
+  }
+  RowVectorXd over = row.head(slots_);
+  for (int k = 0; k < found.rest_steps; ++k) {
+    add((over * found.rest).cast<Complex>(), 4);
+    over += over * rows.change(mode).leftCols(slots_);
+  }
+  if (drive_.harmonic) {
+    const Complex steady = (own * found.phasor)[0] + Complex(row[slots_ + 1], -row[slots_]);
+    const double turn = 2 * std::sin(drive_.angle / 2);
+    watched.steady_amplitude[at] = std::abs(steady);
+    watched.steady_bend[at] = turn * turn * std::abs(steady);
+  }
+  if (drive_.constant) {
+    const int one = drive_.one();
+    watched.rest[at] = std::abs(row.head(slots_).dot(found.steady.col(one)) + row[slots_ + one]);
+  }
+}
+
+void FlightBound::look(const double* x, const double* e) {
+  const FlightKernels& kernels = flight_kernels();
+  const double drive = drive_.harmonic ? std::hypot(e[0], e[1]) : 0.0;
+  const double turn = 2 * std::sin(drive_.angle / 2);
+  for (Watched& watched : watches_) {
+    kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, watched.now.data());
+    kernels.row(modes_, slots_, drives_, watched.change.data(), x, e, watched.step.data());
+    for (std::size_t j = 0; j < watched.amplitude.size(); ++j) {
+      watched.amplitude[j] = drive * watched.steady_amplitude[j] + watched.rest[j];
+      watched.bend[j] = drive * watched.steady_bend[j];
+    }
+    for (std::size_t l = 0; l < watched.real.size(); ++l) {
+      kernels.row(modes_, slots_, drives_, watched.real[l].data(), x, e, real_.data());
+      kernels.row(modes_, slots_, drives_, watched.imaginary[l].data(), x, e, imaginary_.data());
+      kernels.modulus(modes_, real_.data(), imaginary_.data(), watched.weight[l].data(), watched.amplitude.data(),
+                      watched.bend.data());
+    }
+    for (std::size_t i = 0; i < watched.offset.size() && drives_ > 0; ++i) {
+      const auto row = static_cast<Index>(i);
+      const MatrixXd& own = watched.watch.drive;
+      double value = 0, change = 0, size = 0;
+      for (int k = 0; k < drives_; ++k) {
+        value += own(row, k) * e[k];
+        double turned = 0;
+        for (int l = 0; l < drives_; ++l) turned += turn_(k, l) * e[l];
+        change += own(row, k) * turned;
+      }
+      if (drive_.harmonic) size = std::hypot(own(row, 0), own(row, 1)) * drive;
+      watched.offset[i] = value;
+      watched.offset_step[i] = change;
+      watched.offset_bend[i] = turn * turn * size;
+    }
+  }
+  placed_of_ = nullptr;
+}
+
+// (4) at 0 and at k.
+FlightBound::Range FlightBound::cone(Watched& watched, std::size_t point, double k) {
+  const FlightKernels& kernels = flight_kernels();
+  if (placed_of_ != &watched || placed_ != static_cast<long long>(k)) {
+    kernels.cone(modes_, k, watched.now.data(), watched.step.data(), watched.amplitude.data(), watched.bend.data(),
+                 places_.data());
+    placed_of_ = &watched;
+    placed_ = static_cast<long long>(k);
+  }
+  double sums[4];
+  kernels.reach(modes_, watched.points.data() + point * static_cast<std::size_t>(modes_), places_.data(), sums);
+  const double near = sums[0] + watched.offset[point];
+  const double far = sums[2] + watched.offset[point] + k * watched.offset_step[point];
+  const double far_radius = sums[3] + 0.5 * k * (k - 1) * watched.offset_bend[point];
+  const double margin = slack * (std::abs(near) + std::abs(far) + sums[1] + far_radius);
+  return {std::min(near - sums[1], far - far_radius) - margin, std::max(near + sums[1], far + far_radius) + margin};
+}
+
+bool FlightBound::holds(long long k) {
+  for (Watched& watched : watches_) {
+    const std::size_t points = watched.offset.size();
+    const auto inside = [&](std::size_t i) {
+      const double lower = watched.watch.lower[i], upper = watched.watch.upper[i];
+      if (lower == -infinity && upper == infinity) return true;
+      const Range range = cone(watched, i, static_cast<double>(k));
+      return range.low > lower && range.high < upper;
+    };
+    if (points == 0) continue;
+    // The point that stopped the last flight is the first to ask.
+    if (!inside(watched.tightest)) return false;
+    for (std::size_t i = 0; i < points; ++i)
+      if (i != watched.tightest && !inside(i)) {
+        watched.tightest = i;
+        return false;
+      }
+  }
+  return true;
+}
+
+FlightBound::Range FlightBound::range(int watch, int point, long long k) {
+  return cone(watches_[static_cast<std::size_t>(watch)], static_cast<std::size_t>(point), static_cast<double>(k));
+}
+
+double FlightBound::value(int watch, int point) {
+  const Watched& watched = watches_[static_cast<std::size_t>(watch)];
+  return flight_kernels().dot(
+             modes_, watched.points.data() + static_cast<std::size_t>(point) * static_cast<std::size_t>(modes_),
+             watched.now.data()) +
+         watched.offset[static_cast<std::size_t>(point)];
+}
+
+void FlightBound::values(int watch, const double* x, const double* e, double* out) {
+  Watched& watched = watches_[static_cast<std::size_t>(watch)];
+  const FlightKernels& kernels = flight_kernels();
+  kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, real_.data());
+  for (std::size_t i = 0; i < watched.offset.size(); ++i) {
+    out[i] = kernels.dot(modes_, watched.points.data() + i * static_cast<std::size_t>(modes_), real_.data());
+    for (int k = 0; k < drives_; ++k) out[i] += watched.watch.drive(static_cast<Index>(i), k) * e[k];
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#pragma once
+#include <optional>
+#include <ricochet/engine/flight/step_rows.hpp>
+#include <string>
+#include <vector>
+
+/// \file
+/// How far a linear motion can get in k steps. With A = I + D = V Λ V⁻¹ of a mode, all |λ| ≤ 1, and a row r of its
+/// slots, every later value and every later second difference obeys
+///
+///     |r Aⁱ x| ≤ a = Σ_l |r V|_l |V⁻¹ x|_l,     |r Aⁱ (A − I)² x| ≤ z = Σ_l |λ_l − 1|² |r V|_l |V⁻¹ x|_l (3)
+///
+/// a steady motion under the drive taken off first, and given its own amplitude and its own second difference. A point
+/// h of the modes then stands after i ≤ k steps within
+///
+///     Σ_j h_j (c_j + i d_j) ± Σ_j |h_j| min(½ i (i−1) z_j, a_j),     c_j = r x_j, d_j = r D x_j (4)
+///
+/// without c_j + i d_j for the modes whose amplitude says more. The bounds are concave and convex in i: what holds at 0
+/// and at k holds between.
+namespace ricochet {
+
+/// A linear measure of the motion at several points, and between what it has to stay: strictly.
+struct FlightWatch {
+  int stage = 0;          ///< before which it stands (StepRows::of)
+  Combination value;      ///< of each mode
+  Eigen::MatrixXd rows;   ///< points × modes
+  Eigen::MatrixXd drive;  ///< points × drives: what e adds
+  std::vector<double> lower, upper;
+};
+
+class FlightBound {
+ public:
+  FlightBound(const StepRows& rows, std::vector<FlightWatch> watches);
+
+  /// Why nothing bounds this motion: a mode that grows, roots that coincide; empty where (3) does.
+  const std::string& cause() const { return cause_; }
+
+  /// Looks at a state; `x`: slots × modes, `e`: drives.
+  void look(const double* x, const double* e);
+  /// Whether every measure stays strictly between its bounds at this step and the k that follow it.
+  bool holds(long long k);
+
+  FlightWatch& watch(int i) { return watches_[static_cast<std::size_t>(i)].watch; }
+  int watches() const { return static_cast<int>(watches_.size()); }
+
+  /// Where one point of one measure, by the last look, may be within k steps.
+  struct Range {
+    double low = 0, high = 0;
+  };
+  Range range(int watch, int point, long long k);
+  /// Its value in the state itself.
+  double value(int watch, int point);
+  /// Values of all points of one measure in a state that is not looked at otherwise.
+  void values(int watch, const double* x, const double* e, double* out);
+
+ private:
+  struct Watched {
+    FlightWatch watch;
+    std::vector<double> points;                        // rows, one after the other
+    std::vector<double> value, change;                 // rows of a mode, width × modes
+    std::vector<std::vector<double>> real, imaginary;  // of the eigenvectors' shares, width × modes each
+    std::vector<std::vector<double>> weight;           // |λ − 1|², modes
+    std::vector<double> steady_amplitude, steady_bend,
+        rest;  // under a drive of amplitude 1, and under the constant one
+    // Of the last look:
+    std::vector<double> now, step, amplitude, bend;
+    std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
+    std::size_t tightest = 0;
+  };
+  Range cone(Watched& watched, std::size_t point, double k);
+  struct ModeRoots;
+  ModeRoots roots(const StepRows& rows, int mode);
+  void shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched);
+
+  int modes_, slots_, drives_;
+  FlightDrive drive_;
+  Eigen::MatrixXd turn_;  // R of one step
+  std::vector<Watched> watches_;
+  std::vector<double> places_, real_, imaginary_;
+  long long placed_ = -1;
+  const Watched* placed_of_ = nullptr;
+  std::string cause_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
+
+namespace ricochet {
+
+void double_change(Eigen::MatrixXd& change, int slots, const Eigen::MatrixXd& turn) {
+  const Eigen::Index drives = change.cols() - slots;
+  const Eigen::MatrixXd D = change.leftCols(slots), B = change.rightCols(drives);
+  change.leftCols(slots) = 2 * D + D * D;
+  if (drives > 0) change.rightCols(drives) = 2 * B + D * B + B * turn;
+}
+
+FlightMotion::FlightMotion(const StepRows& rows, int powers)
+    : modes_(rows.modes()), slots_(rows.slots()), width_(rows.width()), drive_(rows.drive()) {
+  const int drives = drive_.count();
+  tables_.assign(static_cast<std::size_t>(powers),
+                 std::vector<double>(static_cast<std::size_t>(slots_ * width_) * static_cast<std::size_t>(modes_)));
+  for (int power = 0; power < powers; ++power) {
+    const Eigen::MatrixXd R = drive_.change(static_cast<double>(1LL << power));
+    std::vector<double>& rotation = rotations_.emplace_back();
+    for (int i = 0; i < drives; ++i)
+      for (int j = 0; j < drives; ++j) rotation.push_back(R(i, j));
+  }
+  for (int mode = 0; mode < modes_; ++mode) {
+    Eigen::MatrixXd change = rows.change(mode);
+    for (int power = 0; power < powers; ++power) {
+      for (int i = 0; i < slots_; ++i)
+        for (int j = 0; j < width_; ++j)
+          tables_[static_cast<std::size_t>(power)]
+                 [static_cast<std::size_t>(i * width_ + j) * static_cast<std::size_t>(modes_) +
+                  static_cast<std::size_t>(mode)] = change(i, j);
+      double_change(change, slots_, drive_.change(static_cast<double>(1LL << power)));
+    }
+  }
+  next_.resize(static_cast<std::size_t>(slots_) * static_cast<std::size_t>(modes_));
+}
+
+void FlightMotion::leap(int power, double* x, double* e) const {
+  const auto at = static_cast<std::size_t>(power);
+  flight_kernels().leap(modes_, slots_, drive_.count(), tables_[at].data(), x, e, next_.data());
+  std::copy(next_.begin(), next_.end(), x);
+  double turned[3] = {};
+  const int drives = drive_.count();
+  for (int i = 0; i < drives; ++i) {
+    turned[i] = e[i];
+    for (int j = 0; j < drives; ++j) turned[i] += rotations_[at][static_cast<std::size_t>(i * drives + j)] * e[j];
+  }
+  std::copy_n(turned, drives, e);
+}
+
+void FlightMotion::advance(long long k, double* x, double* e) const {
+  for (int power = 0; k >> power != 0; ++power)
+    if ((k >> power) & 1) leap(power, x, e);
+}
+
+}  // namespace ricochet

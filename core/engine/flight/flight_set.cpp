@@ -1,0 +1,372 @@
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/infinity.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+// Of positions: what round-off leaves of a transient that is over.
+constexpr double over = 64 * 0x1p-52;
+
+MatrixXd dense(const RowMatrix& rows, int columns) {
+  MatrixXd matrix = MatrixXd::Zero(rows.rows(), columns);
+  for (int i = 0; i < rows.rows(); ++i)
+    for (int k = rows.start[static_cast<std::size_t>(i)]; k < rows.start[static_cast<std::size_t>(i) + 1]; ++k)
+      matrix(i, rows.index[static_cast<std::size_t>(k)]) += rows.value[static_cast<std::size_t>(k)];
+  return matrix;
+}
+
+// What a combination of levels of the clamp's motion is over e.
+RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1) {
+  RowVectorXd row = RowVectorXd::Zero(drive.count());
+  if (!drive.harmonic) return row;
+  row[0] = factor * phase.along;
+  row[1] = factor * phase.across;
+  return row;
+}
+
+// One load over e, all rows: of the clamp's inertia, and of a distributed load that is constant.
+MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive) {
+  const int rows = program.model->rows();
+  MatrixXd load = MatrixXd::Zero(rows, drive.count());
+  const double omega = program.problem->support.pulsation;
+  if (drive.harmonic)
+    load += program.model->support_shape() * harmonic(PhaseWeights(levels, omega, program.h), drive, omega * omega);
+  if (program.load) {
+    double weight = 0;
+    for (const Level& level : levels) weight += level.weight;
+    VectorXd nodal(rows), own(rows);
+    program.problem->load->assemble(0, nodal.data());
+    program.model->load_to_model(nodal.data(), own.data());
+    load.col(drive.one()) += weight * own;
+  }
+  return load;
+}
+
+// The symmetric form of (a y)(b y).
+MatrixXd product(const RowVectorXd& a, const RowVectorXd& b) {
+  return 0.5 * (a.transpose() * b + b.transpose() * a);
+}
+
+double at(const std::vector<double>& weights, int j) {
+  return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
+}
+
+}  // namespace
+
+// ξ of the held points: the scheme's own steady answer to stops that move with the clamp.
+bool FlightSet::rest(const Program& program) {
+  const Stage& plan = program.plan.stages.front();
+  const StageProgram& stage = program.stages.front();
+  const double push = stage.measure.z;
+  MatrixXd held = MatrixXd::Zero(slots_, slots_);
+  VectorXd moves(slots_);
+  for (int j = 0; j < slots_; ++j) {
+    const Combination& update = plan.update[static_cast<std::size_t>(j)];
+    moves[j] = update.z;
+    for (int i = 0; i < slots_; ++i) held(j, i) = at(update.slots, i) - update.z * at(stage.measure.slots, i) / push;
+  }
+  const RowVectorXd carried = harmonic(stage.measure_phase, drive_);
+  for (const HeldPoint& point : held_) {
+    const LaneSpec& lane = program.lanes.front();
+    RowVectorXd bound = -carried;
+    bound[drive_.one()] += point.lower ? lane.lower[point.point] : lane.upper[point.point];
+    MatrixXd steady = MatrixXd::Zero(slots_, drive_.count());
+    if (drive_.harmonic) {
+      using Complex = std::complex<double>;
+      const Complex turned(std::cos(drive_.angle), std::sin(drive_.angle));
+      const Eigen::MatrixXcd shifted = turned * Eigen::MatrixXcd::Identity(slots_, slots_) - held.cast<Complex>();
+      const Eigen::VectorXcd phasor =
+          shifted.fullPivLu().solve((Complex(bound[1], -bound[0]) / push) * moves.cast<Complex>());
+      steady.col(0) = -phasor.imag();
+      steady.col(1) = phasor.real();
+    }
+    const int one = drive_.one();
+    steady.col(one) = (MatrixXd::Identity(slots_, slots_) - held).fullPivLu().solve(moves * (bound[one] / push));
+    if (!steady.allFinite()) return false;
+    RowVectorXd unknown = bound;
+    for (int j = 0; j < slots_; ++j) unknown -= at(stage.measure.slots, j) * steady.row(j);
+    rest_unknown_.push_back(unknown / push);
+    rest_.push_back(std::move(steady));
+  }
+  return true;
+}
+
+void FlightSet::hold(const Program& program) {
+  const MatrixXd H = dense(program.model->contact(), rows_);
+  held_rows_.resize(static_cast<Index>(held_.size()), rows_);
+  for (std::size_t i = 0; i < held_.size(); ++i) held_rows_.row(static_cast<Index>(i)) = H.row(held_[i].point);
+  // K = 1 in these coordinates.
+  const Eigen::HouseholderQR<MatrixXd> qr(held_rows_.transpose());
+  const MatrixXd Q = qr.householderQ();
+  const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
+  const VectorXd mass = program.model->inertia().mass.diagonal();
+  const SymmetricModes modes = symmetric_modes(null.transpose() * mass.asDiagonal() * null);
+  basis_ = null * modes.vectors;
+  lever_ = held_rows_.transpose() *
+           (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
+}
+
+FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers)
+    : held_(std::move(held)), rows_(program.model->rows()), slots_(static_cast<int>(program.plan.slots.size())) {
+  const bool holds = !held_.empty();
+  for (const auto& [position, velocity] : program.plan.initial)
+    metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
+  drive_ = {program.support, program.load || holds, program.problem->support.pulsation * program.h};
+  VectorXd mass = program.model->inertia().mass.diagonal();
+  if (holds) {
+    hold(program);
+    if (!rest(program)) {
+      cause_ = "the scheme never rests at a stop";
+      return;
+    }
+    const VectorXd own = mass;
+    mass = (basis_.transpose() * own.asDiagonal() * basis_).diagonal().cwiseMax(0);
+  }
+  modes_ = static_cast<int>(mass.size());
+  for (int j = 0; j < slots_; ++j) {
+    MatrixXd lift = MatrixXd::Zero(rows_, drive_.count());
+    for (std::size_t i = 0; i < held_.size(); ++i) lift += lever_.col(static_cast<Index>(i)) * rest_[i].row(j);
+    lift_.push_back(std::move(lift));
+  }
+  MatrixXd lifted = MatrixXd::Zero(rows_, drive_.count());  // of z
+  for (std::size_t i = 0; i < held_.size(); ++i) lifted += lever_.col(static_cast<Index>(i)) * rest_unknown_[i];
+  const VectorXd full_mass = program.model->inertia().mass.diagonal();
+  const auto project = [&](const MatrixXd& rows) { return holds ? MatrixXd(basis_.transpose() * rows) : rows; };
+  const auto onto = [&](const MatrixXd& rows) { return holds ? MatrixXd(rows * basis_) : rows; };
+
+  std::vector<FlightStage> stages;
+  std::vector<MatrixXd> inertia;  // M L(s_M H z − Σ β^M_j ξ_j) of each stage
+  for (std::size_t k = 0; k < program.stages.size(); ++k) {
+    const FoldedStage& folded = program.stages[k].folded;
+    MatrixXd force = load_over_drive(program, program.plan.stages[k].load, drive_);
+    if (holds) {
+      MatrixXd weighed = folded.mass * lifted;
+      for (int j = 0; j < slots_; ++j) weighed -= at(folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
+      inertia.push_back(full_mass.asDiagonal() * weighed);
+      stages.push_back({folded, program.plan.stages[k].update, project(force - inertia.back())});
+    } else {
+      stages.push_back({folded, program.plan.stages[k].update, force});
+    }
+  }
+  const StepRows rows(stages, slots_, mass, drive_);
+
+  const LaneSpec& lane = program.lanes.front();
+  const MatrixXd measured = dense(program.model->measured(), rows_), contact = dense(program.model->contact(), rows_);
+  std::vector<FlightWatch> watches;
+  const auto watch = [&](int stage, const Combination& value, const MatrixXd& points, const PhaseWeights& phase,
+                         double shift) {
+    FlightWatch one;
+    one.stage = stage;
+    one.value = value;
+    one.rows = onto(points);
+    one.drive = (points * lift_of(value, lifted)).rowwise() + harmonic(phase, drive_);
+    for (Index i = 0; i < points.rows(); ++i) {
+      one.lower.push_back(lane.lower[i] + shift);
+      one.upper.push_back(lane.upper[i] - shift);
+    }
+    for (const HeldPoint& point : held_) {
+      one.lower[static_cast<std::size_t>(point.point)] = -infinity;
+      one.upper[static_cast<std::size_t>(point.point)] = infinity;
+    }
+    watches.push_back(std::move(one));
+  };
+  const int after = static_cast<int>(program.stages.size());
+  if (program.contact) {
+    for (int k = 0; k < after; ++k) {
+      const StageProgram& stage = program.stages[static_cast<std::size_t>(k)];
+      // Work is given back where some was taken, and nowhere else.
+      if (!stage.reads_contact || stage.restores > 0) continue;
+      if (stage.gate) {
+        watch(k, stage.gate->predictor, measured, stage.predictor_phase, layer);
+        continue;
+      }
+      watch(k, stage.measure, measured, stage.measure_phase, layer);
+      if (stage.compliance && stage.compliance->before)
+        watch(k, *stage.compliance->before, measured, stage.before_phase, layer);
+    }
+    // The position after the step too, whatever the law reads: a point beyond its stop is something to be told.
+    Combination position;
+    position.slots.assign(static_cast<std::size_t>(slots_), 0.0);
+    position.slots[0] = 1;
+    FlightWatch end;
+    const PhaseWeights phase({{1, 1}}, program.problem->support.pulsation, program.h);
+    end.stage = after;
+    end.value = position;
+    end.rows = onto(contact);
+    MatrixXd next = lift_[0];
+    next += lift_[0] * drive_.change(1);
+    end.drive = (contact * next).rowwise() + harmonic(phase, drive_);
+    for (Index i = 0; i < contact.rows(); ++i) {
+      end.lower.push_back(lane.lower[i]);
+      end.upper.push_back(lane.upper[i]);
+    }
+    for (const HeldPoint& point : held_) {
+      end.lower[static_cast<std::size_t>(point.point)] = -infinity;
+      end.upper[static_cast<std::size_t>(point.point)] = infinity;
+    }
+    watches.push_back(std::move(end));
+  }
+  if (holds) {
+    const FoldedStage& folded = stages.front().folded;
+    FlightWatch pushed;
+    pushed.value.z = folded.mass;
+    pushed.value.slots.resize(static_cast<std::size_t>(slots_));
+    for (int j = 0; j < slots_; ++j) pushed.value.slots[static_cast<std::size_t>(j)] = -at(folded.mass_history, j);
+    pushed.rows = lever_.transpose() * full_mass.asDiagonal() * basis_;
+    MatrixXd elastic = folded.stiffness * lifted;
+    for (int j = 0; j < slots_; ++j) elastic -= at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
+    pushed.drive = lever_.transpose() *
+                   (inertia.front() + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
+    for (const HeldPoint& point : held_) {
+      pushed.lower.push_back(point.lower ? 0 : -infinity);
+      pushed.upper.push_back(point.lower ? infinity : 0);
+    }
+    effort_watch_ = static_cast<int>(watches.size());
+    watches.push_back(std::move(pushed));
+  }
+  bound_ = std::make_unique<FlightBound>(rows, std::move(watches));
+  cause_ = bound_->cause();
+  if (!cause_.empty()) return;
+
+  FlightWatch tip;
+  tip.stage = after;
+  tip.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
+  tip.value.slots[0] = 1;
+  const MatrixXd tip_row = dense(program.model->tip(), rows_);
+  tip.rows = onto(tip_row);
+  tip.drive = (tip_row * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
+              harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
+  tip.lower = {-infinity};
+  tip.upper = {infinity};
+  tip_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{std::move(tip)});
+  motion_ = std::make_unique<FlightMotion>(rows, powers);
+  works_ = std::make_unique<FlightWorks>(rows, forms(program, rows, mass, lifted), powers);
+}
+
+// The balance of a step as quadratic forms. M couples what is held to what moves; K does not.
+FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows, const VectorXd& mass,
+                                    const MatrixXd& lifted) {
+  FlightWorks::Forms forms;
+  const int width = rows.width(), drives = drive_.count();
+  const VectorXd full_mass = program.model->inertia().mass.diagonal();
+  const bool holds = !held_.empty();
+  const auto project = [&](const MatrixXd& all) { return holds ? MatrixXd(basis_.transpose() * all) : all; };
+  const auto begin = [&](FlightWorks::Form& form) {
+    if (form.empty()) form.assign(static_cast<std::size_t>(modes_), MatrixXd::Zero(width, width));
+  };
+  const auto padded = [&](const RowVectorXd& drive) {
+    RowVectorXd row = RowVectorXd::Zero(width);
+    row.tail(drives) = drive;
+    return row;
+  };
+  // (m μ + k) of two combinations of a stage.
+  const auto add = [&](FlightWorks::Form& form, double m, double k, int stage, const Combination& a,
+                       const Combination& b) {
+    begin(form);
+    const MatrixXd lift_a = lift_of(a, lifted), lift_b = lift_of(b, lifted);
+    const MatrixXd inert_a = project(full_mass.asDiagonal() * lift_a),
+                   inert_b = project(full_mass.asDiagonal() * lift_b);
+    for (int mode = 0; mode < modes_; ++mode) {
+      const RowVectorXd row_a = rows.of(mode, stage, a), row_b = rows.of(mode, stage, b);
+      MatrixXd& Q = form[static_cast<std::size_t>(mode)];
+      Q += (m * mass[mode] + k) * product(row_a, row_b);
+      if (holds) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
+    }
+    if (!holds) return;
+    const MatrixXd common = m * lift_a.transpose() * full_mass.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
+    form.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
+  };
+  for (std::size_t at = 0; at < program.plan.stages.size(); ++at) {
+    const Stage& plan = program.plan.stages[at];
+    const int stage = static_cast<int>(at);
+    for (const LossTerm& term : plan.loss) {
+      const bool inertial = term.matrix == EnergyMatrix::M;
+      add(forms.scheme, inertial ? term.coefficient : 0, inertial ? 0 : term.coefficient, stage, term.value,
+          term.value);
+    }
+    if (!plan.work) continue;
+    const WorkForm& work = *plan.work;
+    const Damping& damping = program.problem->damping;
+    if (program.problem->damped())
+      add(forms.damping, damping.mass, damping.stiffness, stage, work.displacement, work.rate);
+    if (!program.support && !program.load) continue;
+    begin(forms.loads);
+    const MatrixXd load = load_over_drive(program, work.load, drive_), modal = project(load);
+    for (int mode = 0; mode < modes_; ++mode)
+      forms.loads[static_cast<std::size_t>(mode)] +=
+          product(rows.of(mode, stage, work.displacement), padded(modal.row(mode)));
+    if (!holds) continue;
+    const MatrixXd common = lift_of(work.displacement, lifted).transpose() * load;
+    forms.loads.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
+    if (!program.support) continue;
+    const RowVectorXd along =
+        harmonic(PhaseWeights(work.support, program.problem->support.pulsation, program.h), drive_);
+    const FlightWatch& pushed = bound_->watch(effort_watch_);
+    const RowVectorXd push = pushed.drive.colwise().sum();
+    forms.loads.front() -= product(padded(push), padded(along));
+    const RowVectorXd weights = pushed.rows.colwise().sum();
+    for (int mode = 0; mode < modes_; ++mode)
+      forms.loads[static_cast<std::size_t>(mode)] -=
+          product(weights[mode] * rows.of(mode, 0, pushed.value), padded(along));
+  }
+  return forms;
+}
+
+// What the lift adds to a combination, over e.
+MatrixXd FlightSet::lift_of(const Combination& c, const MatrixXd& lifted) const {
+  MatrixXd sum = c.z * lifted;
+  for (int j = 0; j < slots_; ++j)
+    if (at(c.slots, j) != 0) sum += at(c.slots, j) * lift_[static_cast<std::size_t>(j)];
+  return sum;
+}
+
+bool FlightSet::enter(const double* const* slots, const double* e, std::vector<double>& x) const {
+  x.resize(static_cast<std::size_t>(slots_) * static_cast<std::size_t>(modes_));
+  if (held_.empty()) {
+    for (int j = 0; j < slots_; ++j) std::copy_n(slots[j], modes_, x.data() + static_cast<std::ptrdiff_t>(j) * modes_);
+    return true;
+  }
+  const Eigen::Map<const VectorXd> drive(e, drive_.count());
+  double size = 0;
+  for (int j = 0; j < slots_; ++j) {
+    const Eigen::Map<const VectorXd> slot(slots[j], rows_);
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      const RowVectorXd row = held_rows_.row(static_cast<Index>(i));
+      if (j == 0) size = std::max(size, row.cwiseAbs().dot(slot.cwiseAbs()));
+      const double apart = metres_[static_cast<std::size_t>(j)] * (row.dot(slot) - rest_[i].row(j).dot(drive));
+      if (!(std::abs(apart) <= over * size)) return false;
+    }
+    Eigen::Map<VectorXd> mode(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
+    mode.noalias() = basis_.transpose() * slot;
+  }
+  return true;
+}
+
+void FlightSet::leave(const std::vector<double>& x, const double* e, double* const* slots) const {
+  if (held_.empty()) {
+    for (int j = 0; j < slots_; ++j) std::copy_n(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_, slots[j]);
+    return;
+  }
+  const Eigen::Map<const VectorXd> drive(e, drive_.count());
+  for (int j = 0; j < slots_; ++j) {
+    Eigen::Map<VectorXd> slot(slots[j], rows_);
+    slot.noalias() = basis_ * Eigen::Map<const VectorXd>(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
+    slot.noalias() += lift_[static_cast<std::size_t>(j)] * drive;
+  }
+}
+
+void FlightSet::efforts(const double* x, const double* e, std::vector<double>& out) {
+  bound_->values(effort_watch_, x, e, out.data());
+}
+
+}  // namespace ricochet

@@ -1,0 +1,67 @@
+#pragma once
+#include <memory>
+#include <ricochet/engine/compile.hpp>
+#include <ricochet/engine/flight/flight_bound.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
+#include <ricochet/engine/flight/flight_works.hpp>
+#include <ricochet/engine/held_point.hpp>
+
+/// \file
+/// The motion between two changes of contact, as uncoupled modes. With no point closed they are the modes of the
+/// structure. Where a rigid law that reads positions holds the points I at their stops, H_I x_j follows from the stops
+/// alone: with ξ_j(e) what each slot has there once the transient of the scheme is over,
+///
+///     x_j = L ξ_j + Ψ η_j,     L = K⁻¹H_Iᵀ(H_I K⁻¹ H_Iᵀ)⁻¹,     H_I Ψ = 0,  ΨᵀKΨ = 1,  ΨᵀMΨ = diag (6)
+///
+/// (L is K-orthogonal to Ψ, so that only M couples them), and the efforts are p = Lᵀ(S z − b).
+namespace ricochet {
+
+class FlightSet {
+ public:
+  /// `program` marches one lane in modal coordinates; its `lanes.front()` says where the stops are. `layer` (m): the
+  /// law acts from so far before them.
+  FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers);
+
+  /// Why this motion cannot fly; empty where it can.
+  const std::string& cause() const { return cause_; }
+  const std::vector<HeldPoint>& held() const { return held_; }
+
+  /// x of these modes from the slots (rows each), and back. False where the held points are not where they come to
+  /// rest, up to round-off: the transient is not over.
+  bool enter(const double* const* slots, const double* e, std::vector<double>& x) const;
+  void leave(const std::vector<double>& x, const double* e, double* const* slots) const;
+
+  FlightBound& bound() { return *bound_; }
+  const FlightMotion& motion() const { return *motion_; }
+  const FlightWorks& works() const { return *works_; }
+  /// The tip after the step (watch 0), unbounded.
+  FlightBound& tip() { return *tip_; }
+  /// Efforts of the held points in the step that begins at (x, e), N.
+  void efforts(const double* x, const double* e, std::vector<double>& out);
+  int modes() const { return modes_; }
+
+ private:
+  void hold(const Program& program);
+  bool rest(const Program& program);
+  Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
+  FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
+                           const Eigen::MatrixXd& lifted);
+
+  std::vector<HeldPoint> held_;
+  int rows_ = 0, modes_ = 0, slots_ = 0;
+  FlightDrive drive_;
+  std::string cause_;
+  std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
+  Eigen::MatrixXd basis_;                         // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd lever_;                         // L, rows × held
+  std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
+  std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
+  std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
+  Eigen::MatrixXd held_rows_;                     // H_I
+  std::unique_ptr<FlightBound> bound_, tip_;
+  std::unique_ptr<FlightMotion> motion_;
+  std::unique_ptr<FlightWorks> works_;
+  int effort_watch_ = -1;
+};
+
+}  // namespace ricochet

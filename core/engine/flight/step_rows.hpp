@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/Core>
+#include <ricochet/engine/stage_operator.hpp>
+#include <vector>
+
+/// \file
+/// One step as a matrix of a few numbers per mode. While no contact point opens or closes, a step is linear with
+/// constant coefficients; over modes with φᵀKφ = 1 and φᵀMφ = μ, which diagonalise M, K and C = αK + ηM at once, it
+/// falls into
+///
+///     x⁺ = x + D x + B e,     e⁺ = e + R e          x: the s slots of one mode;  e: what drives it (1)
+///
+/// with e = (A sin(ωt + ψ), A cos(ωt + ψ), 1) at the beginning of the step, as far as the scene has them. What is kept
+/// is the change D of a step, not I + D: of small steps I + D would forget the frequency.
+namespace ricochet {
+
+/// What drives a motion beside its own state.
+struct FlightDrive {
+  bool harmonic = false;  ///< A sin(ωt + ψ) and A cos(ωt + ψ), m
+  bool constant = false;  ///< 1
+  double angle = 0;       ///< ωh
+  int count() const { return (harmonic ? 2 : 0) + (constant ? 1 : 0); }
+  /// Where 1 stands among them.
+  int one() const { return harmonic ? 2 : 0; }
+  /// R of k steps, count() × count().
+  Eigen::MatrixXd change(double steps) const;
+};
+
+/// A stage over r modes.
+struct FlightStage {
+  FoldedStage folded;
+  std::vector<Combination> update;  ///< one per slot
+  Eigen::MatrixXd force;            ///< r × drives: what they add to b
+};
+
+/// Rows of one step over (x, e), mode by mode: s + drives numbers each.
+class StepRows {
+ public:
+  StepRows(const std::vector<FlightStage>& stages, int slots, const Eigen::VectorXd& mass, const FlightDrive& drive);
+
+  int modes() const { return static_cast<int>(maps_.size()); }
+  int slots() const { return slots_; }
+  int width() const { return slots_ + drive_.count(); }
+  const FlightDrive& drive() const { return drive_; }
+
+  /// Of Σ_j c_j x_j + c_z z before stage `stage` and with its unknown; `stage` = number of stages: after the step.
+  Eigen::RowVectorXd of(int mode, int stage, const Combination& c) const;
+  /// (D B): s × width.
+  const Eigen::MatrixXd& change(int mode) const { return maps_[static_cast<std::size_t>(mode)].back().change; }
+
+ private:
+  struct StageMap {
+    Eigen::MatrixXd change;      // of the slots since the step began, s × width
+    Eigen::RowVectorXd unknown;  // z
+  };
+  Eigen::RowVectorXd slot(const StageMap& map, int j) const;
+
+  int slots_;
+  FlightDrive drive_;
+  std::vector<std::vector<StageMap>> maps_;  // of each mode: before each stage, and after the last
+};
+
+}  // namespace ricochet

@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/engine/stage_state.hpp>
+
+namespace ricochet {
+
+// The closed points of the lane into held_; false where what contact was still acts, or may.
+bool Marcher::contact_set() {
+  held_.clear();
+  if (!program_.contact) return true;
+  bool closed = false;
+  for (const auto& stage : stage_states_) closed = closed || (stage->contact_lanes & 1U) != 0;
+  if (!closed) {
+    if (quiet_ < quiet_after_) return false;
+    const double* memory = memory_.data();
+    return std::all_of(memory, memory + memory_.size(), [](double kept) { return kept == 0; });
+  }
+  if (!program_.flight->held_cause().empty()) return false;
+  const Block& effort = stage_states_.front()->effort[0];
+  for (int i = 0; i < effort.rows(); ++i)
+    if (const double p = effort.at(i, 0); p != 0) held_.push_back({i, p > 0});
+  return true;
+}
+
+// Leaves out steps in which contact stays what it is, before the next one; returns how many.
+long long Marcher::fly(long long most, StepObserver* observer) {
+  bool closed = false;
+  for (const auto& stage : stage_states_) closed = closed || (stage->contact_lanes & 1U) != 0;
+  quiet_ = closed ? 0 : quiet_ + 1;
+  if (most < Flight::least || !status_.front().running || !contact_set()) return 0;
+  if (observer) most = std::min(most, observer->may_skip(*this));
+  if (most < Flight::least) return 0;
+  double e[3] = {0, 0, 0};
+  if (program_.support) {
+    clamp_.set_time(time());
+    clamp_.drive(0, e[0], e[1]);
+    e[2] = 1;
+  } else {
+    e[0] = 1;
+  }
+  Flight& flight = *program_.flight;
+  const long long k = flight.look(program_, slot_pointers_.data(), e, held_, most);
+  if (k == 0) return 0;
+  SkippedSteps skipped;
+  skipped.steps = k;
+  skipped.from = time();
+  skipped.works = flight.fly(k, slots_.data(), observer != nullptr);
+  step_ += k;
+  skipped.to = time();
+  skipped.held = held_;
+  skipped.flight = &flight;
+  combined_for_ = nullptr;
+  check_lanes();
+  if (observer) observer->skipped(*this, skipped);
+  return k;
+}
+
+}  // namespace ricochet

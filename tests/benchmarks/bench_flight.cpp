@@ -1,0 +1,159 @@
+// Marches that leave out the steps in which nothing happens, beside the same march of every step, both with the energy
+// audit and the recorder of impacts: times, steps visited, and how far their ends are apart. Medians of interleaved
+// rounds, every-step of the same build as partner.
+//
+//     bench_flight [--rounds N] [--only WORD]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/marcher.hpp>
+#include <ricochet/loader/catalogue.hpp>
+#include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/energy/energy_audit.hpp>
+
+#include "tests/benchmarks/reference_beam.hpp"
+#include "tests/benchmarks/thread_clock.hpp"
+
+using namespace ricochet;
+using namespace ricochet::benchmarks;
+
+namespace {
+
+struct Scene {
+  std::string name;
+  SceneSpec scene;
+  int elements = 50;
+  std::string mass = "singular", velocity = "P1";
+  double h = 1e-5, duration = 0.5;
+  double beta = 0.5;
+};
+
+struct Outcome {
+  double nanoseconds = 0, set_up = 0;
+  long long steps = 0, visited = 0;
+  Eigen::VectorXd end;
+  double energy = 0, damping = 0, loads = 0, impulse = 0, residual = 0, gain = 0;
+  long long contact_steps = 0, impacts = 0;
+  std::string refusal;
+};
+
+SceneSpec free_swing(double viscosity) {
+  SceneSpec scene = reference_beam(StopsSpec::Place::nodes);
+  std::get<BeamSpec>(scene.structure).damping.stiffness = viscosity;
+  scene.support.amplitude = 0;
+  scene.initial.displacement = Formula("0.04*x^2", "/scene/initial/displacement", "x");
+  scene.initial.velocity = Formula("-2*x", "/scene/initial/velocity", "x");
+  return scene;
+}
+
+Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
+  Outcome out;
+  const double begin = thread_nanoseconds();
+  const auto* mass = registry.mass(scene.mass);
+  std::map<std::string, ParameterValue> words;
+  if (scene.mass == "singular") words["velocity"] = scene.velocity;
+  const auto strategy = mass->make(defaults(mass->manual, words));
+  auto made = discretise(scene.scene, scene.elements, *strategy);
+  const auto problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
+  const auto* law = registry.contact("signorini");
+  const auto* time = registry.time("newmark-dumont-paoli");
+  auto contact = law->make(defaults(law->manual));
+  const auto scheme = time->make(defaults(time->manual, {{"beta", scene.beta}, {"start", std::string("first-order")}}));
+  auto plan = scheme->plan(scene.h, problem_facts(*problem, *contact));
+  CompileOptions options;
+  options.march = way;
+  options.expected_steps = std::llround(scene.duration / scene.h);
+  auto program = compile(problem, std::get<StepPlan>(plan), scene.h, std::move(contact),
+                         {scene_lane(*problem, defaults(law->manual))}, options);
+  if (const auto* refusal = std::get_if<Refusal>(&program)) {
+    out.refusal = refusal->sentence;
+    return out;
+  }
+  Marcher marcher(std::move(std::get<Program>(program)));
+  EnergyAudit audit(marcher);
+  ImpactRecorder recorder(marcher, &audit);
+  const double start = thread_nanoseconds();
+  out.set_up = start - begin;
+  marcher.start(&recorder);
+  out.steps = options.expected_steps;
+  marcher.march(out.steps - marcher.step(), &recorder);
+  out.nanoseconds = thread_nanoseconds() - start;
+  recorder.finish(marcher);
+  out.visited = marcher.steps_visited();
+  out.end = marcher.position(0);
+  const EnergyTotals& energy = audit.totals(0);
+  out.energy = energy.last.scheme;
+  out.damping = energy.work_of_damping;
+  out.loads = energy.work_of_loads;
+  out.residual = energy.balance_residual();
+  out.gain = energy.largest_step_gain;
+  out.impulse = audit.contact(0).impulse;
+  out.contact_steps = audit.contact(0).contact_steps;
+  out.impacts = recorder.count(0);
+  return out;
+}
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> list;
+  for (const char* mass : {"singular", "consistent", "lumped"})
+    for (const double h : {1e-5, 1e-6}) {
+      Scene one{fmt::format("free {} {:g}", mass, h), free_swing(0)};
+      one.mass = mass;
+      one.h = h;
+      one.duration = h < 5e-6 ? 0.1 : 0.5;
+      list.push_back(one);
+    }
+  Scene damped{"damped singular 1e-05", free_swing(1e-4)};
+  list.push_back(damped);
+  for (const int steps : {2000, 8000, 32000}) {
+    Scene forced{fmt::format("forced singular {}", steps), reference_beam(StopsSpec::Place::nodes)};
+    forced.elements = 20;
+    forced.h = 2 * M_PI / 10 / steps;
+    forced.duration = 6 * 2 * M_PI / 10;
+    list.push_back(forced);
+  }
+  return list;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int rounds = 1;
+  std::string only;
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
+    if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
+  }
+  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
+  Registry registry;
+  catalogue.open_all(registry);
+  for (const Scene& scene : scenes()) {
+    if (scene.name.find(only) == std::string::npos) continue;
+    std::vector<double> ratios;
+    Outcome every, flown;
+    for (int round = 0; round < rounds; ++round) {
+      every = march(scene, MarchWay::every_step, registry);
+      flown = march(scene, MarchWay::flights, registry);
+      if (!flown.refusal.empty()) break;
+      ratios.push_back(every.nanoseconds / flown.nanoseconds);
+    }
+    if (!flown.refusal.empty()) {
+      fmt::print("{:<28} {}\n", scene.name, flown.refusal);
+      continue;
+    }
+    std::sort(ratios.begin(), ratios.end());
+    fmt::print("{:<28} {:>9} steps {:>8} visited ({:>6.1f}) contact {:>7}/{:<7} {:>7.2f} µs/step every, {:>8.1f} ms "
+               "flown, set-up {:.1f} ms, ratio {:.1f}\n",
+               scene.name, flown.steps, flown.visited, static_cast<double>(flown.steps) / flown.visited,
+               every.contact_steps, flown.contact_steps, every.nanoseconds / 1e3 / every.steps, flown.nanoseconds / 1e6,
+               flown.set_up / 1e6, ratios[ratios.size() / 2]);
+    fmt::print("    end apart {:.1e} m of {:.1e}; energy {:.10g} | {:.10g}; damping {:.8g} | {:.8g}; loads {:.8g} | "
+               "{:.8g}; impulse {:.10g} | {:.10g}; residual {:.1e} | {:.1e}; impacts {} | {}\n",
+               (every.end - flown.end).lpNorm<Eigen::Infinity>(), every.end.lpNorm<Eigen::Infinity>(), every.energy,
+               flown.energy, every.damping, flown.damping, every.loads, flown.loads, every.impulse, flown.impulse,
+               every.residual, flown.residual, every.impacts, flown.impacts);
+  }
+}
