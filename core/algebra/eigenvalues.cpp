@@ -54,15 +54,14 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A) {
   return twice(Eigen::seqN(0, twice.size() / 2, 2));
 }
 
-Eigen::VectorXd balance(Eigen::MatrixXd& A) {
+Eigen::VectorXd balance(Eigen::MatrixXd& A, double negligible) {
   const Eigen::Index n = A.rows();
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
   for (bool moved = true; moved;) {
     moved = false;
     for (Eigen::Index i = 0; i < n; ++i) {
       const double column = A.col(i).lpNorm<1>() - std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - std::abs(A(i, i));
-      // Against round-off there is nothing to balance: it would make a defective matrix look diagonal.
-      if (std::min(column, row) <= 1e-13 * std::max(column, row)) continue;
+      if (std::min(column, row) <= negligible * std::max(column, row)) continue;
       const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
       if (!std::isfinite(factor) || (column * factor + row / factor) >= 0.95 * (column + row)) continue;
       scale[i] *= factor;

@@ -37,7 +37,9 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 Eigen::VectorXd singular_values(const Eigen::MatrixXcd& A);
 
 /// A becomes D⁻¹ A D with D of powers of two, its rows and columns of about the same size (Parlett and Reinsch 1969);
-/// returns D. Eigenvalues stay, and are found more accurately.
-Eigen::VectorXd balance(Eigen::MatrixXd& A);
+/// returns D. Eigenvalues stay, and are found more accurately. Rows and columns whose sizes differ by more than 1 :
+/// `negligible` are left alone: against round-off there is nothing to balance, and a defective matrix would look
+/// diagonal.
+Eigen::VectorXd balance(Eigen::MatrixXd& A, double negligible = 1e-13);
 
 }  // namespace ricochet

@@ -7,11 +7,10 @@ namespace {
 
 #define RICOCHET_BODY [[gnu::always_inline]] inline
 
-constexpr int parts = 8;  // of a sum, so that it vectorises without a change of its order
-
-RICOCHET_BODY double total(const double* sums) {
-  return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
-}
+// Four numbers: a sum by four has one order, whatever the instruction set.
+constexpr int wide = 4;
+using Wide = double __attribute__((vector_size(32)));
+using Loose = double __attribute__((vector_size(32), aligned(8), may_alias));
 
 RICOCHET_BODY void add_row(int n, int slots, int drives, const double* row, const double* x, const double* e,
                            double* __restrict out) {
@@ -66,18 +65,28 @@ RICOCHET_BODY void cone_body(int n, double k, const double* value, const double*
   }
 }
 
+RICOCHET_BODY Wide load(const double* x) {
+  return *reinterpret_cast<const Loose*>(x);
+}
+RICOCHET_BODY Wide size_of(Wide x) {
+  return x < 0 ? -x : x;
+}
+RICOCHET_BODY double total(Wide even, Wide odd) {
+  const Wide sum = even + odd;
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 RICOCHET_BODY void reach_body(int n, const double* h, const double* places, double* out) {
   const double *near = places, *near_radius = places + n, *far = places + 2L * n, *far_radius = places + 3L * n;
-  double a[parts] = {}, b[parts] = {}, c[parts] = {}, d[parts] = {};
+  Wide a{}, b{}, c{}, d{};
   int j = 0;
-  for (; j + parts <= n; j += parts)
-    for (int l = 0; l < parts; ++l) {
-      const double weight = h[j + l], size = std::abs(weight);
-      a[l] += weight * near[j + l];
-      b[l] += size * near_radius[j + l];
-      c[l] += weight * far[j + l];
-      d[l] += size * far_radius[j + l];
-    }
+  for (; j + wide <= n; j += wide) {
+    const Wide weight = load(h + j), size = size_of(weight);
+    a += weight * load(near + j);
+    b += size * load(near_radius + j);
+    c += weight * load(far + j);
+    d += size * load(far_radius + j);
+  }
   for (int l = 0; j < n; ++j, ++l) {
     const double weight = h[j], size = std::abs(weight);
     a[l] += weight * near[j];
@@ -85,48 +94,50 @@ RICOCHET_BODY void reach_body(int n, const double* h, const double* places, doub
     c[l] += weight * far[j];
     d[l] += size * far_radius[j];
   }
-  out[0] = total(a);
-  out[1] = total(b);
-  out[2] = total(c);
-  out[3] = total(d);
+  out[0] = total(a, Wide{});
+  out[1] = total(b, Wide{});
+  out[2] = total(c, Wide{});
+  out[3] = total(d, Wide{});
+}
+
+// Σ_j f_j over n, f given for four at a time and for one.
+template <class Four, class One>
+RICOCHET_BODY double sum_over(int n, Four four, One one) {
+  Wide even{}, odd{};
+  int j = 0;
+  for (; j + 2 * wide <= n; j += 2 * wide) {
+    even += four(j);
+    odd += four(j + wide);
+  }
+  for (int l = 0; j < n; ++j, ++l) (l < wide ? even : odd)[l % wide] += one(j);
+  return total(even, odd);
 }
 
 RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
-  double sums[parts] = {};
-  int j = 0;
-  for (; j + parts <= n; j += parts)
-    for (int l = 0; l < parts; ++l) sums[l] += h[j + l] * x[j + l];
-  for (int l = 0; j < n; ++j, ++l) sums[l] += h[j] * x[j];
-  return total(sums);
+  return sum_over(
+      n, [&](int j) { return load(h + j) * load(x + j); }, [&](int j) { return h[j] * x[j]; });
 }
 
 RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* form, const double* x,
                                     const double* e) {
-  double sums[parts] = {};
+  double sum = 0;
   const int width = slots + drives;
   for (int a = 0; a < width; ++a)
     for (int b = a; b < width; ++b, form += n) {
-      const double* left = a < slots ? x + static_cast<long>(a) * n : nullptr;
-      const double* right = b < slots ? x + static_cast<long>(b) * n : nullptr;
-      const double given = (a < slots ? 1.0 : e[a - slots]) * (b < slots ? 1.0 : e[b - slots]);
-      double own[parts] = {};
-      int j = 0;
-      if (left && right) {
-        for (; j + parts <= n; j += parts)
-          for (int l = 0; l < parts; ++l) own[l] += form[j + l] * left[j + l] * right[j + l];
-        for (int l = 0; j < n; ++j, ++l) own[l] += form[j] * left[j] * right[j];
-      } else if (left) {
-        for (; j + parts <= n; j += parts)
-          for (int l = 0; l < parts; ++l) own[l] += form[j + l] * left[j + l];
-        for (int l = 0; j < n; ++j, ++l) own[l] += form[j] * left[j];
-      } else {
-        for (; j + parts <= n; j += parts)
-          for (int l = 0; l < parts; ++l) own[l] += form[j + l];
-        for (int l = 0; j < n; ++j, ++l) own[l] += form[j];
-      }
-      for (int l = 0; l < parts; ++l) sums[l] += given * own[l];
+      const double* left = x + static_cast<long>(a) * n;
+      const double* right = x + static_cast<long>(b) * n;
+      if (b < slots)
+        sum += sum_over(
+            n, [&](int j) { return load(form + j) * load(left + j) * load(right + j); },
+            [&](int j) { return form[j] * left[j] * right[j]; });
+      else if (a < slots)
+        sum += e[b - slots] * dot_body(n, form, left);
+      else
+        sum += e[a - slots] * e[b - slots] *
+               sum_over(
+                   n, [&](int j) { return load(form + j); }, [&](int j) { return form[j]; });
     }
-  return total(sums);
+  return sum;
 }
 
 // clang-format off

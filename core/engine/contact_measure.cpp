@@ -1,11 +1,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 
 namespace ricochet {
+
+// Rows times Σ_k w_k x_k, and an offset per lane. Where flights leave out steps, the rows of one lane are dense: what
+// they have in common is summed once.
+void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
+                           const double* offset, double* out) {
+  if (!program_.flight) {
+    kernels_.measure(rows.view(), terms, x, weights, offset, out);
+    return;
+  }
+  const int n = program_.model->rows();
+  // Modes keep no combination for the step to come: its block is free.
+  kernels_.combine(n, terms, x, weights, combination_.data());
+  const FlightKernels& kernels = flight_kernels();
+  for (int i = 0; i < rows.rows(); ++i)
+    out[i] = kernels.dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(i) * n, combination_.data()) +
+             (offset ? offset[0] : 0.0);
+}
 
 // Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
 void Marcher::open_gates(StageProgram& program, StageState& state) {
@@ -18,7 +36,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
       clamp_.offsets(phase, offset_.data(), rate);
       offset = offset_.data();
     }
-    kernels_.measure(program_.model->measured().view(), slot_count(), slots.data(), weights.data(), offset, out.data());
+    measure_rows(program_.model->measured(), slot_count(), slots.data(), weights.data(), offset, out.data());
   };
   measure(state.gap_weights, program.predictor_phase, false, state.gap);
   state.closed_lanes = 0;
@@ -73,17 +91,17 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
     clamp_.offsets(program.measure_phase, offset_.data(), gated);
     offset = offset_.data();
   }
-  kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.measure_weights.data(),
-                   offset, state.free.data());
+  measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.measure_weights.data(), offset,
+               state.free.data());
   if (state.rate.rows() > 0) {
     if (program_.support) clamp_.offsets(program.rate_phase, offset_.data(), true);
-    kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.rate_weights.data(),
-                     offset, state.rate.data());
+    measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.rate_weights.data(), offset,
+                 state.rate.data());
   }
   if (state.before.rows() > 0) {
     if (program_.support) clamp_.offsets(program.before_phase, offset_.data(), false);
-    kernels_.measure(program_.model->measured().view(), slot_count() + 1, slots.data(), state.before_weights.data(),
-                     offset, state.before.data());
+    measure_rows(program_.model->measured(), slot_count() + 1, slots.data(), state.before_weights.data(), offset,
+                 state.before.data());
   }
   if (state.restored) return state.restored->contact_lanes;
   const Block& lower = gated ? state.gate_lower : lower_;

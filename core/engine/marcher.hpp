@@ -118,6 +118,8 @@ class Marcher {
   void keep_contact(StageState& state);
   // contact_measure.cpp: what the law reads before any effort.
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
+  void measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
+                    const double* offset, double* out);
   void open_gates(StageProgram& program, StageState& state);
 
   // effort_history.cpp: efforts of stages and steps before.

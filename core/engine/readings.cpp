@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/load_window.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -68,6 +69,13 @@ double Marcher::penetration(int lane) const {
   double deepest = 0;
   for (int j = 0; j < rows.rows(); ++j) {
     double sum = 0;
+    if (program_.flight) {
+      const int n = program_.model->rows();
+      const double relative =
+          flight_kernels().dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(j) * n, blocks_[0].data());
+      deepest = std::max(deepest, depth(lane, j, relative, phi));
+      continue;
+    }
     for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
       sum += rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
     deepest = std::max(deepest, depth(lane, j, sum, phi));

@@ -21,8 +21,8 @@ void Marcher::measure_way(const StageProgram& program, StageState& state, const 
     clamp_.offsets(program.motion_phase, offset_.data(), false);
     offset = offset_.data();
   }
-  kernels_.measure(program_.model->contact().view(), slot_count() + 1, slots.data(), state.way_weights.data(), offset,
-                   state.way.data());
+  measure_rows(program_.model->contact(), slot_count() + 1, slots.data(), state.way_weights.data(), offset,
+               state.way.data());
   for (const int lane : touched_) {
     double corrected = 0, size = 0;
     for (int i = 0; i < lower_.rows(); ++i) {

@@ -3,6 +3,7 @@
 // rounds, every-step of the same build as partner.
 //
 //     bench_flight [--rounds N] [--only WORD]
+//     bench_flight --flown N [--only WORD]     N flown marches alone, for a profiler
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -99,11 +100,11 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
 std::vector<Scene> scenes() {
   std::vector<Scene> list;
   for (const char* mass : {"singular", "consistent", "lumped"})
-    for (const double h : {1e-5, 1e-6}) {
+    for (const double h : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
       Scene one{fmt::format("free {} {:g}", mass, h), free_swing(0)};
       one.mass = mass;
       one.h = h;
-      one.duration = h < 5e-6 ? 0.1 : 0.5;
+      one.duration = 0.5;
       list.push_back(one);
     }
   Scene damped{"damped singular 1e-05", free_swing(1e-4)};
@@ -121,10 +122,11 @@ std::vector<Scene> scenes() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int rounds = 1;
+  int rounds = 1, flown_alone = 0;
   std::string only;
   for (int i = 1; i + 1 < argc; ++i) {
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
+    if (std::strcmp(argv[i], "--flown") == 0) flown_alone = std::atoi(argv[i + 1]);
     if (std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
   }
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
@@ -132,6 +134,13 @@ int main(int argc, char** argv) {
   catalogue.open_all(registry);
   for (const Scene& scene : scenes()) {
     if (scene.name.find(only) == std::string::npos) continue;
+    for (int k = 0; k < flown_alone; ++k) {
+      const Outcome alone = march(scene, MarchWay::flights, registry);
+      fmt::print("{:<28} {:.2f} ms, {} of {} steps visited, {} in contact\n", scene.name, alone.nanoseconds / 1e6,
+                 alone.visited, alone.steps, alone.contact_steps);
+      if (!alone.refusal.empty()) fmt::print("    {}\n", alone.refusal);
+    }
+    if (flown_alone > 0) continue;
     std::vector<double> ratios;
     Outcome every, flown;
     for (int round = 0; round < rounds; ++round) {

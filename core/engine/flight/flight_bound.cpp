@@ -77,7 +77,8 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   ModeRoots found;
   const MatrixXd D = rows.change(mode).leftCols(slots_);
   MatrixXd scaled = D;
-  const Eigen::VectorXd scale = balance(scaled);
+  // What is kept is the change of a step: its entries are small by the step, not by round-off.
+  const Eigen::VectorXd scale = balance(scaled, 0);
   const GeneralModes modes = general_modes(scaled);
   if (!modes.found) {
     cause_ = "the roots of a step are not found";

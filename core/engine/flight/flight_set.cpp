@@ -57,6 +57,17 @@ MatrixXd product(const RowVectorXd& a, const RowVectorXd& b) {
   return 0.5 * (a.transpose() * b + b.transpose() * a);
 }
 
+// Whether two watches of the same points watch the same.
+bool same(const StepRows& rows, const FlightWatch& a, const FlightWatch& b) {
+  constexpr double round_off = 1e-12;
+  if (!(a.drive - b.drive).isZero(round_off * (a.drive.norm() + b.drive.norm()))) return false;
+  for (int mode = 0; mode < rows.modes(); ++mode) {
+    const RowVectorXd one = rows.of(mode, a.stage, a.value), other = rows.of(mode, b.stage, b.value);
+    if (!(one - other).isZero(round_off * (one.norm() + other.norm()))) return false;
+  }
+  return true;
+}
+
 double at(const std::vector<double>& weights, int j) {
   return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
 }
@@ -214,7 +225,8 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
       end.lower[static_cast<std::size_t>(point.point)] = -infinity;
       end.upper[static_cast<std::size_t>(point.point)] = infinity;
     }
-    watches.push_back(std::move(end));
+    if (watches.empty() || layer != 0 || program.problem->changed_by_law() || !same(rows, watches.back(), end))
+      watches.push_back(std::move(end));
   }
   if (holds) {
     const FoldedStage& folded = stages.front().folded;
