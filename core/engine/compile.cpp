@@ -320,10 +320,17 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.kind = options.kind;
   const std::string grounded = options.march == MarchWay::every_step ? "" : why_grounded(program, options);
   if (options.march == MarchWay::flights && !grounded.empty()) return refuse_flight(grounded);
-  const bool flies = options.march != MarchWay::every_step && grounded.empty();
-  if (flies && program.kind == OperatorKind::automatic) program.kind = OperatorKind::modal;
+  bool flies = options.march != MarchWay::every_step && grounded.empty();
+  const double by_flights = flies ? predict_flights(*problem, work, options.expected_steps) : 0;
   if (program.kind == OperatorKind::automatic)
     program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
+  const Cost every_step = predict_cost(program.kind, *problem, work, program.width);
+  // A prediction within a factor of two of the other chooses nothing.
+  if (options.march == MarchWay::automatic)
+    flies = flies && 2 * by_flights < every_step.setup_seconds +
+                                          static_cast<double>(options.expected_steps) * every_step.step_seconds;
+  if (flies)
+    program.kind = OperatorKind::modal;
   else if (!kind_applies(program.kind, *problem))
     return Refusal{std::string("the ") + operator_name(program.kind) + " operator does not apply to this structure"};
   const Cost cost = predict_cost(program.kind, *problem, work, program.width);
@@ -363,11 +370,22 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     if (diagonal) program.kind = OperatorKind::diagonal;
   }
   say_what_is_left_out(program);
-  if (options.march == MarchWay::every_step) return program;
-  if (const std::string cause = flies ? let_fly(program, options) : grounded; !cause.empty()) {
-    if (options.march == MarchWay::flights) return refuse_flight(cause);
-    program.left_out.push_back({"flights over steps in which nothing happens", cause});
+  if (!flies) {
+    if (!grounded.empty()) program.every_step_because = grounded;
+    return program;
   }
+  if (const std::string cause = let_fly(program, options); !cause.empty()) {
+    if (options.march == MarchWay::flights) return refuse_flight(cause);
+    // Once more, with the operator that every step is cheapest with.
+    CompileOptions marched = options;
+    marched.march = MarchWay::every_step;
+    ProgramOrRefusal again =
+        compile(problem, program.plan, h, std::move(program.law), std::move(program.lanes), marched);
+    if (auto* other = std::get_if<Program>(&again)) other->every_step_because = cause;
+    return again;
+  }
+  program.predicted_setup_seconds = 0;
+  program.predicted_step_seconds = by_flights / static_cast<double>(std::max(1LL, options.expected_steps));
   return program;
 }
 

@@ -102,6 +102,7 @@ struct Program {
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;
   std::shared_ptr<Flight> flight;  ///< null: every step is marched
+  std::string every_step_because;  ///< why no step can be left out; empty where one could be, or nobody asked
 };
 
 using ProgramOrRefusal = std::variant<Program, Refusal>;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/engine/cost_model.hpp>
 
@@ -67,6 +68,15 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   const double fixed = per_stage + (problem.points() > 0 ? per_contact + per_contact_lane * lanes : 0);
   cost.step_seconds = stages * (nanoseconds * lanes + fixed) * nano;
   return cost;
+}
+
+double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps) {
+  const Cost cost = predict_cost(OperatorKind::modal, problem, work, 1);
+  // As bench_flight measures them: modes, tables, a look.
+  const double n = problem.dofs(),
+               visited = std::min(static_cast<double>(steps), 10 * std::sqrt(static_cast<double>(steps)));
+  const double look = 5e-7 + 2.5e-10 * n * problem.points(), set_up = 3e-9 * n * n * n + 1.5e-5 * n;
+  return set_up + visited * (cost.step_seconds + look);
 }
 
 OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps) {

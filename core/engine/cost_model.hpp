@@ -20,6 +20,10 @@ struct StepWork {
 /// `width`: T.
 Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width);
 
+/// A march of so many steps by flights: of them about ten times their root are visited, as bench_flight counts on beams,
+/// each with a step in modes and a look at what may come. Seconds, set-up included.
+double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps);
+
 /// The cheapest kind that applies for `steps` steps. Modal needs K SPD and few enough dofs for a dense eigenproblem.
 OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ricochet/engine/energy_bounds.hpp>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 
@@ -82,6 +83,7 @@ LaneState Marcher::lane_state(int lane) const {
 void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   LaneSpec& own = program_.lanes[static_cast<std::size_t>(lane)];
   const bool same_law = own.law.values() == spec.law.values();
+  const bool same_stops = own.lower == spec.lower && own.upper == spec.upper;
   own = spec;
   place_lane(lane);
   if (!same_law) prepare_law();
@@ -90,6 +92,8 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   frozen_now_ &= ~(1u << lane);
   for (int k = 0; k < program_.tangents; ++k) frozen_now_ &= ~(1u << tangent_lane(lane, k));
   if (program_.contact) place_stops(lane);
+  if (program_.flight && !(same_law && same_stops))
+    program_.flight->place(own, program_.contact ? program_.law->layer(0) : 0);
   set_state_at(lane, state);
 }
 

@@ -106,6 +106,9 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
         "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
   options.expected_steps = prepared.steps;
+  options.march = study_case.march == "flights"    ? MarchWay::flights
+                  : study_case.march == "auto" ? MarchWay::automatic
+                                               : MarchWay::every_step;
   auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
                           {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
   if (const auto* refusal = std::get_if<Refusal>(&compiled))
@@ -123,6 +126,8 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared) {
   if (prepared.program) {
     record.operator_name = operator_name(prepared.program->kind);
     record.left_out = left_out_pairs(prepared.program->left_out);
+    if (!prepared.program->every_step_because.empty())
+      record.notes.push_back("every step is marched: " + prepared.program->every_step_because);
   } else {
     record.status = "refused";
     record.reason = prepared.refusal;

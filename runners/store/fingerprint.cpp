@@ -72,7 +72,8 @@ std::string Fingerprints::of(const StudyCase& study_case, const std::vector<std:
                   {"elements", study_case.elements},
                   {"step", study_case.step},
                   {"duration", study_case.duration},
-                  {"samples", study_case.samples}};
+                  {"samples", study_case.samples},
+                  {"march", study_case.march}};
   for (const auto& [name, value] : study_case.axes) content["axes"].push_back({name, value});
   if (!study_case.settings.is_null()) content["settings"] = study_case.settings;
   if (study_case.excluded) content["excluded"] = *study_case.excluded;

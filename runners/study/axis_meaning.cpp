@@ -43,7 +43,7 @@ std::optional<ParameterSpec> spec_of(const std::vector<std::string>& path, const
     whole.insert(whole.begin(), "mesh");
   else if (path.size() == 1 && std::find(method_roles.begin(), method_roles.end(), path.front()) != method_roles.end())
     whole.insert(whole.begin(), "methods");
-  else if (path.front() != "step" && path.front() != "steps_per_period")
+  else if (path.front() != "step" && path.front() != "steps_per_period" && path.front() != "march")
     whole.insert(whole.begin(), "scene");
   try {
     return spec_at(study_form(), resolved, whole);

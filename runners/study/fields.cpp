@@ -92,6 +92,13 @@ Field observe(std::vector<std::string> measures) {
   return optional(std::move(field));
 }
 
+Field march() {
+  Field field = word("march", {"auto", "every-step", "flights"}, std::nullopt, "Whether steps without change of contact are left out.");
+  field.axis = field.nullable = true;
+  field.fallback = Json(nullptr);
+  return field;
+}
+
 Field steps_per_period() {
   Field field = integer("steps_per_period", {8, 100000000, false, false}, std::nullopt,
                         "Steps per forcing period: h = 2π/(ω·steps_per_period).");

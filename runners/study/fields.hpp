@@ -33,6 +33,7 @@ Field optional(Field field);
 // The keys that several kinds have.
 Field step();              ///< s, an axis
 Field steps_per_period();  ///< an axis
+Field march();             ///< an axis; null: auto
 Field duration();          ///< s
 Field samples();
 Field budget();  ///< s; null: no limit

@@ -193,6 +193,10 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   if (stepped) check_steps(resolved["step"], duration);
   const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
   const std::vector<int> per_period = by_period ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
+  // A kind without the key marches every step.
+  const bool ways = resolved.contains("march") && !resolved["march"].is_null();
+  const std::vector<std::string> marches = ways ? list_of<std::string>(resolved["march"])
+                                                : std::vector<std::string>{resolved.contains("march") ? "auto" : "every-step"};
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
@@ -217,7 +221,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   Product everything;
   for (const Axis& axis : axes) everything.add(axis.values.size());
   for (const std::size_t size :
-       {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size()})
+       {masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size(), marches.size()})
     everything.add(size);
   everything.refuse_above(largest_study, "");
 
@@ -234,12 +238,14 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   add_columns({{"elements", nullptr}}, study.columns);
   if (stepped) add_columns({{"step", nullptr}}, study.columns);
   if (by_period) add_columns({{"steps_per_period", nullptr}}, study.columns);
+  if (ways) add_columns({{"march", nullptr}}, study.columns);
   add_columns(scenes.front().axes, study.columns);
 
   CaseIds ids;
   Product product;
   for (const std::size_t size :
-       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size()})
+       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size(),
+        marches.size()})
     product.add(size);
   for (; !product.ended(); product.next()) {
     StudyCase one;
@@ -257,6 +263,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
     if (stepped) one.axes.emplace_back("step", one.step);
     one.steps_per_period = per_period[product[6]];
     if (by_period) one.axes.emplace_back("steps_per_period", one.steps_per_period);
+    one.march = marches[product[7]];
+    if (ways) one.axes.emplace_back("march", one.march);
     one.axes.insert(one.axes.end(), scene.axes.begin(), scene.axes.end());
     one.duration = duration;
     one.samples = samples;

@@ -245,7 +245,8 @@ class SchemaWriter {
         {"why", {{"type", "string"}, {"minLength", 1}, {"description", "The reason; the report shows it."}}},
         {"elements", true},
         {"step", true},
-        {"steps_per_period", true}};
+        {"steps_per_period", true},
+        {"march", true}};
     for (const Role role : {Role::mass, Role::contact, Role::time}) {
       properties[role_name(role)] = {{"description", "Name of a method, or a list of names."}};
       for (const std::string& name : registry_.names(role))

@@ -34,6 +34,14 @@ std::string Flight::why_not_held(const Program& program) {
   return "";
 }
 
+// Points that are held elsewhere move otherwise: their sets are made anew.
+void Flight::place(const LaneSpec& lane, double layer) {
+  layer_ = layer;
+  free_->place(lane, layer);
+  sets_.clear();
+  set_ = free_.get();
+}
+
 Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   for (auto& one : sets_)
     if (std::equal(held.begin(), held.end(), one->held.begin(), one->held.end())) return *one;
@@ -108,30 +116,66 @@ FlightSums Flight::fly(long long k, double* const* slots, bool works) {
 }
 
 void Flight::tip_extremes(double& low, double& high) {
-  legs_[0].x = start_;
-  std::copy(start_e_, start_e_ + 3, legs_[0].e);
-  search(0, flown_, low, high);
+  const auto set_leg = [](Leg& leg, const std::vector<double>& x, const double* e) {
+    leg.x = x;
+    std::copy_n(e, 3, leg.e);
+  };
+  set_leg(legs_[0], start_, start_e_);
+  // The last first: most of what comes before it is then known to be no extreme.
+  set_leg(legs_[1], start_, start_e_);
+  set_->motion().advance(flown_ - 1, legs_[1].x.data(), legs_[1].e);
+  double last = 0;
+  set_->tip().values(0, legs_[1].x.data(), legs_[1].e, &last);
+  low = std::min(low, last);
+  high = std::max(high, last);
+  FlightBound* by_four = set_->tip_by_four();
+  if (!by_four || told_by_ends(set_->tip(), legs_[0], flown_, 1, low, high)) {
+    search(set_->tip(), 0, flown_, 1, low, high);
+    return;
+  }
+  for (long long first = 0; first < std::min(4LL, flown_); ++first) {
+    set_leg(legs_[0], start_, start_e_);
+    set_->motion().advance(first, legs_[0].x.data(), legs_[0].e);
+    search(*by_four, 0, (flown_ - first + 3) / 4, 4, low, high);
+  }
 }
 
-// Of the k steps from a leg on: by halves, as far as they may tell something.
-void Flight::search(std::size_t depth, long long k, double& low, double& high) {
-  Leg& leg = legs_[depth];
-  FlightBound& tip = set_->tip();
+// Whether the first of k readings and the last one are all that may be an extreme; these are then told.
+bool Flight::told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, double& low, double& high) {
+  const auto see = [&](double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  };
   tip.look(leg.x.data(), leg.e);
-  const double now = tip.value(0, 0);
-  low = std::min(low, now);
-  high = std::max(high, now);
-  if (k == 1) return;
+  see(tip.value(0, 0));
+  if (k == 1) return true;
   const FlightBound::Range range = tip.range(0, 0, k - 1);
-  if (range.low >= low && range.high <= high) return;
-  Leg& half = legs_[depth + 1];
-  half.x = leg.x;
-  std::copy_n(leg.e, 3, half.e);
-  search(depth + 1, k / 2, low, high);
-  half.x = leg.x;
-  std::copy_n(leg.e, 3, half.e);
-  set_->motion().advance(k / 2, half.x.data(), half.e);
-  search(depth + 1, k - k / 2, low, high);
+  if (range.low >= low && range.high <= high) return true;
+  if (k > 2) {
+    const FlightBound::Range change = tip.range(1, 0, k - 2);
+    if (change.low <= 0 && change.high >= 0) return false;
+  }
+  x_ = leg.x;
+  std::copy_n(leg.e, 3, e_);
+  set_->motion().advance((k - 1) * stride, x_.data(), e_);
+  double last = 0;
+  tip.values(0, x_.data(), e_, &last);
+  see(last);
+  return true;
+}
+
+// Of k readings from a leg on, `stride` steps apart: by halves, as far as they may tell something.
+void Flight::search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high) {
+  Leg& leg = legs_[depth];
+  if (told_by_ends(tip, leg, k, stride, low, high)) return;
+  Leg& next = legs_[depth + 1];
+  next.x = leg.x;
+  std::copy_n(leg.e, 3, next.e);
+  set_->motion().advance(k / 2 * stride, next.x.data(), next.e);
+  search(tip, depth + 1, k - k / 2, stride, low, high);
+  next.x = leg.x;
+  std::copy_n(leg.e, 3, next.e);
+  search(tip, depth + 1, k / 2, stride, low, high);
 }
 
 }  // namespace ricochet

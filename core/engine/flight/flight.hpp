@@ -31,6 +31,9 @@ class Flight {
   /// Whether closed contact flies too, and if not, why.
   const std::string& held_cause() const { return held_cause_; }
 
+  /// Another lane: its stops, and the layer from which the law acts.
+  void place(const LaneSpec& lane, double layer);
+
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
   /// march. `slots`, `e`: the lane's state; `held`: its closed points.
   long long look(const Program& program, const double* const* slots, const double* e, std::span<const HeldPoint> held,
@@ -67,7 +70,9 @@ class Flight {
     Pace pace;
   };
   Kept& kept(std::span<const HeldPoint> held);
-  void search(std::size_t depth, long long k, double& low, double& high);
+  struct Leg;
+  bool told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, double& low, double& high);
+  void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
 
   static std::string why_not_held(const Program& program);
 

@@ -6,6 +6,7 @@
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
+#include <ricochet/engine/flight/flight_motion.hpp>
 
 namespace ricochet {
 namespace {
@@ -41,14 +42,13 @@ struct FlightBound::ModeRoots {
   int rest_steps = 0;
   MatrixXd steady;          // X
   Eigen::VectorXcd phasor;  // of the harmonic part
+  MatrixXd nilpotent;       // N of a double root; empty: there is none
 };
 
-FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches)
-    : modes_(rows.modes()),
-      slots_(rows.slots()),
-      drives_(rows.drive().count()),
-      drive_(rows.drive()),
-      turn_(drive_.change(1)) {
+FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches, int power)
+    : modes_(rows.modes()), slots_(rows.slots()), drives_(rows.drive().count()), power_(power), drive_(rows.drive()) {
+  drive_.angle *= static_cast<double>(1LL << power);
+  turn_ = drive_.change(1);
   const auto n = static_cast<std::size_t>(modes_), width = static_cast<std::size_t>(rows.width());
   for (FlightWatch& watch : watches) {
     Watched& watched = watches_.emplace_back();
@@ -58,7 +58,7 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches)
     watched.watch = std::move(watch);
     for (auto* table : {&watched.value, &watched.change}) table->assign(width * n, 0.0);
     for (auto* array : {&watched.steady_amplitude, &watched.steady_bend, &watched.rest, &watched.now, &watched.step,
-                        &watched.amplitude, &watched.bend})
+                        &watched.amplitude, &watched.bend, &watched.growth, &watched.doubled})
       array->assign(n, 0.0);
     for (auto* array : {&watched.offset, &watched.offset_step, &watched.offset_bend})
       array->assign(static_cast<std::size_t>(points), 0.0);
@@ -66,6 +66,8 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches)
   places_.resize(4 * n);
   real_.resize(n);
   imaginary_.resize(n);
+  grown_amplitude_.resize(n);
+  grown_bend_.resize(n);
   for (int mode = 0; mode < modes_; ++mode) {
     const ModeRoots found = roots(rows, mode);
     if (!cause_.empty()) return;
@@ -73,9 +75,38 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches)
   }
 }
 
+// (D B) of a step of the bound.
+MatrixXd FlightBound::step_change(const StepRows& rows, int mode) const {
+  MatrixXd whole = rows.change(mode);
+  for (int k = 0; k < power_; ++k) double_change(whole, slots_, rows.drive().change(static_cast<double>(1LL << k)));
+  return whole;
+}
+
+// Two slots whose roots coincide away from 1, up to round-off: λ = ½ tr A, N = A/λ − 1, N² = (¼ tr² − det)/λ² (Cayley
+// and Hamilton).
+bool FlightBound::double_root(const MatrixXd& D, ModeRoots& found) {
+  if (slots_ != 2) return false;
+  const MatrixXd A = MatrixXd::Identity(2, 2) + D;
+  const double half = 0.5 * A.trace(), apart = half * half - A.determinant();
+  constexpr double round_off = 1e-14, away = 0.1;
+  if (std::abs(apart) > round_off || std::abs(half) > 1 + grows || std::abs(half - 1) < away || std::abs(half) < away)
+    return false;
+  found.change = Eigen::VectorXcd::Constant(1, Complex(half - 1));
+  found.nilpotent = A / half - MatrixXd::Identity(2, 2);
+  // cosh(i√ε) is 1 up to half a per cent while i√ε ≤ 0.1.
+  longest_ = std::min(longest_, static_cast<long long>(0.1 / std::sqrt(std::max(std::abs(apart), 1e-16))));
+  return true;
+}
+
 FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   ModeRoots found;
-  const MatrixXd D = rows.change(mode).leftCols(slots_);
+  const MatrixXd D = step_change(rows, mode).leftCols(slots_);
+  if (double_root(D, found)) {
+    found.steady = MatrixXd::Zero(slots_, drives_);
+    const MatrixXd B = step_change(rows, mode).rightCols(drives_);
+    steady(D, B, Eigen::VectorXd::Ones(slots_), found);
+    return found;
+  }
   MatrixXd scaled = D;
   // What is kept is the change of a step: its entries are small by the step, not by round-off.
   const Eigen::VectorXd scale = balance(scaled, 0);
@@ -94,6 +125,9 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
       return found;
     }
     kept.push_back(l);
+    const Complex root = 1.0 + change, square = root * root;
+    constexpr double still = 1e-3;
+    alternates_ = alternates_ || std::abs(square * square - 1.0) < still * std::abs(change);
   }
   const auto count = static_cast<Index>(kept.size());
   MatrixXcd V(slots_, count);
@@ -124,8 +158,13 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   found.left = W * scale.cwiseInverse().cast<Complex>().asDiagonal();
   found.rest = MatrixXd::Identity(slots_, slots_) - (found.right * found.left).real();
   found.steady = MatrixXd::Zero(slots_, drives_);
-  const MatrixXd B = rows.change(mode).rightCols(drives_);
-  // In the scaled slots: these are of one size.
+  const MatrixXd B = step_change(rows, mode).rightCols(drives_);
+  steady(scaled, B, scale, found);
+  return found;
+}
+
+// X of the drive, in slots of one size.
+void FlightBound::steady(const MatrixXd& scaled, const MatrixXd& B, const Eigen::VectorXd& scale, ModeRoots& found) {
   const MatrixXd scaled_B = scale.cwiseInverse().asDiagonal() * B;
   if (drive_.harmonic) {
     const double half = std::sin(drive_.angle / 2);
@@ -139,15 +178,19 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   if (drive_.constant)
     found.steady.col(drive_.one()) = scale.asDiagonal() * (-scaled).fullPivLu().solve(scaled_B.col(drive_.one()));
   if (!found.steady.allFinite()) cause_ = "a mode is in resonance with the drive";
-  return found;
 }
 
 // Of one mode in one measure: its value and change, and what bounds them.
 void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched) {
-  const RowVectorXd row = rows.of(mode, watched.watch.stage, watched.watch.value);
+  RowVectorXd row = rows.of(mode, watched.watch.stage, watched.watch.value);
+  const auto next = [&](const RowVectorXd& of) {
+    RowVectorXd change = of.head(slots_) * step_change(rows, mode);
+    if (drives_ > 0) change.tail(drives_) += of.tail(drives_) * turn_;
+    return change;
+  };
+  if (watched.watch.difference) row = next(row);
   put(watched.value, row, modes_, mode);
-  RowVectorXd change = row.head(slots_) * rows.change(mode);
-  if (drives_ > 0) change.tail(drives_) += row.tail(drives_) * turn_;
+  const RowVectorXd change = next(row);
   put(watched.change, change, modes_, mode);
   const auto n = static_cast<std::size_t>(modes_), width = static_cast<std::size_t>(rows.width());
   const auto at = static_cast<std::size_t>(mode);
@@ -167,7 +210,16 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
     ++used;
   };
   const RowVectorXcd own = row.head(slots_).cast<Complex>();
-  for (Index l = 0; l < found.change.size(); ++l) {
+  if (found.nilpotent.size() > 0) {
+    add(own, std::norm(found.change[0]));
+    if (watched.grows.empty()) watched.grows.assign(width * n, 0.0);
+    RowVectorXd whole = RowVectorXd::Zero(rows.width());
+    whole.head(slots_) = row.head(slots_) * found.nilpotent;
+    whole.tail(drives_) = -whole.head(slots_) * found.steady;
+    put(watched.grows, whole, modes_, mode);
+    watched.doubled[at] = std::norm(found.change[0]);
+  }
+  for (Index l = 0; l < found.left.rows(); ++l) {
     const Complex lambda = found.change[l];
     if (lambda.imag() < 0) continue;  // of a conjugate pair
     const double times = lambda.imag() > 0 ? 2 : 1;
@@ -176,7 +228,7 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
   RowVectorXd over = row.head(slots_);
   for (int k = 0; k < found.rest_steps; ++k) {
     add((over * found.rest).cast<Complex>(), 4);
-    over += over * rows.change(mode).leftCols(slots_);
+    over += over * step_change(rows, mode).leftCols(slots_);
   }
   if (drive_.harmonic) {
     const Complex steady = (own * found.phasor)[0] + Complex(row[slots_ + 1], -row[slots_]);
@@ -207,6 +259,10 @@ void FlightBound::look(const double* x, const double* e) {
       kernels.modulus(modes_, real_.data(), imaginary_.data(), watched.weight[l].data(), watched.amplitude.data(),
                       watched.bend.data());
     }
+    if (!watched.grows.empty()) {
+      kernels.row(modes_, slots_, drives_, watched.grows.data(), x, e, watched.growth.data());
+      for (double& growth : watched.growth) growth = std::abs(growth);
+    }
     for (std::size_t i = 0; i < watched.offset.size() && drives_ > 0; ++i) {
       const auto row = static_cast<Index>(i);
       const MatrixXd& own = watched.watch.drive;
@@ -230,8 +286,16 @@ void FlightBound::look(const double* x, const double* e) {
 FlightBound::Range FlightBound::cone(Watched& watched, std::size_t point, double k) {
   const FlightKernels& kernels = flight_kernels();
   if (placed_of_ != &watched || placed_ != static_cast<long long>(k)) {
-    kernels.cone(modes_, k, watched.now.data(), watched.step.data(), watched.amplitude.data(), watched.bend.data(),
-                 places_.data());
+    const double *amplitude = watched.amplitude.data(), *bend = watched.bend.data();
+    if (!watched.grows.empty()) {
+      for (std::size_t j = 0; j < watched.growth.size(); ++j) {
+        grown_amplitude_[j] = 1.005 * (amplitude[j] + k * watched.growth[j]);
+        grown_bend_[j] = bend[j] + (k * watched.doubled[j] + 2 * std::sqrt(watched.doubled[j])) * watched.growth[j];
+      }
+      amplitude = grown_amplitude_.data();
+      bend = grown_bend_.data();
+    }
+    kernels.cone(modes_, k, watched.now.data(), watched.step.data(), amplitude, bend, places_.data());
     placed_of_ = &watched;
     placed_ = static_cast<long long>(k);
   }
@@ -245,6 +309,7 @@ FlightBound::Range FlightBound::cone(Watched& watched, std::size_t point, double
 }
 
 bool FlightBound::holds(long long k) {
+  if (k > longest_) return false;
   for (Watched& watched : watches_) {
     const std::size_t points = watched.offset.size();
     const auto inside = [&](std::size_t i) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <optional>
+#include <limits>
 #include <ricochet/engine/flight/step_rows.hpp>
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@
 ///
 ///     |r Aⁱ x| ≤ a = Σ_l |r V|_l |V⁻¹ x|_l,     |r Aⁱ (A − I)² x| ≤ z = Σ_l |λ_l − 1|² |r V|_l |V⁻¹ x|_l (3)
 ///
+/// (a double root λ of two slots has Aⁱ = λⁱ(1 + i N), N² = 0: a and z then grow by |r N x| and |λ − 1|² of it a step,)
 /// a steady motion under the drive taken off first, and given its own amplitude and its own second difference. A point
 /// h of the modes then stands after i ≤ k steps within
 ///
@@ -21,19 +22,25 @@ namespace ricochet {
 
 /// A linear measure of the motion at several points, and between what it has to stay: strictly.
 struct FlightWatch {
-  int stage = 0;          ///< before which it stands (StepRows::of)
-  Combination value;      ///< of each mode
-  Eigen::MatrixXd rows;   ///< points × modes
-  Eigen::MatrixXd drive;  ///< points × drives: what e adds
+  int stage = 0;            ///< before which it stands (StepRows::of)
+  Combination value;        ///< of each mode
+  bool difference = false;  ///< its change from this step to the next instead
+  Eigen::MatrixXd rows;     ///< points × modes
+  Eigen::MatrixXd drive;    ///< points × drives: what e adds
   std::vector<double> lower, upper;
+  /// What these bounds are: the stops, the stops less the layer from which the law acts, or the watch's own.
+  enum class Bounds { own, stops, layer } bounds = Bounds::own;
 };
 
 class FlightBound {
  public:
-  FlightBound(const StepRows& rows, std::vector<FlightWatch> watches);
+  /// A step of the bound is 2^power of the motion's: what alternates from step to step may then stand still.
+  FlightBound(const StepRows& rows, std::vector<FlightWatch> watches, int power = 0);
 
   /// Why nothing bounds this motion: a mode that grows, roots that coincide; empty where (3) does.
   const std::string& cause() const { return cause_; }
+  /// Whether some mode repeats itself after four steps, and not after one.
+  bool alternates() const { return alternates_; }
 
   /// Looks at a state; `x`: slots × modes, `e`: drives.
   void look(const double* x, const double* e);
@@ -60,25 +67,33 @@ class FlightBound {
     std::vector<double> value, change;                 // rows of a mode, width × modes
     std::vector<std::vector<double>> real, imaginary;  // of the eigenvectors' shares, width × modes each
     std::vector<std::vector<double>> weight;           // |λ − 1|², modes
+    std::vector<double> doubled;                       // |λ − 1|² of a double root, modes; else 0
+    std::vector<double> grows;                         // r N of a double root, width × modes; empty: there is none
     std::vector<double> steady_amplitude, steady_bend,
         rest;  // under a drive of amplitude 1, and under the constant one
     // Of the last look:
-    std::vector<double> now, step, amplitude, bend;
+    std::vector<double> now, step, amplitude, bend, growth;
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
     std::size_t tightest = 0;
   };
   Range cone(Watched& watched, std::size_t point, double k);
   struct ModeRoots;
   ModeRoots roots(const StepRows& rows, int mode);
+  bool double_root(const Eigen::MatrixXd& D, ModeRoots& found);
+  void steady(const Eigen::MatrixXd& scaled, const Eigen::MatrixXd& B, const Eigen::VectorXd& scale, ModeRoots& found);
   void shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched);
 
-  int modes_, slots_, drives_;
+  Eigen::MatrixXd step_change(const StepRows& rows, int mode) const;
+
+  int modes_, slots_, drives_, power_;
   FlightDrive drive_;
   Eigen::MatrixXd turn_;  // R of one step
   std::vector<Watched> watches_;
-  std::vector<double> places_, real_, imaginary_;
+  std::vector<double> places_, real_, imaginary_, grown_amplitude_, grown_bend_;
   long long placed_ = -1;
+  long long longest_ = std::numeric_limits<long long>::max();  // for which the bound holds
   const Watched* placed_of_ = nullptr;
+  bool alternates_ = false;
   std::string cause_;
 };
 

@@ -174,22 +174,21 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   const LaneSpec& lane = program.lanes.front();
   const MatrixXd measured = dense(program.model->measured(), rows_), contact = dense(program.model->contact(), rows_);
   std::vector<FlightWatch> watches;
-  const auto watch = [&](int stage, const Combination& value, const MatrixXd& points, const PhaseWeights& phase,
-                         double shift) {
+  const auto watch = [&](int stage, const Combination& value, const MatrixXd& points, const MatrixXd& drive,
+                         FlightWatch::Bounds bounds) {
     FlightWatch one;
     one.stage = stage;
     one.value = value;
     one.rows = onto(points);
-    one.drive = (points * lift_of(value, lifted)).rowwise() + harmonic(phase, drive_);
-    for (Index i = 0; i < points.rows(); ++i) {
-      one.lower.push_back(lane.lower[i] + shift);
-      one.upper.push_back(lane.upper[i] - shift);
-    }
-    for (const HeldPoint& point : held_) {
-      one.lower[static_cast<std::size_t>(point.point)] = -infinity;
-      one.upper[static_cast<std::size_t>(point.point)] = infinity;
-    }
-    watches.push_back(std::move(one));
+    one.drive = drive;
+    one.bounds = bounds;
+    set_bounds(one, lane, layer);
+    return one;
+  };
+  const auto reads = [&](int stage, const Combination& value, const PhaseWeights& phase) {
+    watches.push_back(watch(stage, value, measured,
+                            (measured * lift_of(value, lifted)).rowwise() + harmonic(phase, drive_),
+                            FlightWatch::Bounds::layer));
   };
   const int after = static_cast<int>(program.stages.size());
   if (program.contact) {
@@ -198,33 +197,20 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
       // Work is given back where some was taken, and nowhere else.
       if (!stage.reads_contact || stage.restores > 0) continue;
       if (stage.gate) {
-        watch(k, stage.gate->predictor, measured, stage.predictor_phase, layer);
+        reads(k, stage.gate->predictor, stage.predictor_phase);
         continue;
       }
-      watch(k, stage.measure, measured, stage.measure_phase, layer);
-      if (stage.compliance && stage.compliance->before)
-        watch(k, *stage.compliance->before, measured, stage.before_phase, layer);
+      reads(k, stage.measure, stage.measure_phase);
+      if (stage.compliance && stage.compliance->before) reads(k, *stage.compliance->before, stage.before_phase);
     }
     // The position after the step too, whatever the law reads: a point beyond its stop is something to be told.
     Combination position;
     position.slots.assign(static_cast<std::size_t>(slots_), 0.0);
     position.slots[0] = 1;
-    FlightWatch end;
     const PhaseWeights phase({{1, 1}}, program.problem->support.pulsation, program.h);
-    end.stage = after;
-    end.value = position;
-    end.rows = onto(contact);
-    MatrixXd next = lift_[0];
-    next += lift_[0] * drive_.change(1);
-    end.drive = (contact * next).rowwise() + harmonic(phase, drive_);
-    for (Index i = 0; i < contact.rows(); ++i) {
-      end.lower.push_back(lane.lower[i]);
-      end.upper.push_back(lane.upper[i]);
-    }
-    for (const HeldPoint& point : held_) {
-      end.lower[static_cast<std::size_t>(point.point)] = -infinity;
-      end.upper[static_cast<std::size_t>(point.point)] = infinity;
-    }
+    const MatrixXd next = lift_[0] + lift_[0] * drive_.change(1);
+    FlightWatch end = watch(after, position, contact, (contact * next).rowwise() + harmonic(phase, drive_),
+                            FlightWatch::Bounds::stops);
     if (watches.empty() || layer != 0 || program.problem->changed_by_law() || !same(rows, watches.back(), end))
       watches.push_back(std::move(end));
   }
@@ -260,7 +246,15 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
               harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
   tip.lower = {-infinity};
   tip.upper = {infinity};
-  tip_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{std::move(tip)});
+  FlightWatch change = tip;
+  change.difference = true;
+  change.drive = tip.drive * drive_.change(1);
+  tip_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{tip, change});
+  if (tip_->alternates()) {
+    change.drive = tip.drive * drive_.change(4);
+    tip_by_four_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{std::move(tip), std::move(change)}, 2);
+    if (!tip_by_four_->cause().empty()) tip_by_four_.reset();
+  }
   motion_ = std::make_unique<FlightMotion>(rows, powers);
   works_ = std::make_unique<FlightWorks>(rows, forms(program, rows, mass, lifted), powers);
 }
@@ -332,6 +326,27 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
           product(weights[mode] * rows.of(mode, 0, pushed.value), padded(along));
   }
   return forms;
+}
+
+// Held points are watched by their efforts.
+void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const {
+  if (watch.bounds == FlightWatch::Bounds::own) return;
+  const double shift = watch.bounds == FlightWatch::Bounds::layer ? layer : 0;
+  const auto points = static_cast<std::size_t>(lane.lower.size());
+  watch.lower.resize(points);
+  watch.upper.resize(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    watch.lower[i] = lane.lower[static_cast<Index>(i)] + shift;
+    watch.upper[i] = lane.upper[static_cast<Index>(i)] - shift;
+  }
+  for (const HeldPoint& point : held_) {
+    watch.lower[static_cast<std::size_t>(point.point)] = -infinity;
+    watch.upper[static_cast<std::size_t>(point.point)] = infinity;
+  }
+}
+
+void FlightSet::place(const LaneSpec& lane, double layer) {
+  for (int i = 0; i < bound_->watches(); ++i) set_bounds(bound_->watch(i), lane, layer);
 }
 
 // What the lift adds to a combination, over e.

@@ -26,6 +26,9 @@ class FlightSet {
   const std::string& cause() const { return cause_; }
   const std::vector<HeldPoint>& held() const { return held_; }
 
+  /// Takes the stops of another lane, where none of them is held.
+  void place(const LaneSpec& lane, double layer);
+
   /// x of these modes from the slots (rows each), and back. False where the held points are not where they come to
   /// rest, up to round-off: the transient is not over.
   bool enter(const double* const* slots, const double* e, std::vector<double>& x) const;
@@ -34,8 +37,10 @@ class FlightSet {
   FlightBound& bound() { return *bound_; }
   const FlightMotion& motion() const { return *motion_; }
   const FlightWorks& works() const { return *works_; }
-  /// The tip after the step (watch 0), unbounded.
+  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded.
   FlightBound& tip() { return *tip_; }
+  /// The same of every fourth step; null where no mode alternates.
+  FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// Efforts of the held points in the step that begins at (x, e), N.
   void efforts(const double* x, const double* e, std::vector<double>& out);
   int modes() const { return modes_; }
@@ -43,6 +48,7 @@ class FlightSet {
  private:
   void hold(const Program& program);
   bool rest(const Program& program);
+  void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
   Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
                            const Eigen::MatrixXd& lifted);
@@ -51,14 +57,14 @@ class FlightSet {
   int rows_ = 0, modes_ = 0, slots_ = 0;
   FlightDrive drive_;
   std::string cause_;
-  std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
+  std::vector<double> metres_;                    // what a slot has to be multiplied by to be a length
   Eigen::MatrixXd basis_;                         // Ψ; empty: the modes of the structure
   Eigen::MatrixXd lever_;                         // L, rows × held
   std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
   Eigen::MatrixXd held_rows_;                     // H_I
-  std::unique_ptr<FlightBound> bound_, tip_;
+  std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
   std::unique_ptr<FlightMotion> motion_;
   std::unique_ptr<FlightWorks> works_;
   int effort_watch_ = -1;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 
 namespace ricochet {
@@ -49,6 +50,18 @@ class SectionMarch::Watch final : public StepObserver {
     pushed_ |= view.contact_lanes;
     for (std::uint32_t mask = (pushed_ | closed_) & keeping_; mask != 0; mask &= mask - 1)
       look(marcher, view, std::countr_zero(mask));
+  }
+
+  // Contact alone is read of most steps, and flights keep it.
+  long long may_skip(const Marcher&) override {
+    return plan_.section == SectionKind::extremum ? 0 : std::numeric_limits<long long>::max();
+  }
+  void skipped(Marcher&, const SkippedSteps& steps) override {
+    if ((keeping_ & 1U) == 0 || steps.held.empty()) return;
+    Orbit& orbit = *orbits_.front();
+    orbit.contact_steps += steps.steps;
+    for (BriefContact& contact : orbit.brief)
+      if (contact.point >= 0) contact.steps += steps.steps;
   }
 
   void step_done(Marcher& marcher) override {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/engine/flight/flight.hpp>
 
 namespace ricochet {
 
@@ -22,11 +23,42 @@ void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
       given_ += program.momentum * view.effort[0][j * marcher.width()];
   const double t = view.time + program.facts.instant * marcher.program().h;
   if (!program.closes_instant || !(lasts_ > 0) || t < from_ || t > to_) return;
-  // Welford's sums: no difference of large squares.
-  weight_ += lasts_;
-  const double force = given_ / lasts_, apart = force - mean_;
-  mean_ += lasts_ / weight_ * apart;
-  squares_ += lasts_ * apart * (force - mean_);
+  add(given_ / lasts_, lasts_);
+}
+
+// Welford's sums: no difference of large squares.
+void ForceWindow::add(double force, double lasts) {
+  weight_ += lasts;
+  const double apart = force - mean_;
+  mean_ += lasts / weight_ * apart;
+  squares_ += lasts * apart * (force - mean_);
+}
+
+// Of steps with several instants each has a weight of its own: they are all seen.
+long long ForceWindow::may_skip(const Marcher& marcher) {
+  if (to_ >= from_ && marcher.program().stages.size() > 1) return 0;
+  return behind_.may_skip(marcher);
+}
+
+void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  behind_.skipped(marcher, steps);
+  const StageProgram& program = marcher.program().stages.front();
+  const double h = marcher.program().h, lasts = program.momentum, first = steps.from + program.facts.instant * h;
+  if (to_ < from_ || !(lasts > 0) || !program.reads_contact) return;
+  if (!steps.held.empty()) {
+    long long step = 0;
+    steps.flight->each_effort([&](std::span<const double> efforts) {
+      const double t = first + static_cast<double>(step++) * h;
+      double force = 0;
+      for (const double p : efforts) force += p;
+      if (t >= from_ && t <= to_) add(force, lasts);
+    });
+    return;
+  }
+  // Instants without a force, in one: they have no spread of their own.
+  const double last = first + static_cast<double>(steps.steps - 1) * h;
+  const double begin = std::ceil((std::max(from_, first) - first) / h), end = std::floor((std::min(to_, last) - first) / h);
+  if (end >= begin) add(0, (end - begin + 1) * lasts);
 }
 
 double ForceWindow::deviation() const {

@@ -19,12 +19,17 @@ class ForceWindow final : public StepObserver {
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
 
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+
   /// Whether any instant of contact fell into the window.
   bool told() const { return weight_ > 0; }
   double mean() const { return mean_; }
   double deviation() const;
 
  private:
+  void add(double force, double lasts);
+
   StepObserver& behind_;
   double from_ = 0, to_ = -1;
   double given_ = 0, lasts_ = 0;  // by the instant under way

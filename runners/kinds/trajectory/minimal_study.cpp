@@ -22,13 +22,15 @@ Json::json_pointer scene_pointer(std::string column) {
 Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   Json scene = results.study.at("scene"), methods = Json::object();
   for (const std::string& role : roles) methods[role] = Json::object();
-  Json elements = 1, step;
+  Json elements = 1, step, march;
   for (const auto& [column, value] : record.axes) {
     const std::string role = column.substr(0, column.find('.'));
     if (column == "elements")
       elements = value;
     else if (column == "step")
       step = value;
+    else if (column == "march")
+      march = value;
     else if (std::find(roles.begin(), roles.end(), role) != roles.end())
       methods[role][column == role ? "name" : column.substr(role.size() + 1)] = value;
     else
@@ -51,6 +53,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   for (const char* key : {"duration", "samples", "window", "snapshots", "budget"})
     if (const auto found = results.study.find(key); found != results.study.end() && !found->is_null())
       study[key] = *found;
+  if (!march.is_null()) study["march"] = march;
   return study;
 }
 

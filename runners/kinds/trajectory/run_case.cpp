@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -48,6 +49,14 @@ class Sampler final : public StepObserver {
     low_ = std::min(low_, tip);
     high_ = std::max(high_, tip);
     deepest_ = std::max(deepest_, audit_.penetration(0));
+  }
+  long long may_skip(const Marcher& marcher) override { return behind_.may_skip(marcher); }
+  // Nothing passes a stop in steps that are left out; where the tip went is searched for.
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override {
+    behind_.skipped(marcher, steps);
+    if (!marcher.status(0).running) return;
+    steps.flight->tip_extremes(low_, high_);
+    largest_tip_ = std::max({largest_tip_, std::abs(low_), std::abs(high_)});
   }
   void take(const Marcher& marcher) {
     const EnergySample& energy = audit_.energy(0);
@@ -160,7 +169,8 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.left_out = left_out_pairs(prepared.program->left_out);
   plan.predicted_seconds =
       prepared.program->predicted_setup_seconds +
-      static_cast<double>(prepared.steps) * (prepared.program->predicted_step_seconds + audit_seconds_per_step);
+      static_cast<double>(prepared.steps) *
+          (prepared.program->predicted_step_seconds + (prepared.program->flight ? 0.0 : audit_seconds_per_step));
   return plan;
 }
 
@@ -189,7 +199,9 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
 
   const double run = thread_seconds(), budget = budget_of(study_case);
   bool spent = false;
+  // Steps between two looks at the clock; those that are left out cost it nothing.
   long long chunk = 16;
+  const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
   marcher.start(&sampler);
   if (marcher.step() > 0) sampler.take(marcher);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
@@ -205,7 +217,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.
       chunk =
-          now - before < 0.01 ? std::min(2 * chunk, 20000LL) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
+          now - before < 0.01 ? std::min(2 * chunk, longest_chunk) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
     }
     if (marcher.any_running() && marcher.step() == target) sampler.take(marcher);
   }
@@ -221,6 +233,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   add_contact(record, recorder, marcher);
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
+  put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));
   means.put(record);
   if (forces.told()) {
     put_measure(record, "contact_force_mean", forces.mean());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/scene/assembly.hpp>
 
 namespace ricochet {
@@ -71,6 +72,23 @@ void SnapshotTaker::step_done(Marcher& marcher) {
   if (next_ > count_ || marcher.step() < step_of(next_) || !marcher.status(0).running) return;
   take(marcher.position(0), marcher.support(0, marcher.time()), marcher.time());
   while (next_ <= count_ && step_of(next_) <= marcher.step()) ++next_;
+}
+
+// Up to the step before the next snapshot.
+long long SnapshotTaker::may_skip(const Marcher& marcher) {
+  const long long most = behind_.may_skip(marcher);
+  return next_ > count_ ? most : std::min(most, std::max(0LL, step_of(next_) - 1 - marcher.step()));
+}
+
+void SnapshotTaker::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  behind_.skipped(marcher, steps);
+  if (steps.held.empty() || given_.empty()) return;
+  const double weight = marcher.program().stages.front().momentum;
+  steps.flight->each_effort([&](std::span<const double> efforts) {
+    for (std::size_t i = 0; i < efforts.size(); ++i)
+      given_[static_cast<std::size_t>(steps.held[i].point)] += weight * efforts[i];
+  });
+  any_given_ = any_given_ || weight != 0;
 }
 
 void SnapshotTaker::take(const Eigen::VectorXd& position, double support, double time) {

@@ -18,6 +18,8 @@ class SnapshotTaker final : public StepObserver {
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
 
   bool taken() const { return count_ > 0; }
   Snapshots finish() const;

@@ -23,6 +23,8 @@ class WindowMeans final : public StepObserver {
   WindowMeans(const Json& settings, const EnergyAudit& audit, StepObserver& behind);
 
   void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
+  long long may_skip(const Marcher& marcher) override { return parts_ > 0 ? 0 : behind_.may_skip(marcher); }
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override { behind_.skipped(marcher, steps); }
   void step_done(Marcher& marcher) override;
 
   /// Puts each mean, and half the width of its interval as confidence.NAME; a note where the run ended before the

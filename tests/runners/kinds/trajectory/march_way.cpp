@@ -1,0 +1,117 @@
+// Steps that a trajectory leaves out: its rows, its curve and its window are those of the march of every step.
+#include <catch2/catch.hpp>
+#include <ricochet/loader/catalogue.hpp>
+
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/store/record_values.hpp"
+#include "runners/study/load_study.hpp"
+
+using namespace ricochet;
+
+namespace {
+
+const std::atomic<bool> never_stopped = false;
+
+Json shaken_study() {
+  return Json::parse(R"({
+    "name": "shaken", "kind": "trajectory",
+    "scene": {"structure": {"type": "beam", "length": 1.5, "section": {"type": "given", "EI": 300, "rhoS": 1},
+                            "damping": {"stiffness": 1e-4}},
+              "stops": {"lower": -0.02, "upper": 0.02, "at": "nodes"},
+              "support": {"amplitude": 0.015, "pulsation": 20}},
+    "mesh": {"elements": 6},
+    "methods": {"mass": {"name": "singular", "velocity": "P1"}, "contact": "signorini", "time": "newmark-dumont-paoli"},
+    "step": 1e-5, "duration": 0.5, "samples": 50, "snapshots": 20, "window": {"from": 0.1, "to": 0.4},
+    "march": ["every-step", "flights"]})");
+}
+
+struct Shaken {
+  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
+  Registry registry;
+  Study study(const Json& text) { return parse_study(text.dump(1), catalogue, registry); }
+  std::vector<CaseRecord> of(const Json& text) {
+    std::vector<CaseRecord> out;
+    for (const StudyCase& one : study(text).cases) out.push_back(run_case(one, registry, never_stopped));
+    return out;
+  }
+  std::string error(const Json& text) {
+    try {
+      study(text);
+    } catch (const InputError& wrong) {
+      return wrong.pointer() + ": " + wrong.what();
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a trajectory that leaves out steps has the measures, the curve and the impacts of one that marches them") {
+  const std::vector<CaseRecord> records = Shaken().of(shaken_study());
+  REQUIRE(records.size() == 2);
+  const CaseRecord &every = records[0], &flown = records[1];
+  REQUIRE(every.status == "done");
+  REQUIRE(flown.status == "done");
+  CHECK(axis(flown, "march").text() == "flights");
+  CHECK(measure(every, "steps_visited").value() == Approx(50000).margin(1));
+  CHECK(measure(flown, "steps_visited").value() < 10000);
+  for (const auto& [name, value] : every.measures) {
+    INFO(name);
+    // What is of round-off's size, and what tells of the computation.
+    if (name == "steps_visited" || name == "microseconds_per_step" || name == "balance_residual" ||
+        name == "largest_step_gain" || name == "deepest_penetration" || name == "law_iterations" ||
+        name == "complementarity_residual" || name == "energy_start" || name == "scheme_energy_start")
+      continue;
+    REQUIRE(measure(flown, name));
+    CHECK(*measure(flown, name) == Approx(*measure(every, name)).epsilon(1e-6).margin(1e-12));
+  }
+  REQUIRE(flown.curve.columns.size() == every.curve.columns.size());
+  for (std::size_t c = 0; c < every.curve.columns.size(); ++c) {
+    const std::vector<double>&a = every.curve.columns[c], &b = flown.curve.columns[c];
+    INFO(every.curve.names[c]);
+    REQUIRE(a.size() == b.size());
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      largest = std::max(largest, std::abs(a[i]));
+      apart = std::max(apart, std::abs(a[i] - b[i]));
+    }
+    // A velocity over one step has its round-off over h.
+    CHECK(apart <= 1e-5 * largest + 1e-12);
+  }
+}
+
+TEST_CASE("how a march goes is an axis of the study, and absent it is chosen case by case") {
+  Shaken shaken;
+  Json text = shaken_study();
+  const Study two = shaken.study(text);
+  CHECK(std::find(two.columns.begin(), two.columns.end(), "march") != two.columns.end());
+  CHECK(two.cases[0].id != two.cases[1].id);
+  text["exclude"] = Json::array({{{"march", "flights"}, {"why", "every step shall be seen"}}});
+  CHECK(shaken.study(text).cases[1].excluded == "every step shall be seen");
+  text.erase("exclude");
+  text.erase("march");
+  const Study one = shaken.study(text);
+  CHECK(std::find(one.columns.begin(), one.columns.end(), "march") == one.columns.end());
+  REQUIRE(one.cases.size() == 1);
+  CHECK(one.cases[0].march == "auto");
+  const CaseRecord chosen = shaken.of(text).front();
+  CHECK(measure(chosen, "steps_visited").value() < 10000);
+}
+
+TEST_CASE("a march by flights that cannot fly is refused with the reason, and one that may choose marches") {
+  Shaken shaken;
+  Json text = shaken_study();
+  text["scene"]["load"] = "0.1*sin(3*t)";
+  const std::vector<CaseRecord> records = shaken.of(text);
+  CHECK(records[0].status == "done");
+  CHECK(records[1].status == "refused");
+  CHECK_THAT(records[1].reason, Catch::Contains("the load depends on time") && Catch::Contains("march every step"));
+  text["march"] = "auto";
+  const CaseRecord chosen = shaken.of(text).front();
+  CHECK(chosen.status == "done");
+  CHECK_THAT(chosen.notes.back(), Catch::Contains("every step is marched") || Catch::Contains("Delassus"));
+  text["march"] = "fly";
+  CHECK_THAT(shaken.error(text), Catch::Contains("/march") && Catch::Contains("every-step"));
+  text["march"] = 3;
+  CHECK_THAT(shaken.error(text), Catch::Contains("/march"));
+}
