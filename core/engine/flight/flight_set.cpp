@@ -74,6 +74,29 @@ double at(const std::vector<double>& weights, int j) {
 
 }  // namespace
 
+// H z of slots that go on as ξ: from the update in which the least is lost by differences. What the measure leaves for
+// it would be the second difference of a position, at round-off of the position itself.
+RowVectorXd FlightSet::unknown_at_rest(const Stage& plan, const MatrixXd& steady) const {
+  const MatrixXd change = steady * drive_.change(1);
+  RowVectorXd best = RowVectorXd::Zero(drive_.count());
+  double least_lost = infinity;
+  for (int j = 0; j < slots_; ++j) {
+    const Combination& update = plan.update[static_cast<std::size_t>(j)];
+    if (update.z == 0) continue;
+    RowVectorXd row = change.row(j), size = row.cwiseAbs();
+    for (int i = 0; i < slots_; ++i) {
+      const double weight = at(update.slots, i) - (i == j ? 1.0 : 0.0);
+      row -= weight * steady.row(i);
+      size += (weight * steady.row(i)).cwiseAbs();
+    }
+    if (const double lost = size.sum() / std::abs(update.z); lost < least_lost) {
+      least_lost = lost;
+      best = row / update.z;
+    }
+  }
+  return best;
+}
+
 // ξ of the held points: the scheme's own steady answer to stops that move with the clamp.
 bool FlightSet::rest(const Program& program) {
   const Stage& plan = program.plan.stages.front();
@@ -104,9 +127,7 @@ bool FlightSet::rest(const Program& program) {
     const int one = drive_.one();
     steady.col(one) = (MatrixXd::Identity(slots_, slots_) - held).fullPivLu().solve(moves * (bound[one] / push));
     if (!steady.allFinite()) return false;
-    RowVectorXd unknown = bound;
-    for (int j = 0; j < slots_; ++j) unknown -= at(stage.measure.slots, j) * steady.row(j);
-    rest_unknown_.push_back(unknown / push);
+    rest_unknown_.push_back(unknown_at_rest(plan, steady));
     rest_.push_back(std::move(steady));
   }
   return true;

@@ -48,6 +48,7 @@ class FlightSet {
  private:
   void hold(const Program& program);
   bool rest(const Program& program);
+  Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
   Eigen::MatrixXd lift_of(const Combination& c, const Eigen::MatrixXd& lifted) const;
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
