@@ -5,7 +5,7 @@
 // is about; `values` are {view, quantity, of}, `of` a number of a case or null. Its charts name their `cases`.
 {
   const { numberOf, textOf, roleOf, Interval } = ricochet, { escape, text, unit, mark, count } = ricochet.format;
-  const mostCharts = 24, mostRows = 60, mostColumns = 96, mostCells = 4000, mostWritten = 12, listed = 10;
+  const mostCharts = 24, mostRows = 60, mostColumns = 96, mostCells = 4000, mostWritten = 12, listed = 10, aroundMap = 135;
   // Pale to dark, so that the order shows without colours too.
   const ramp = ["#F6F2DC", "#D3E6C4", "#93CBB5", "#4EA3B6", "#2C6FA3", "#22366F"];
 
@@ -57,20 +57,29 @@
   class CaseMap extends ricochet.Figure {
     constructor(description, section) {
       super(description, section);
-      const { view, cases, along } = description.map;
-      Object.assign(this, { data: view, cases, ...layout(view, cases, along) });
-      this.across = ordered(view, cases, this.columns);
-      const rows = ordered(view, cases, this.rows), most = Math.max(1, Math.floor(mostCells / this.across.length));
-      this.down = rows.slice(0, most);
-      this.left = rows.length - this.down.length;
+      const { view, cases } = description.map;
+      Object.assign(this, { data: view, cases });
       this.body = document.createElement("div");
+      this.body.className = "waits";
       this.chosen = document.createElement("div");
       section.append(this.body, this.chosen);
       this.body.addEventListener("click", (event) => this.clicked(event));
       this.body.addEventListener("mouseover", ({ target }) => { const cell = target.closest("[data-case]"); if (cell && !cell.title) cell.title = this.said(this.caseAt(cell)); });
-      this.fill();
+      this.arrange();
+      ricochet.later.wait(this.body, () => { this.fill(); this.body.removeAttribute("class"); this.body.removeAttribute("style"); });
     }
-    show(view) { super.show(view); this.fill(); }
+    arrange() {
+      Object.assign(this, layout(this.data, this.cases, this.description.map.along));
+      this.across = ordered(this.data, this.cases, this.columns);
+      const rows = ordered(this.data, this.cases, this.rows), most = Math.max(1, Math.floor(mostCells / this.across.length));
+      this.down = rows.slice(0, most);
+      this.left = rows.length - this.down.length;
+      this.body.style.cssText = "--lines:" + (this.down.length + this.columns.length) + ";--beside:" + aroundMap + "px";
+    }
+    show(view) {
+      super.show(view);
+      if (!ricochet.later.waits(this.body)) this.fill();
+    }
     get value() { return this.description.map.values[this.view] || null; }
     caseAt(cell) { return this.data.data.byId.get(cell.dataset.case); }
     number(one) { const found = one.status === "done" && this.value ? this.value.of(one) : null; return Number.isFinite(found) ? found : null; }
