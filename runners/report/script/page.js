@@ -40,6 +40,7 @@
   // Brings a figure to the page: `put` places its section, and its charts are drawn as they come into sight.
   ricochet.mount = (description, put) => {
     const section = ricochet.figureSection(description);
+    ricochet.theme.paint(section);
     put(section);
     const figure = new (description.map ? ricochet.CaseMap : ricochet.Figure)(description, section);
     figures.push(figure);
@@ -91,8 +92,8 @@
     });
   }
 
-  window.addEventListener("beforeprint", () => ricochet.paper.prepare());
-  window.addEventListener("afterprint", () => ricochet.paper.finish());
+  window.addEventListener("beforeprint", () => { ricochet.theme.onPaper(true); ricochet.paper.prepare(); });
+  window.addEventListener("afterprint", () => { ricochet.paper.finish(); ricochet.theme.onPaper(false); });
 
   // The summary takes its figure when it is asked for; printed from there, it is all that is printed.
   function startSummary() {
@@ -112,6 +113,7 @@
       box.querySelectorAll("table").forEach(ricochet.startSorting);
       if (box.querySelector("#cases")) ricochet.startCaseTable();
       watchWidth(box);
+      ricochet.theme.paint(box);
     });
     // Every digit of a number that is shown short.
     document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -84,14 +85,8 @@ void require_doors(const Json& page, const std::string& kind) {
 TEST_CASE("the film shows the state of the slider's instant, and its map where points are pushed",
           "[report][browser]") {
   if (left_out()) return;
-  const Json beam = Json::parse(R"({
-    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2.0e11, "density": 8000, "mass": null, "stiffness": null,
-                            "force": null, "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}},
-              "initial": {"displacement": "0.04*x^2", "velocity": "-2*x"}},
-    "mesh": {"elements": 10}, "methods": {"mass": ["consistent", "singular"], "contact": "signorini", "time": "newmark-dumont-paoli"},
-    "step": 1e-4, "duration": 0.3, "snapshots": 100})");
-  const Json said =
-      read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}), reported("beam", beam)});
+  const Json said = read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}),
+                                       {"beam", read_text(report_of("studies", "film"))}});
   check_film(said.at("mass"));
   check_film(said.at("beam"));
   CHECK_THAT(said.at("beam").at("film").at("scale").get<std::string>(), Contains("times as large as lengths"));

@@ -86,6 +86,16 @@ TEST_CASE(
                     {"keys", {"Enter"}},
                     {"evaluate", {"ricochet.sidePanel.shown().id"}}}),
               step("looked for", {{"keys", {"Control+f"}}, {"evaluate", {here}}}),
+              step("phone", {{"width", 420},
+                             {"height", 900},
+                             {"before", {to_map}},
+                             {"evaluate",
+                              {"new Promise((done) => { const box = document.querySelector('#figure-tip .scroll'), "
+                               "until = performance.now() + 5000, "
+                               "answer = () => [box.dataset.wide || '', box.querySelector('th.own').offsetHeight, "
+                               "box.querySelector('td').getBoundingClientRect().left < innerWidth]; (function look() { "
+                               "box.dataset.wide || performance.now() > until ? done(answer()) : "
+                               "requestAnimationFrame(look); })(); })"}}}),
               step("bare", {{"bare", true}, {"evaluate", {"document.querySelectorAll('#cases tbody tr').length"}}}),
               step("printed", {{"evaluate", {here}}, {"pdf", pdf}})});
   const Json& read = said.at("read").at("before");
@@ -100,6 +110,10 @@ TEST_CASE(
   CHECK(read.at(5) == refused);
   CHECK(said.at("read").at("values").at(0) == results.cases.front().id);
   CHECK(said.at("looked for").at("values").at(0) == Json({0, 5, results.cases.size()}));
+  const Json phone = said.at("phone").at("values").at(0);
+  CHECK(phone.at(0) == "more");
+  CHECK(phone.at(1) < 60);  // words of a header are not broken letter by letter
+  CHECK(phone.at(2) == true);
   CHECK(said.at("bare").at("values").at(0) == results.cases.size());
   CHECK(said.at("printed").at("values").at(0) == opened);
   const std::string text = words_of("pdftotext '" + pdf + "' -");

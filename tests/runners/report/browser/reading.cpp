@@ -168,6 +168,55 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
     }
 }
 
+TEST_CASE("a film and the patches of legends stand out on a dark screen, and have the colours of paper in print",
+          "[report][browser]") {
+  if (left_out()) return;
+  const std::string seen = R"js((() => {
+    if (!ricochet.film.films) ricochet.film.load();
+    const { contrast, channels, ink } = ricochet.theme, paper = getComputedStyle(document.body).backgroundColor, names = [...document.querySelectorAll(".film-name")].map((name) => getComputedStyle(name).color);
+    const drawn = ricochet.film.films.map((film) => ricochet.theme.colour(film.colour)), patches = [...document.querySelectorAll(".legend line")].map((line) => line.getAttribute("stroke"));
+    return [Math.min(...names.concat(drawn, ink()).map((one) => contrast(channels(one), channels(paper)))), drawn, ink(), patches, names.map(channels)];
+  })())js";
+  const std::string printed = "(() => { dispatchEvent(new Event('beforeprint')); const out = " + seen +
+                              "; dispatchEvent(new Event('afterprint')); return out; })()";
+  const Json said = driven("reading-film", {{{"name", "film"},
+                                             {"page", report_of("studies", "film")},
+                                             {"dark", true},
+                                             {"evaluate", {seen, printed, seen}},
+                                             {"turn", {seen}}}})
+                        .at("film");
+  const Json &dark = said.at("values").at(0), &paper = said.at("values").at(1), &light = said.at("turned").at(0);
+  CHECK(dark.at(0) >= 4.5);
+  CHECK(light.at(0) >= 3.8);  // Okabe and Ito's orange on white
+  CHECK(paper.at(1) == Json({"#0072B2", "#D55E00"}));
+  CHECK(paper.at(1) == light.at(1));
+  CHECK(paper.at(2) == "#222222");
+  CHECK(paper.at(3) == light.at(3));
+  CHECK(paper.at(3) != dark.at(3));
+  CHECK(paper.at(4) == light.at(4));
+  CHECK(said.at("values").at(2) == dark);
+}
+
+TEST_CASE("a list of studies is read on a phone, one after the other", "[report][browser]") {
+  if (left_out()) return;
+  std::string folders;
+  for (const char* kind : {"film", "stability"})
+    folders += " '" + std::filesystem::path(report_of("index", kind)).parent_path().string() + "'";
+  const std::string file = (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "index" / "index.html").string();
+  words_of(std::string(RICOCHET_COMMAND) + " report" + folders + " --out '" + file + "'");
+  const char* const cells =
+      "[...document.querySelectorAll('.studies tbody :is(th, td)')].map((cell) => "
+      "cell.getBoundingClientRect()).map((box) "
+      "=> box.width > 200 && box.right <= innerWidth)";
+  const Json said =
+      driven("reading-index",
+             {{{"name", "index"}, {"page", file}, {"width", 420}, {"height", 900}, {"evaluate", {page_width, cells}}}})
+          .at("index")
+          .at("values");
+  CHECK(said.at(0) == 420);
+  CHECK(said.at(1) == Json(std::vector<bool>(10, true)));
+}
+
 TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
   if (left_out()) return;
   // What stands on paper is drawn from the colours as they are said.
