@@ -63,6 +63,7 @@
       Object.assign(this, { data: view, cases });
       this.body = document.createElement("div");
       this.body.className = "waits";
+      section.classList.add("mapped");
       this.chosen = document.createElement("div");
       section.append(this.body, this.chosen);
       this.body.addEventListener("click", (event) => this.clicked(event));
