@@ -24,7 +24,8 @@
     [...factors.map((factor) => ricochet.shorten(factor)), others].forEach((name, k) => {
       if (!rows.some((row) => row.factor === name)) return;
       const colour = name === others ? grey : ricochet.lighten(ricochet.methodColours[k], 0.35);
-      const label = { show: true, position: "inside", formatter: "{@label}", color: "#222222", fontSize: 10, lineHeight: 12 };
+      // Dark words on any screen, where the bars are bright: a colour by name is not carried over.
+      const label = { show: true, position: "inside", formatter: "{@label}", color: name === others ? "#222222" : "black", fontSize: 10, lineHeight: 12 };
       ricochet.draw(out, rows, { x: "share", y: "measure" }, { type: "bar", name, stack: "shares", barWidth: 34, color: colour, itemStyle: { color: colour, borderColor: "#ffffff", borderWidth: 1 }, label }, { factor: name });
       legend.push(ricochet.swatch(name, colour));
     });

@@ -190,6 +190,7 @@ std::string case_table_html(const CaseView& view) {
   else
     with.set("full", Fill::type::bool_true);
   with.set("rows", rows);
+  if (results.cases.size() > most_full_rows) with.set("later", Fill::type::bool_true);
   const std::vector<std::string> constants = view.constants();
   if (!constants.empty()) with.set("constants", fmt::format("{}", fmt::join(constants, " · ")));
   bool any = false;

@@ -5,7 +5,7 @@
 // is about; `values` are {view, quantity, of}, `of` a number of a case or null. Its charts name their `cases`.
 {
   const { numberOf, textOf, roleOf, Interval } = ricochet, { escape, text, unit, mark, count } = ricochet.format;
-  const mostCharts = 24, mostRows = 60, mostColumns = 96, mostCells = 4000, mostWritten = 12, listed = 10;
+  const mostCharts = 24, mostRows = 60, mostEmpty = 2, mostColumns = 96, mostCells = 4000, mostWritten = 12, listed = 10, aroundMap = 135;
   // Pale to dark, so that the order shows without colours too.
   const ramp = ["#F6F2DC", "#D3E6C4", "#93CBB5", "#4EA3B6", "#2C6FA3", "#22366F"];
 
@@ -25,6 +25,8 @@
     for (const column of movable) {
       if (many(rows) <= mostRows) break;
       if (many([column, ...columns]) > mostColumns) continue;
+      // A parameter of a few methods would leave most of its columns empty to all others.
+      if (many([column, ...columns]) * many(rows.filter((other) => other !== column)) > mostEmpty * cases.length) continue;
       columns = [column, ...columns];
       rows = rows.filter((other) => other !== column);
     }
@@ -57,20 +59,30 @@
   class CaseMap extends ricochet.Figure {
     constructor(description, section) {
       super(description, section);
-      const { view, cases, along } = description.map;
-      Object.assign(this, { data: view, cases, ...layout(view, cases, along) });
-      this.across = ordered(view, cases, this.columns);
-      const rows = ordered(view, cases, this.rows), most = Math.max(1, Math.floor(mostCells / this.across.length));
-      this.down = rows.slice(0, most);
-      this.left = rows.length - this.down.length;
+      const { view, cases } = description.map;
+      Object.assign(this, { data: view, cases });
       this.body = document.createElement("div");
+      this.body.className = "waits";
+      section.classList.add("mapped");
       this.chosen = document.createElement("div");
       section.append(this.body, this.chosen);
       this.body.addEventListener("click", (event) => this.clicked(event));
       this.body.addEventListener("mouseover", ({ target }) => { const cell = target.closest("[data-case]"); if (cell && !cell.title) cell.title = this.said(this.caseAt(cell)); });
-      this.fill();
+      this.arrange();
+      ricochet.later.wait(this.body, () => { this.fill(); this.body.removeAttribute("class"); this.body.removeAttribute("style"); });
     }
-    show(view) { super.show(view); this.fill(); }
+    arrange() {
+      Object.assign(this, layout(this.data, this.cases, this.description.map.along));
+      this.across = ordered(this.data, this.cases, this.columns);
+      const rows = ordered(this.data, this.cases, this.rows), most = Math.max(1, Math.floor(mostCells / this.across.length));
+      this.down = rows.slice(0, most);
+      this.left = rows.length - this.down.length;
+      this.body.style.cssText = "--lines:" + (this.down.length + this.columns.length) + ";--beside:" + aroundMap + "px";
+    }
+    show(view) {
+      super.show(view);
+      if (!ricochet.later.waits(this.body)) this.fill();
+    }
     get value() { return this.description.map.values[this.view] || null; }
     caseAt(cell) { return this.data.data.byId.get(cell.dataset.case); }
     number(one) { const found = one.status === "done" && this.value ? this.value.of(one) : null; return Number.isFinite(found) ? found : null; }
@@ -92,6 +104,7 @@
       const scale = this.scale(), { map } = this.description, heads = this.columns.length ? '<p class="fine">Columns: ' + escape(this.heads) + "</p>" : "";
       this.body.innerHTML = this.legend(scale) + heads + '<div class="scroll tall"><table class="map"><caption class="hidden">' + escape(this.description.title) + "</caption><thead>" + this.head() + "</thead><tbody>" + this.rowsOf(scale) +
         "</tbody></table></div>" + (this.left ? '<p class="fine">' + this.left + " more rows: cases.csv has them.</p>" : "") + (map.values.length ? this.extremes() : "");
+      ricochet.watchWidth(this.body.querySelector(".scroll"));
       if (this.used.size) this.body.insertAdjacentHTML("beforeend", '<p class="fine key">' + escape(ricochet.keyTo(this.used)) + "</p>");
     }
     legend({ range, low, high, logarithmic }) {
@@ -119,7 +132,7 @@
           const found = line.find(({ at }) => at === r), last = level === sides.length - 1;
           if (!found) return "";
           const said = escape(this.word(found.one, found.columns));
-          return '<th scope="row" rowspan="' + found.span + '">' + (last ? this.button(r, said) : said) + "</th>";
+          return '<th scope="row"' + (last ? ' class="own"' : "") + ' rowspan="' + found.span + '">' + (last ? this.button(r, said) : said) + "</th>";
         }).join("") || '<th scope="row">' + this.button(r, "all cases") + "</th>";
         const found = new Map(row.cases.map((one) => [ricochet.keyOf(this.columns.map((column) => textOf(one, column))), one]));
         return "<tr>" + heads + this.across.map(({ cases: [own] }) => this.cell(found.get(ricochet.keyOf(this.columns.map((column) => textOf(own, column)))), scale, written)).join("") + "</tr>";
@@ -185,5 +198,5 @@
     }
     return out;
   };
-  Object.assign(ricochet, { CaseMap, mostCharts });
+  Object.assign(ricochet, { CaseMap, mapLayout: layout, mostCharts });
 }

@@ -1,7 +1,6 @@
 // The table of all cases: sorted by a click on a header, filtered by words, by conditions on columns and by status; what it shows is to be had as CSV.
 ricochet.startCaseTable = () => {
   const table = document.getElementById("cases");
-  if (!table) return;
   const all = (selector, from) => Array.from(from.querySelectorAll(selector));
   const body = table.tBodies[0], rows = Array.from(body.rows), words = document.getElementById("filter"), shown = document.getElementById("shown");
   const heads = all("thead th", table), columns = heads.map((head) => head.dataset.column), statuses = all("[data-status]", document.querySelector("#all-cases .controls"));

@@ -4,15 +4,15 @@
 
   // A view of named rows, the first on top; `along` is the horizontal axis, `height` that of a row.
   ricochet.namedRows = (names, x, along, height = rowHeight) => {
-    const longest = Math.max(0, ...names.map((name) => name.length)), most = window.innerWidth < 600 ? 130 : 250, width = Math.min(most, 14 + letter * longest);
+    const longest = Math.max(0, ...names.map((name) => name.length)), most = window.innerWidth < 600 ? 130 : 250, width = Math.min(most, 14 + letter * longest), lines = Math.ceil(1.2 * letter * longest / most);
     const y = {
       type: "category", data: names, inverse: true, axisTick: { show: false }, axisLine: { show: true, lineStyle: { color: ricochet.faint } },
-      axisLabel: { color: ricochet.ink, fontSize: 11, width: width - 10, overflow: "truncate", interval: 0 },
+      axisLabel: { color: ricochet.ink, fontSize: 11, lineHeight: 12, width: width - 10, overflow: "break", interval: 0 },
     };
     const out = ricochet.view(x, ["", "1"], along, y);
     Object.assign(out.option.grid, { left: width + 4, right: 24 });
     // Rows have no window: a drag along x would lose them.
-    return Object.assign(out, { height: frame + height * names.length });
+    return Object.assign(out, { height: frame + Math.max(height, 12 * lines + 4) * names.length });
   };
   const dot = (name, colour, symbol, size, z = 3) => ({ type: "scatter", name, symbol, symbolSize: size, color: colour, itemStyle: { color: colour }, z });
   // A hollow one, which another fits into.

@@ -45,7 +45,6 @@
       const later = new IntersectionObserver((entries) => { if (entries.some((one) => one.isIntersecting)) { later.disconnect(); this.load(); } }, { rootMargin: "400px" });
       later.observe(section);
       window.addEventListener("resize", () => this.films && this.draw());
-      window.addEventListener("beforeprint", () => this.films || this.load());
     }
     shots(id) {
       if (!this.known.has(id)) this.known.set(id, new ricochet.Snapshots(this.data, this.data.byId.get(id)));
@@ -67,7 +66,8 @@
       this.section.querySelector('[data-film="maps"]').replaceChildren(...this.films.map(({ name, colour }) => {
         const box = document.createElement("figure"), caption = document.createElement("figcaption"), canvas = document.createElement("canvas");
         caption.textContent = name;
-        caption.style.color = colour;
+        caption.className = "film-name";
+        caption.dataset.colour = colour;
         canvas.className = "film-map";
         canvas.setAttribute("role", "img");
         canvas.setAttribute("aria-label", "Displacement over time and place: " + name);
@@ -80,7 +80,15 @@
         canvas.addEventListener("pointermove", (event) => { if (event.buttons & 1) jump(event); });
         return map;
       });
-      this.go(Math.min(this.k, this.films[0].shots.count - 1));
+      this.k = Math.min(this.k, this.films[0].shots.count - 1);
+      this.paint();
+      this.go(this.k);
+    }
+    // In the colours of what it is seen on.
+    paint() {
+      if (!this.films) return;
+      this.section.querySelectorAll(".film-name").forEach((name) => { name.style.color = ricochet.theme.colour(name.dataset.colour); });
+      this.draw();
     }
     goTo(time) { this.go(this.films[0].shots.nearest(time)); }
     go(k) {
@@ -92,7 +100,7 @@
     draw() {
       const time = this.films[0].shots.t[this.k], { text, shown } = ricochet.format;
       for (const film of this.films) film.k = film.shots === this.films[0].shots ? this.k : film.shots.nearest(time);
-      this.scale.textContent = ricochet.drawStage(this.stage, this.films, this.overlay.checked);
+      this.scale.textContent = ricochet.drawStage(this.stage, this.films.map((film) => ({ ...film, colour: ricochet.theme.colour(film.colour) })), this.overlay.checked);
       this.maps.forEach((map, f) => map.draw(this.films[f].k));
       const words = this.films.map(({ shots, k }) => "tip " + text(shots.tip(k), 4) + " m" + (shots.contacts(k).length ? ", pushed at " + shots.contacts(k).length : ""));
       this.now.textContent = "t = " + shown(time, 5) + " s: " + words.join(" · ");

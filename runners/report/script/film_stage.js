@@ -41,12 +41,12 @@
   const roomOf = (context) => { const { width, height } = context.canvas.getBoundingClientRect(); return { width, height }; };
   // A canvas as fine as the screen, empty, and its colours those of the page.
   function fresh(canvas) {
-    const context = canvas.getContext("2d"), { width, height } = roomOf(context), fine = window.devicePixelRatio || 1, style = getComputedStyle(canvas);
+    const context = canvas.getContext("2d"), { width, height } = roomOf(context), fine = window.devicePixelRatio || 1;
     canvas.width = Math.max(1, Math.round(width * fine));
     canvas.height = Math.max(1, Math.round(height * fine));
     context.setTransform(fine, 0, 0, fine, 0, 0);
     context.font = "12px system-ui, sans-serif";
-    return { context, width, height, ink: style.color };
+    return { context, width, height, ink: ricochet.theme.ink() };
   }
 
   // How lengths become pixels in a box: `along` of positions, `across` of displacements.

@@ -7,16 +7,23 @@
   const ofPage = (event) => { if (event.target.closest && event.target.closest("[_echarts_instance_]")) event.stopPropagation(); };
   for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) document.addEventListener(name, ofPage, { capture: true, passive: true });
 
-  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys.
+  // Says of a box whether its table is wider than it, and whether there is more to the right; such a box can be reached and scrolled by keys. All boxes are
+  // measured before any is changed: a page is laid out once for all of them.
+  const resized = new Set(), widths = new ResizeObserver((entries) => entries.forEach(({ target }) => lookAt(target)));
+  function lookAt(box) {
+    if (!resized.size) requestAnimationFrame(() => {
+      const found = Array.from(resized, (one) => [one, one.scrollWidth - one.clientWidth, one.scrollLeft]);
+      resized.clear();
+      for (const [one, more, at] of found) {
+        if (more > 1) { one.dataset.wide = at < more - 1 ? "more" : "all"; one.tabIndex = 0; }
+        else { delete one.dataset.wide; one.removeAttribute("tabindex"); }
+      }
+    });
+    resized.add(box);
+  }
   function watchWidth(box) {
-    const look = () => {
-      const more = box.scrollWidth - box.clientWidth;
-      if (more > 1) { box.dataset.wide = box.scrollLeft < more - 1 ? "more" : "all"; box.tabIndex = 0; }
-      else { delete box.dataset.wide; box.removeAttribute("tabindex"); }
-    };
-    box.addEventListener("scroll", look, { passive: true });
-    new ResizeObserver(look).observe(box);
-    look();
+    box.addEventListener("scroll", () => lookAt(box), { passive: true });
+    widths.observe(box);
   }
   ricochet.watchWidth = watchWidth;
 
@@ -33,6 +40,7 @@
   // Brings a figure to the page: `put` places its section, and its charts are drawn as they come into sight.
   ricochet.mount = (description, put) => {
     const section = ricochet.figureSection(description);
+    ricochet.theme.paint(section);
     put(section);
     const figure = new (description.map ? ricochet.CaseMap : ricochet.Figure)(description, section);
     figures.push(figure);
@@ -84,8 +92,8 @@
     });
   }
 
-  window.addEventListener("beforeprint", () => ricochet.paper.prepare());
-  window.addEventListener("afterprint", () => ricochet.paper.finish());
+  window.addEventListener("beforeprint", () => { ricochet.theme.onPaper(true); ricochet.paper.prepare(); });
+  window.addEventListener("afterprint", () => { ricochet.paper.finish(); ricochet.theme.onPaper(false); });
 
   // The summary takes its figure when it is asked for; printed from there, it is all that is printed.
   function startSummary() {
@@ -99,8 +107,14 @@
 
   document.addEventListener("DOMContentLoaded", () => {
     document.querySelectorAll("table.sortable, table.cases").forEach(ricochet.startSorting);
-    ricochet.startCaseTable();
+    if (document.getElementById("cases")) ricochet.startCaseTable();
     document.querySelectorAll(".scroll").forEach(watchWidth);
+    ricochet.later.startTables((box) => {
+      box.querySelectorAll("table").forEach(ricochet.startSorting);
+      if (box.querySelector("#cases")) ricochet.startCaseTable();
+      watchWidth(box);
+      ricochet.theme.paint(box);
+    });
     // Every digit of a number that is shown short.
     document.addEventListener("mouseover", ({ target }) => { if (target.dataset && target.dataset.value && !target.title) target.title = target.dataset.value; });
     startFigures();

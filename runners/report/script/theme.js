@@ -1,7 +1,7 @@
 // Charts say their colours for white paper. On a dark screen one rule carries each over: greys run from the page's paper to its ink, pale fills are as near
 // to the dark paper as they were to white, and other hues are lightened until they stand out. Pictures and paper stay as they are said.
 {
-  const dark = window.matchMedia("(prefers-color-scheme: dark)"), enough = 4.5, pale = 0.62, white = [255, 255, 255], black = 0x22;
+  const dark = window.matchMedia("(prefers-color-scheme: dark)"), enough = 4.5, pale = 0.67, white = [255, 255, 255], black = 0x22;
   const variable = (name) => channels(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 
   function channels(text) {
@@ -33,7 +33,7 @@
   }
   // A colour as it is drawn on this screen; what is no colour stays as it is.
   function colour(text) {
-    const rgb = dark.matches && typeof text === "string" && channels(text);
+    const rgb = dark.matches && !paper && typeof text === "string" && channels(text);
     if (!rgb) return text;
     const on = carried(rgb, variable("--paper"), variable("--ink")).map(Math.round);
     return rgb.length > 3 ? "rgba(" + on.join(",") + "," + rgb[3] + ")" : "#" + on.map((c) => c.toString(16).padStart(2, "0")).join("");
@@ -52,23 +52,34 @@
     return carry({ ...option, ...(tooltip ? { tooltip } : {}) }, "");
   }
 
-  // Patches of colour in the page's own text.
-  function paint() {
-    for (const patch of document.querySelectorAll(".swatch[style]")) {
+  // Patches of colour in the page's own text, or in a part of it.
+  function paint(part = document) {
+    for (const patch of part.querySelectorAll(".swatch[style]")) {
       patch.dataset.colour = patch.dataset.colour || patch.style.backgroundColor;
       patch.style.backgroundColor = colour(patch.dataset.colour);
     }
-    for (const part of document.querySelectorAll(".legend svg [stroke], .legend svg [fill]"))
+    for (const mark of part.querySelectorAll(".legend svg [stroke], .legend svg [fill]"))
       for (const name of ["stroke", "fill"]) {
-        if (!part.hasAttribute(name)) continue;
-        part.dataset[name] = part.dataset[name] || part.getAttribute(name);
-        part.setAttribute(name, colour(part.dataset[name]));
+        if (!mark.hasAttribute(name)) continue;
+        mark.dataset[name] = mark.dataset[name] || mark.getAttribute(name);
+        mark.setAttribute(name, colour(mark.dataset[name]));
       }
+  }
+
+  // While the page is printed, its own patches and words have the colours of paper.
+  let paper = false;
+  const ink = () => (paper ? "#222222" : getComputedStyle(document.documentElement).getPropertyValue("--ink").trim());
+  function onPaper(on) {
+    paper = on;
+    paint();
+    if (ricochet.film && on && !ricochet.film.films) ricochet.film.load();
+    else if (ricochet.film) ricochet.film.paint();
   }
 
   const redraws = new Map();
   dark.addEventListener("change", () => {
     paint();
+    if (ricochet.film) ricochet.film.paint();
     for (const [chart, redraw] of redraws) chart.isDisposed() ? redraws.delete(chart) : redraw();
   });
   // A chart of this screen. `redraw` draws it again when the screen turns dark or light; without it, the last option is.
@@ -80,5 +91,5 @@
     return chart;
   }
 
-  Object.assign(ricochet, { openChart, theme: { colour, paint, contrast, channels } });
+  Object.assign(ricochet, { openChart, theme: { colour, ink, paint, onPaper, contrast, channels } });
 }

@@ -42,12 +42,12 @@
     }
     // Cells that `wanted` takes in one colour, the others clear; several pixels a cell, so that edges stay sharp.
     series([name, colour], wanted) {
-      let canvas = null;
-      const draw = () => {
+      const drawn = new Map();   // by colour: that of a dark screen is not that of paper
+      const draw = (fill) => {
         const columns = this.xs.length, rows = this.ys.length, each = Math.max(1, Math.ceil(1000 / Math.max(columns, rows)));
-        canvas = Object.assign(document.createElement("canvas"), { width: each * columns, height: each * rows });
+        const canvas = Object.assign(document.createElement("canvas"), { width: each * columns, height: each * rows });
         const context = canvas.getContext("2d");
-        context.fillStyle = colour;
+        context.fillStyle = fill;
         for (let row = 0; row < rows; ++row)
           for (let from = 0; from < columns;) {
             let to = from;
@@ -55,11 +55,12 @@
             if (to > from) context.fillRect(each * from, each * (rows - 1 - row), each * (to - from), each);
             from = Math.max(to, from + 1);
           }
+        drawn.set(fill, canvas);
         return canvas;
       };
       const render = (params, api) => {
-        const low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(3)]);
-        return { type: "image", style: { image: canvas || draw(), x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
+        const fill = api.visual("color") || colour, low = api.coord([api.value(0), api.value(2)]), high = api.coord([api.value(1), api.value(3)]);
+        return { type: "image", style: { image: drawn.get(fill) || draw(fill), x: low[0], y: high[1], width: high[0] - low[0], height: low[1] - high[1] } };
       };
       return { type: "custom", name, tags: [name], renderItem: render, encode: { x: [0, 1], y: [2, 3] }, clip: true, progressive: 0, color: colour, itemStyle: { color: colour }, data: [[this.across.low, this.across.high, this.up.low, this.up.high]] };
     }

@@ -42,7 +42,7 @@
       caption = curves.colours() + " Closed: the worst of several sets of points held on both sides. Hollow: marginal roots. ✕: observed unstable where the spectrum is not.";
       legend.push(...curves.legend());
       for (const one of curves.charts((facet) => heights.map((height, k) => chart(stability, height, facet, contact, ranges[k]))))
-        charts.push(Object.assign(one, { title: contact + (one.title === "all cases" ? "" : " · " + one.title) }));
+        charts.push(Object.assign(one, { part: contact, title: contact + (one.title === "all cases" ? "" : " · " + one.title) }));
     }
     return [{ id: "spectral-radius", title: "Spectral radius of one step", caption, views: heights.map((height) => height.name), charts, legend: ricochet.firstOfName(legend), measured: stability.measured }];
   });

@@ -66,7 +66,7 @@
           const one = facet.cases.find((other) => numberOf(other, column) === value);
           return { value, low: at[k], high: at[k + 1], one, cells: stability.cells(one, contact), limits: stability.limits(one, contact) };
         });
-        return { cases: facet.cases, by: others, title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
+        return { cases: facet.cases, by: others, part: contact, title: contact + (facet.label ? " · " + facet.label : ""), views: [this.draw(bands)], notes: this.notes(bands, contact) };
       }).filter(Boolean);
     }
     draw(bands) {

@@ -1,13 +1,12 @@
 #include "tests/runners/report/browser/browser.hpp"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/report/rendered.hpp"
 
 namespace ricochet::browser {
@@ -57,29 +56,19 @@ Json read_back(const std::string& folder, const std::vector<Page>& pages) {
   const fs::path here = fs::path(RICOCHET_BINARY_DIR) / "browser" / folder;
   fs::remove_all(here);
   fs::create_directories(here);
-  Json names = Json::array();
+  Json steps = Json::array(), out;
   for (const Page& page : pages) {
-    names.push_back(page.name);
-    std::ofstream(here / (page.name + ".html"), std::ios::binary) << with_probe(page);
+    const fs::path file = here / (page.name + ".html");
+    std::ofstream(file, std::ios::binary) << with_probe(page);
+    steps.push_back(
+        {{"name", page.name}, {"page", file.string()}, {"width", 1300}, {"height", 1800}, {"evaluate", {"probed"}}});
   }
-  std::string gallery = content(source / "gallery.html");
-  gallery.replace(gallery.find("PAGES"), 5, names.dump());
-  std::ofstream(here / "gallery.html", std::ios::binary) << gallery;
-  const std::string command =
-      "sh '" + (source / "open.sh").string() + "' '" + (here / "gallery.html").string() + "' '" + here.string() + "'";
-  INFO("what the browser left is in " << here);
-  const int status = std::system(command.c_str());
-  REQUIRE(WIFEXITED(status));
-  REQUIRE(WEXITSTATUS(status) == 0);
-  const std::string dom = content(here / "dom.html"), opening = "id=\"said\">";
-  const size_t from = dom.find(opening), to = dom.find("</script>", from);
-  REQUIRE(from != std::string::npos);
-  const std::string said = dom.substr(from + opening.size(), to - from - opening.size());
-  REQUIRE(!said.empty());
-  Json out = Json::parse(said);
-  for (const Page& page : pages) {
-    INFO("page " << page.name);
-    REQUIRE(out.at(page.name).at("errors") == Json::array());
+  INFO("what the browser was given is in " << here);
+  Json answers = driven(folder, steps);
+  for (auto& [name, answer] : answers.items()) {
+    INFO("page " << name);
+    out[name] = std::move(answer.at("values").at(0));
+    REQUIRE(out[name].at("errors") == Json::array());
   }
   return out;
 }

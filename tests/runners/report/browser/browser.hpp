@@ -49,4 +49,7 @@ bool says(const Json& texts, const std::string& part);
 /// That each chart is drawn in each view, and that the page's controls did what they say.
 void require_works(const Json& page, size_t cases);
 
+/// That a click on a dot of each figure, or Enter on the row of a case, opens the case; that › and Escape work there.
+void require_doors(const Json& page, const std::string& kind);
+
 }  // namespace ricochet::browser

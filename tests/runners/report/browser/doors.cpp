@@ -1,11 +1,11 @@
-// Every dot is a door: a click on what is drawn of a case, or Enter on its row, opens the case, in a report of each
-// kind; and the film moves.
+// Every dot is a door: a click on what is drawn of a case, or Enter on its row, opens the case; and the film moves.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A study of tests/runners/report/studies as the command reports it; `change` is what is different in it.
-Page reported(const std::string& kind, const std::string& name, const Json& change = Json::object()) {
+/// The study of a trajectory as the command reports it when something is different in it.
+Page reported(const std::string& name, const Json& change) {
   const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "doors" / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
-  Json study = Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/" + kind + ".json"));
+  Json study = Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
   study.merge_patch(change);
   write_text(folder / "study.json", study.dump(1));
   const std::string command = RICOCHET_COMMAND " run '" + (folder / "study.json").string() + "' --out '" +
@@ -30,28 +30,6 @@ Page reported(const std::string& kind, const std::string& name, const Json& chan
   REQUIRE(std::system(command.c_str()) != -1);
   REQUIRE(fs::exists(folder / "there" / "report.html"));
   return {name, read_text(folder / "there" / "report.html")};
-}
-
-void check_doors(const Json& page, const std::string& kind) {
-  INFO(kind);
-  size_t doors = 0;
-  for (const Json& one : page.at("figures")) {
-    if (!one.contains("door") || one.at("door").is_null()) continue;
-    const Json& door = one.at("door");
-    INFO(one.at("id") << ": " << door);
-    ++doors;
-    for (const char* what : {"opened", "one_of", "says_id"}) CHECK(door.at(what) == true);
-    CHECK(door.at("facts") > 4);
-    const std::string id = door.at("id"), command = door.at("commands")[0];
-    CHECK_THAT(command, Catch::Matchers::StartsWith("ricochet case ") && Catch::Matchers::EndsWith(id));
-    CHECK_THAT(door.at("commands")[1].get<std::string>(), Contains(id + " --study"));
-  }
-  CHECK(doors > 0);
-}
-
-void check_row(const Json& page, const std::string& kind) {
-  INFO(kind << " " << page.at("row"));
-  for (const char* what : {"opened", "next", "closed", "focus"}) CHECK(page.at("row").at(what) == true);
 }
 
 void check_film(const Json& page) {
@@ -79,37 +57,36 @@ void check_film(const Json& page) {
 
 }  // namespace
 
-TEST_CASE("every dot of every kind is a door to its case", "[report][browser]") {
-  if (left_out()) return;
-  const std::vector<std::string> marched = {"trajectory", "convergence", "work-precision", "stability"};
-  const std::vector<std::string> swept = {"bifurcation", "basins"};
-  std::vector<Page> pages;
-  for (const std::string& kind : marched) pages.push_back(reported(kind, kind));
-  for (const std::string& kind : swept) pages.push_back(reported(kind, kind));
-  const Json said = read_back("doors-read", pages);
-  for (const std::string& kind : marched) {
-    check_doors(said.at(kind), kind);
-    check_row(said.at(kind), kind);
+namespace ricochet::browser {
+
+void require_doors(const Json& page, const std::string& kind) {
+  INFO(kind);
+  // A click on a diagram or on basins opens an orbit or a cell, which have tests of their own.
+  const bool swept = kind == "bifurcation" || kind == "basins";
+  size_t doors = 0;
+  for (const Json& one : page.at("figures")) {
+    if (swept || !one.contains("door") || one.at("door").is_null()) continue;
+    const Json& door = one.at("door");
+    INFO(one.at("id") << ": " << door);
+    ++doors;
+    for (const char* what : {"opened", "one_of", "says_id"}) CHECK(door.at(what) == true);
+    CHECK(door.at("facts") > 4);
+    const std::string id = door.at("id"), command = door.at("commands")[0];
+    CHECK_THAT(command, Catch::Matchers::StartsWith("ricochet case ") && Catch::Matchers::EndsWith(id));
+    CHECK_THAT(door.at("commands")[1].get<std::string>(), Contains(id + " --study"));
   }
-  for (const std::string& kind : swept) check_row(said.at(kind), kind);
-  // What the page holds of a trajectory: its curves, its portrait, its impacts, its ledger.
-  const Json& door = figure(said.at("trajectory"), "tip").at("door");
-  CHECK(door.at("plots") == 4);
-  for (const char* part : {"Phase portrait", "Measures", "Impacts", "Where its energy came from and went"})
-    CHECK(says(door.at("headings"), part));
+  CHECK((doors > 0) == !swept);
+  INFO(page.at("row"));
+  for (const char* what : {"opened", "next", "closed", "focus"}) CHECK(page.at("row").at(what) == true);
 }
+
+}  // namespace ricochet::browser
 
 TEST_CASE("the film shows the state of the slider's instant, and its map where points are pushed",
           "[report][browser]") {
   if (left_out()) return;
-  const Json beam = Json::parse(R"({
-    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2.0e11, "density": 8000, "mass": null, "stiffness": null,
-                            "force": null, "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}},
-              "initial": {"displacement": "0.04*x^2", "velocity": "-2*x"}},
-    "mesh": {"elements": 10}, "methods": {"mass": ["consistent", "singular"], "contact": "signorini", "time": "newmark-dumont-paoli"},
-    "step": 1e-4, "duration": 0.3, "snapshots": 100})");
-  const Json said = read_back("film", {reported("trajectory", "mass", {{"snapshots", 150}, {"samples", 300}}),
-                                       reported("trajectory", "beam", beam)});
+  const Json said = read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}),
+                                       {"beam", read_text(report_of("studies", "film"))}});
   check_film(said.at("mass"));
   check_film(said.at("beam"));
   CHECK_THAT(said.at("beam").at("film").at("scale").get<std::string>(), Contains("times as large as lengths"));

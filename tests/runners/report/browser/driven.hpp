@@ -7,10 +7,14 @@
 /// Reports read as people read them: on a phone with a finger, on paper, on a dark screen, by keys. See drive.js.
 namespace ricochet::browser {
 
-/// Runs a study of tests/runners/report/studies by the command, once per test (its folder); returns its report.
+/// The report of a study of tests/runners/report/studies that the command ran in a folder: run once for all tests, and
+/// anew when the command, its methods or the study are newer.
 std::string report_of(const std::string& folder, const std::string& kind);
 
 /// What drive.js answers to these steps, by their names; fails where a page met an error.
 nlohmann::json driven(const std::string& folder, const nlohmann::json& steps);
+
+/// What a shell command says; fails where it does.
+std::string words_of(const std::string& command);
 
 }  // namespace ricochet::browser

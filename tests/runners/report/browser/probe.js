@@ -1,5 +1,5 @@
-// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works the page's controls, and posts
-// all of it to the page around the frame.
+// Goes into a copy of a report: draws every figure in every view, reads back what the chart library then holds, works the page's controls, and promises
+// all of it as `probed`.
 (() => {
   "use strict";
   const errors = [];
@@ -226,7 +226,8 @@
     film.length.value = "5";
     key(" ");
     const playing = film.state().playing;
-    await new Promise((done) => setTimeout(done, 1500));
+    // Until it has moved, or has had time to.
+    await new Promise((done) => { const until = performance.now() + 5000; (function look() { film.state().k > back || performance.now() > until ? done() : requestAnimationFrame(look); })(); });
     const moved = film.state().k;
     if (film.state().playing) key(" ");   // unless it came to its end
     const hue = (canvas) => { const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data; let count = 0; for (let i = 0; i < data.length; i += 4) if (data[i + 3] && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 24) ++count; return count; };
@@ -289,12 +290,14 @@
     return given.map(([low, high]) => ({ text: text(low), exact: exact(low), round: pick(roundOutwards(new Interval(low, high), 0), ["low", "high"]), decades: low > 0 ? pick(wholeDecades(new Interval(low, high)), ["low", "high"]) : null }));
   }
 
-  window.addEventListener("load", async () => {
-    const asked = JSON.parse(document.documentElement.dataset.asked);
+  window.probed = new Promise((done) => window.addEventListener("load", async () => {
+    const asked = JSON.parse(document.documentElement.dataset.asked), size = () => ({ height: document.documentElement.scrollHeight, nodes: all("*").length });
     let out = null;
     try {
-      out = { height: document.documentElement.scrollHeight, nodes: all("*").length, explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), row: asked.controls ? checkRowDoor() : null, film: await checkFilm(), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
+      const opened = size();
+      ricochet.later.fillAll();
+      out = { opened, ...size(), explained: checkExplained(), answer: all("#answer-figure .figure").map((section) => section.dataset.figure), figures: ricochet.figures.slice().map((figure) => checkFigure(figure, asked.controls)), row: asked.controls ? checkRowDoor() : null, film: await checkFilm(), table: checkTable(), words: checkWords(asked.numbers || []), canvases: all("canvas").length };
     } catch (e) { errors.push(String((e && e.stack) || e)); }
-    parent.postMessage(JSON.stringify(Object.assign({ errors }, out)), "*");
-  });
+    done(Object.assign({ errors }, out));
+  }));
 })();

@@ -1,7 +1,6 @@
 // Reports of every kind, as they are read: on a phone, on paper, on a dark screen, by keys.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <regex>
 
@@ -26,19 +25,11 @@ const char* const beyond_edge =
 // A chart in the middle of the screen, drawn.
 const char* const show_chart =
     "new Promise((done) => { document.documentElement.style.scrollBehavior = 'auto'; "
-    "(document.activeElement.closest('.chart') || document.querySelector('.chart')).scrollIntoView({block: 'center'}); "
-    "setTimeout(() => done(scrollY), 300); })";
-
-/// What a shell command says.
-std::string said(const std::string& command) {
-  std::string out;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  char buffer[4096];
-  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, count);
-  REQUIRE(pclose(pipe) == 0);
-  return out;
-}
+    "const chart = document.activeElement.closest('.chart') || "
+    "Array.from(document.querySelectorAll('.chart')).find((one) "
+    "=> one.getClientRects().length), until = performance.now() + 10000; chart.scrollIntoView({block: 'center'}); "
+    "(function look() { chart.querySelector('canvas') || performance.now() > until ? done(scrollY) : "
+    "requestAnimationFrame(look); })(); })";
 
 std::string file_of(const std::string& name) {
   return (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "reading-print" / name).string();
@@ -52,7 +43,7 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
   Json steps = Json::array();
   for (const std::string kind : kinds) {
     steps.push_back({{"name", kind},
-                     {"page", report_of("reading-phone", kind)},
+                     {"page", report_of("studies", kind)},
                      {"width", 420},
                      {"height", 900},
                      {"touch", true},
@@ -81,7 +72,7 @@ TEST_CASE("a wide table keeps its first column and says that it goes on", "[repo
       "box.tabIndex]; "
       "})()";
   const Json values = driven("reading-table", {{{"name", "table"},
-                                                {"page", report_of("reading-table", "trajectory")},
+                                                {"page", report_of("studies", "trajectory")},
                                                 {"width", 420},
                                                 {"height", 900},
                                                 {"evaluate", {scrolled}}}})
@@ -106,7 +97,7 @@ TEST_CASE("the table of cases takes words and conditions, and gives what it show
   const Json values =
       driven("reading-cases",
              {{{"name", "cases"},
-               {"page", report_of("reading-cases", "trajectory")},
+               {"page", report_of("studies", "trajectory")},
                {"evaluate",
                 {heads, filtered(""), filtered("status = done"), filtered("status != done"), filtered("step > 0.015"),
                  filtered("step <= 0.015 signorini"), filtered("energy left > 0"), filtered("enrgy_left > 0"),
@@ -150,30 +141,80 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
   const char* const paper = "ricochet.theme.channels(getComputedStyle(document.body).backgroundColor)";
   const char* const chart = R"js((() => {
     const slot = ricochet.figures.flatMap((f) => f.slots.map((s) => [f, s])).find(([f, s]) => f.visible(s) && f.viewOf(s).option), [figure, first] = slot;
-    figure.draw(first);
+    if (!first.chart) figure.draw(first);
     const option = first.chart.getOption(), { contrast, channels } = ricochet.theme, ground = channels(option.backgroundColor), colours = option.series.map((s) => s.color).filter((c) => typeof c === "string" && channels(c));
     return [ground, contrast(channels(option.xAxis[0].axisLabel.color), ground), Math.min(99, ...colours.map((c) => contrast(channels(c), ground)))];
   })())js";
   Json steps = Json::array();
+  // The screen turns light while the page is read, which carries what is drawn along.
   for (const std::string kind : kinds)
-    for (const bool dark : {true, false})
-      steps.push_back({{"name", kind + (dark ? " dark" : " light")},
-                       {"page", report_of("reading-dark", kind)},
-                       {"dark", dark},
-                       {"evaluate", {least_contrast, paper, chart}}});
+    steps.push_back({{"name", kind},
+                     {"page", report_of("studies", kind)},
+                     {"dark", true},
+                     {"evaluate", {least_contrast, paper, chart}},
+                     {"turn", {least_contrast, paper, chart}}});
   const Json said = driven("reading-dark", steps);
   for (const std::string kind : kinds)
     for (const bool dark : {true, false}) {
-      const Json& values = said.at(kind + (dark ? " dark" : " light")).at("values");
+      const Json& values = said.at(kind).at(dark ? "values" : "turned");
       INFO(kind << " " << dark << " " << values);
       CHECK(values.at(0).at(0) >= 4.5);
       CHECK((values.at(1).at(0) < 60) == dark);
       CHECK((values.at(2).at(0).at(0) < 60) == dark);
       CHECK(values.at(2).at(1) >= 4.5);
       // A band that is pale on white may be as faint on a dark ground.
-      const double light = said.at(kind + " light").at("values").at(2).at(2);
+      const double light = said.at(kind).at("turned").at(2).at(2);
       if (dark) CHECK(values.at(2).at(2) >= std::min(3.0, light));
     }
+}
+
+TEST_CASE("a film and the patches of legends stand out on a dark screen, and have the colours of paper in print",
+          "[report][browser]") {
+  if (left_out()) return;
+  const std::string seen = R"js((() => {
+    if (!ricochet.film.films) ricochet.film.load();
+    const { contrast, channels, ink } = ricochet.theme, paper = getComputedStyle(document.body).backgroundColor, names = [...document.querySelectorAll(".film-name")].map((name) => getComputedStyle(name).color);
+    const drawn = ricochet.film.films.map((film) => ricochet.theme.colour(film.colour)), patches = [...document.querySelectorAll(".legend line")].map((line) => line.getAttribute("stroke"));
+    return [Math.min(...names.concat(drawn, ink()).map((one) => contrast(channels(one), channels(paper)))), drawn, ink(), patches, names.map(channels)];
+  })())js";
+  const std::string printed = "(() => { dispatchEvent(new Event('beforeprint')); const out = " + seen +
+                              "; dispatchEvent(new Event('afterprint')); return out; })()";
+  const Json said = driven("reading-film", {{{"name", "film"},
+                                             {"page", report_of("studies", "film")},
+                                             {"dark", true},
+                                             {"evaluate", {seen, printed, seen}},
+                                             {"turn", {seen}}}})
+                        .at("film");
+  const Json &dark = said.at("values").at(0), &paper = said.at("values").at(1), &light = said.at("turned").at(0);
+  CHECK(dark.at(0) >= 4.5);
+  CHECK(light.at(0) >= 3.8);  // Okabe and Ito's orange on white
+  CHECK(paper.at(1) == Json({"#0072B2", "#D55E00"}));
+  CHECK(paper.at(1) == light.at(1));
+  CHECK(paper.at(2) == "#222222");
+  CHECK(paper.at(3) == light.at(3));
+  CHECK(paper.at(3) != dark.at(3));
+  CHECK(paper.at(4) == light.at(4));
+  CHECK(said.at("values").at(2) == dark);
+}
+
+TEST_CASE("a list of studies is read on a phone, one after the other", "[report][browser]") {
+  if (left_out()) return;
+  std::string folders;
+  for (const char* kind : {"film", "stability"})
+    folders += " '" + std::filesystem::path(report_of("index", kind)).parent_path().string() + "'";
+  const std::string file = (std::filesystem::path(RICOCHET_BINARY_DIR) / "browser" / "index" / "index.html").string();
+  words_of(std::string(RICOCHET_COMMAND) + " report" + folders + " --out '" + file + "'");
+  const char* const cells =
+      "[...document.querySelectorAll('.studies tbody :is(th, td)')].map((cell) => "
+      "cell.getBoundingClientRect()).map((box) "
+      "=> box.width > 200 && box.right <= innerWidth)";
+  const Json said =
+      driven("reading-index",
+             {{{"name", "index"}, {"page", file}, {"width", 420}, {"height", 900}, {"evaluate", {page_width, cells}}}})
+          .at("index")
+          .at("values");
+  CHECK(said.at(0) == 420);
+  CHECK(said.at(1) == Json(std::vector<bool>(10, true)));
 }
 
 TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
@@ -185,16 +226,32 @@ TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
     ricochet.paper.finish();
     return [ground, width, document.querySelectorAll(".on-paper").length];
   })())js";
-  const Json values = driven("reading-paper", {{{"name", "paper"},
-                                                {"page", report_of("reading-paper", "trajectory")},
-                                                {"dark", true},
-                                                {"evaluate", {drawn}}}})
-                          .at("paper")
-                          .at("values")
-                          .at(0);
+  const Json values =
+      driven("reading-paper",
+             {{{"name", "paper"}, {"page", report_of("studies", "trajectory")}, {"dark", true}, {"evaluate", {drawn}}}})
+          .at("paper")
+          .at("values")
+          .at(0);
   CHECK((values.at(0) == "#ffffff" || values.at(0) == "#fff" || values.at(0) == "rgb(255,255,255)"));
   CHECK(values.at(1) <= 680);
   CHECK(values.at(2) == 0);
+}
+
+TEST_CASE("a summary that is asked for stands alone, with its figure", "[report][browser]") {
+  if (left_out()) return;
+  const std::string seen =
+      "[...['header', 'main', 'footer', '#summary', '#summary-figure svg'].map((one) => { const part = "
+      "document.querySelector(one); return Boolean(part) && part.getClientRects().length > 0; })]";
+  const std::string follow =
+      "new Promise((done) => { addEventListener('hashchange', () => done(0), {once: true}); "
+      "document.querySelector('a[href=\"#summary\"]').click(); })";
+  const Json said = driven("reading-summary", {{{"name", "summary"},
+                                                {"page", report_of("studies", "trajectory")},
+                                                {"before", {seen}},
+                                                {"evaluate", {follow, seen}}}})
+                        .at("summary");
+  CHECK(said.at("before").at(0) == Json({true, true, true, false, false}));
+  CHECK(said.at("values").at(1) == Json({false, false, false, true, true}));
 }
 
 TEST_CASE("a printed report has a summary on its first page, numbered pages, and nothing beyond the sheet",
@@ -204,7 +261,7 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
   Json steps = Json::array();
   for (const std::string kind : kinds)
     steps.push_back({{"name", kind},
-                     {"page", report_of("reading-print", kind)},
+                     {"page", report_of("studies", kind)},
                      {"evaluate",
                       {"document.querySelector('.question').textContent",
                        "document.querySelector('#summary .answer li').textContent",
@@ -218,7 +275,7 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
     INFO(kind);
     const Json& values = answers.at(kind).at("values");
     const std::string pdf = "'" + file_of(kind + ".pdf") + "'";
-    const std::string info = said("pdfinfo " + pdf), first = flat(said("pdftotext -l 1 " + pdf + " -"));
+    const std::string info = words_of("pdfinfo " + pdf), first = flat(words_of("pdftotext -l 1 " + pdf + " -"));
     std::smatch pages;
     REQUIRE(std::regex_search(info, pages, std::regex("Pages: +([0-9]+)")));
     CHECK_THAT(info, Contains("A4"));
@@ -228,10 +285,10 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
     CHECK_THAT(first, Contains("page1of" + pages[1].str()));
     CHECK_THAT(first, Contains("Identity"));    // the end of the summary is on the first page,
     CHECK_THAT(first, !Contains("Skiptothe"));  // and nothing of the screen is
-    const std::string second = flat(said("pdftotext -f 2 -l 2 " + pdf + " -"));
+    const std::string second = flat(words_of("pdftotext -f 2 -l 2 " + pdf + " -"));
     CHECK_THAT(second, Contains("Ricochet"));  // the report begins on a page of its own
     // Words that end right of the sheet's margin.
-    const std::string boxes = said("pdftotext -bbox " + pdf + " -");
+    const std::string boxes = words_of("pdftotext -bbox " + pdf + " -");
     const std::regex word("<word xMin=\"[0-9.]+\" yMin=\"[0-9.]+\" xMax=\"([0-9.]+)\"[^>]*>([^<]*)<");
     for (std::sregex_iterator at(boxes.begin(), boxes.end(), word); at != std::sregex_iterator(); ++at) {
       const double right = std::stod((*at)[1]);
@@ -251,15 +308,15 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
       "document.documentElement.lang, Array.from(document.querySelectorAll('button, input')).filter((one) => "
       "!(one.textContent.trim() || one.getAttribute('aria-label') || one.closest('label') || one.title)).length]; })()";
   Json steps = {{{"name", "skip"},
-                 {"page", report_of("reading-keys", "trajectory")},
+                 {"page", report_of("studies", "trajectory")},
                  {"keys", {"Tab"}},
                  {"evaluate", {focused, outline}}},
                 {{"name", "skipped"},
-                 {"page", report_of("reading-keys", "trajectory")},
+                 {"page", report_of("studies", "trajectory")},
                  {"keys", {"Tab", "Enter"}},
                  {"evaluate", {"location.hash"}}},
                 {{"name", "data"},
-                 {"page", report_of("reading-keys", "trajectory")},
+                 {"page", report_of("studies", "trajectory")},
                  {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
                  {"keys", {"Enter"}},
                  {"evaluate",
@@ -271,12 +328,12 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
                    "'final-energy-step').slots[0].chart.getModel().getSeries().reduce((sum, one) => sum + "
                    "one.getRawData().count(), 0)"}}},
                 {{"name", "again"},
-                 {"page", report_of("reading-keys", "trajectory")},
+                 {"page", report_of("studies", "trajectory")},
                  {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
                  {"keys", {"Enter", "Enter"}},
                  {"evaluate", {"document.querySelectorAll('.chart-data').length"}}}};
   for (const std::string kind : kinds)
-    steps.push_back({{"name", kind}, {"page", report_of("reading-keys", kind)}, {"evaluate", {until_chart}}});
+    steps.push_back({{"name", kind}, {"page", report_of("studies", kind)}, {"evaluate", {until_chart}}});
   const Json said = driven("reading-keys", steps);
   CHECK_THAT(said.at("skip").at("values").at(0).get<std::string>(), Contains("Skip to the answer"));
   CHECK(said.at("skip").at("values").at(1) == "solid");

@@ -190,7 +190,8 @@ void check_basins(const Ran& ran, const Json& page) {
 
 }  // namespace
 
-TEST_CASE("reports of studies of every kind draw what their tables hold", "[report][browser]") {
+TEST_CASE("reports of studies of every kind draw what their tables hold, and every dot is a door to its case",
+          "[report][browser]") {
   if (left_out()) return;
   std::map<std::string, Ran> ran;
   std::vector<Page> pages;
@@ -205,6 +206,7 @@ TEST_CASE("reports of studies of every kind draw what their tables hold", "[repo
   for (const auto& [kind, one] : ran) {
     INFO(kind);
     require_works(said.at(kind), one.results.cases.size());
+    require_doors(said.at(kind), kind);
     // One figure that shows the answer stands beside it.
     CHECK(said.at(kind).at("answer") == Json::array({answers.at(kind)}));
     if (const Json& word = said.at(kind).at("explained"); !word.is_null()) {
@@ -214,6 +216,11 @@ TEST_CASE("reports of studies of every kind draw what their tables hold", "[repo
     }
   }
   CHECK(said.at("trajectory").at("explained").is_object());
+  // What the page holds of a trajectory: its curves, its portrait, its impacts, its ledger.
+  const Json& door = figure(said.at("trajectory"), "tip").at("door");
+  CHECK(door.at("plots") == 4);
+  for (const char* part : {"Phase portrait", "Measures", "Impacts", "Where its energy came from and went"})
+    CHECK(says(door.at("headings"), part));
   check_trajectory(ran.at("trajectory"), said.at("trajectory"));
   check_errors(ran.at("convergence"), said.at("convergence"));
   check_errors(ran.at("work-precision"), said.at("work-precision"));

@@ -6,6 +6,7 @@
 
 #include "runners/run/derive.hpp"
 #include "tests/runners/report/browser/browser.hpp"
+#include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
 using namespace ricochet;
@@ -119,4 +120,37 @@ TEST_CASE("figures of stability draw cells and limits", "[report][browser]") {
   check_radii(pages.at("stability"));
   check_map(pages.at("stability"));
   check_open_first(pages.at("open_first"));
+}
+
+TEST_CASE("charts of one figure have headings of their own, open and closed ones too", "[report][browser]") {
+  if (left_out()) return;
+  const char* const headings = R"js((() => {
+    const { view } = ricochet.data, by = ["contact", "contact.stiffness", "time", "time.beta"];
+    const charts = ["open", "closed"].flatMap((part) => view.group(view.all, by).map(({ label, cases }) => ({ title: part + " · " + label, cases, by, part })));
+    const strips = ricochet.strips(charts), said = strips.flatMap(({ label, charts: own }) => own.map((one) => label + " / " + one.label));
+    return [charts.length, strips.length, new Set(said).size, strips.every(({ label }) => /^(open|closed) · /.test(label))];
+  })())js";
+  // A parameter that only a few of many schemes have is no column of a map, which would stand empty; one that all have
+  // is.
+  const char* const layouts = R"js((() => {
+    const axis = (name, texts, at, number) => ({ name, unit: "", texts, numbers: texts.map((text) => (number ? Number(text) : null)), at });
+    const laid = (cases, all) => {
+      const places = [...Array(cases).keys()], scheme = places.map((k) => k % (cases / 2)), some = (k) => all || scheme[k] < 6;
+      const names = [...new Set(scheme.map((k) => "s" + (all ? k >> 2 : k)))];
+      const axes = [axis("step", ["1", "2"], places.map((k) => (k < cases / 2 ? 0 : 1)), true), axis("time", names, scheme.map((k) => (all ? k >> 2 : k))), axis("time.p", ["1", "2", "3", "4"], places.map((k) => (some(k) ? scheme[k] % 4 : -1)), true)];
+      const own = places.map((index) => ({ index, status: "done", measures: {}, values: Object.fromEntries(axes.filter(({ at }) => at[index] >= 0).map(({ name, texts, numbers, at }) => [name, { text: texts[at[index]], number: numbers[at[index]] }])) }));
+      return ricochet.mapLayout(new ricochet.Cases({ cases: own, page: { axes } }), own, "step").columns;
+    };
+    return [laid(160, false), laid(160, true)];
+  })())js";
+  const Json said =
+      driven("headings",
+             {{{"name", "headings"}, {"page", report_of("studies", "trajectory")}, {"evaluate", {headings, layouts}}}})
+          .at("headings")
+          .at("values");
+  CHECK(said.at(0).at(0) >= 8);
+  CHECK(said.at(0).at(1) > 1);
+  CHECK(said.at(0).at(2) == said.at(0).at(0));
+  CHECK(said.at(0).at(3) == true);
+  CHECK(said.at(1) == Json::parse(R"([["step"], ["time.p", "step"]])"));
 }
