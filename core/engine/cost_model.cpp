@@ -70,13 +70,24 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   return cost;
 }
 
+namespace {
+
+// A step in modes, and a look at what may come, as bench_flight measures them.
+double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
+  return predict_cost(OperatorKind::modal, problem, work, 1).step_seconds + 5e-7 +
+         2.5e-10 * problem.dofs() * problem.points();
+}
+
+}  // namespace
+
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps) {
-  const Cost cost = predict_cost(OperatorKind::modal, problem, work, 1);
-  // As bench_flight measures them: modes, tables, a look.
   const double n = problem.dofs(),
                visited = std::min(static_cast<double>(steps), 10 * std::sqrt(static_cast<double>(steps)));
-  const double look = 5e-7 + 2.5e-10 * n * problem.points(), set_up = 3e-9 * n * n * n + 1.5e-5 * n;
-  return set_up + visited * (cost.step_seconds + look);
+  return 3e-9 * n * n * n + 1.5e-5 * n + visited * visit_seconds(problem, work);
+}
+
+double predict_visits(const SemiDiscrete& problem, const StepWork& work, double steps) {
+  return std::min(steps, 60 * std::pow(steps, 0.17)) * visit_seconds(problem, work);
 }
 
 OperatorKind cheapest_kind(const SemiDiscrete& problem, const StepWork& work, int width, long long steps) {

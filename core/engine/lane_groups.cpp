@@ -1,3 +1,5 @@
+#include <numbers>
+#include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/lane_groups.hpp>
 #include <utility>
 
@@ -47,10 +49,40 @@ struct LaneGroups::Group {
   OperatorKind kind = OperatorKind::automatic;
   std::shared_ptr<const MarchModel> model;
   std::vector<LeftOut> left_out;
+  bool flies = false;
 };
 
-LaneGroups::LaneGroups() = default;
+LaneGroups::LaneGroups(MarchWay way) : way_(way) {}
 LaneGroups::~LaneGroups() = default;
+
+// A program of one lane that leaves out steps, where one is wanted and expected to cost less than a lane among eight.
+bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const {
+  CompileOptions options;
+  options.march = MarchWay::flights;
+  options.moving_support = true;
+  options.expected_steps = 100000000;
+  auto compiled =
+      compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(), {candidate.lane}, options);
+  if (const auto* refusal = std::get_if<Refusal>(&compiled)) {
+    if (way_ == MarchWay::flights) throw *refusal;
+    return false;
+  }
+  const Program& program = std::get<Program>(compiled);
+  group.kind = OperatorKind::modal;
+  group.model = program.model;
+  group.left_out = program.left_out;
+  group.flies = true;
+  if (way_ == MarchWay::flights) return true;
+  const double steps = 2 * std::numbers::pi / (candidate.problem->support.pulsation * candidate.h);
+  StepWork work{static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()), false};
+  const OperatorKind kind = cheapest_kind(*candidate.problem, work, 8, 100000000);
+  const double lane = predict_cost(kind, *candidate.problem, work, 8).step_seconds / 8;
+  return 2 * predict_visits(*candidate.problem, work, steps) < steps * lane;
+}
+
+bool LaneGroups::flies() const {
+  return !groups_.empty() && groups_.front()->flies;
+}
 
 int LaneGroups::add(LaneCandidate candidate) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -59,18 +91,23 @@ int LaneGroups::add(LaneCandidate candidate) {
         same_problem(*known.problem, *candidate.problem))
       return static_cast<int>(g);
   }
-  CompileOptions options;
-  options.kind = groups_.empty() ? OperatorKind::automatic : groups_.front()->kind;
-  options.moving_support = true;
-  options.expected_steps = 100000000;
-  auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
-                          std::vector<LaneSpec>(8, candidate.lane), options);
-  if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
-  const Program& program = std::get<Program>(compiled);
   auto group = std::make_unique<Group>();
-  group->kind = program.kind == OperatorKind::diagonal ? OperatorKind::band : program.kind;
-  group->model = program.model;
-  group->left_out = program.left_out;
+  // The first group decides for all.
+  const bool first = groups_.empty();
+  if (!(way_ != MarchWay::every_step && (first || flies()) && try_flights(candidate, *group))) {
+    CompileOptions options;
+    options.kind = first ? OperatorKind::automatic : groups_.front()->kind;
+    options.moving_support = true;
+    options.expected_steps = 100000000;
+    auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
+                            std::vector<LaneSpec>(8, candidate.lane), options);
+    if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
+    const Program& program = std::get<Program>(compiled);
+    group->kind = program.kind == OperatorKind::diagonal ? OperatorKind::band : program.kind;
+    group->model = program.model;
+    group->left_out = program.left_out;
+    group->flies = false;
+  }
   group->scene = std::move(candidate);
   groups_.push_back(std::move(group));
   return count() - 1;
@@ -103,6 +140,10 @@ Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents
   options.kind = one.kind;
   options.moving_support = one.scene.problem->support.pulsation != 0;
   options.tangents = tangents;
+  if (one.flies && lanes.size() == 1 && tangents == 0) {
+    options.march = MarchWay::flights;
+    options.expected_steps = 100000000;
+  }
   auto compiled = compile(with_own_load(one.scene.problem), one.scene.plan, one.scene.h, one.scene.make_law(),
                           std::move(lanes), options);
   if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;

@@ -26,7 +26,9 @@ struct LaneCandidate {
 /// same coordinates and bits do not depend on the number of lanes.
 class LaneGroups {
  public:
-  LaneGroups();
+  /// `way`: whether orbits march as lanes, or one by one and leave out steps (automatic: what is expected to cost
+  /// less).
+  explicit LaneGroups(MarchWay way = MarchWay::every_step);
   ~LaneGroups();
 
   /// The group of a scene, a new one where it fits none. Throws the Refusal of compile().
@@ -39,6 +41,8 @@ class LaneGroups {
   double step(int group) const;
   const char* operator_chosen() const;
   const std::vector<LeftOut>& left_out(int group) const;
+  /// Whether a program of one lane without tangents leaves out steps: lanes then march one by one.
+  bool flies() const;
   /// Seconds per step of a block of `lanes`, as predicted.
   double predicted_step_seconds(int group, int lanes) const;
 
@@ -51,6 +55,9 @@ class LaneGroups {
 
  private:
   struct Group;
+  bool try_flights(const LaneCandidate& candidate, Group& group) const;
+
+  MarchWay way_;
   std::vector<std::unique_ptr<Group>> groups_;
 };
 

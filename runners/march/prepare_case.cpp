@@ -55,6 +55,11 @@ double budget_of(const StudyCase& study_case) {
                                          : std::numeric_limits<double>::infinity();
 }
 
+MarchWay march_way(const StudyCase& study_case) {
+  if (study_case.march == "flights") return MarchWay::flights;
+  return study_case.march == "auto" ? MarchWay::automatic : MarchWay::every_step;
+}
+
 std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry) {
   return registered(registry.mass(study_case.mass.name), Role::mass, study_case.mass.name)
       .make(study_case.mass.parameters);
@@ -106,9 +111,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
         "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
   options.expected_steps = prepared.steps;
-  options.march = study_case.march == "flights"    ? MarchWay::flights
-                  : study_case.march == "auto" ? MarchWay::automatic
-                                               : MarchWay::every_step;
+  options.march = march_way(study_case);
   auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
                           {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);
   if (const auto* refusal = std::get_if<Refusal>(&compiled))

@@ -32,6 +32,9 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared);
 /// running lane ran out of its budget.
 void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget);
 
+/// The case's "march".
+MarchWay march_way(const StudyCase& study_case);
+
 /// The methods of a case, made.
 std::unique_ptr<MassStrategy> make_mass(const StudyCase& study_case, const Registry& registry);
 std::unique_ptr<ContactLaw> make_law(const StudyCase& study_case, const Registry& registry);

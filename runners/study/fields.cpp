@@ -92,10 +92,10 @@ Field observe(std::vector<std::string> measures) {
   return optional(std::move(field));
 }
 
-Field march() {
-  Field field = word("march", {"auto", "every-step", "flights"}, std::nullopt, "Whether steps without change of contact are left out.");
-  field.axis = field.nullable = true;
-  field.fallback = Json(nullptr);
+Field march(const char* unless_given) {
+  Field field = word("march", {"auto", "every-step", "flights"}, unless_given,
+                     "Whether steps without change of contact are left out.");
+  field.axis = true;
   return field;
 }
 

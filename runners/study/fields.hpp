@@ -31,10 +31,10 @@ Field single(Field field);
 Field optional(Field field);
 
 // The keys that several kinds have.
-Field step();              ///< s, an axis
-Field steps_per_period();  ///< an axis
-Field march();             ///< an axis; null: auto
-Field duration();          ///< s
+Field step();                           ///< s, an axis
+Field steps_per_period();               ///< an axis
+Field march(const char* unless_given);  ///< an axis
+Field duration();                       ///< s
 Field samples();
 Field budget();  ///< s; null: no limit
 /// The measures, out of these, that the answer of the study is made of; null: those that its kind asks for.

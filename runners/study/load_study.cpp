@@ -194,9 +194,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   const std::vector<double> steps = stepped ? list_of<double>(resolved["step"]) : std::vector<double>{0.0};
   const std::vector<int> per_period = by_period ? list_of<int>(resolved["steps_per_period"]) : std::vector<int>{0};
   // A kind without the key marches every step.
-  const bool ways = resolved.contains("march") && !resolved["march"].is_null();
-  const std::vector<std::string> marches = ways ? list_of<std::string>(resolved["march"])
-                                                : std::vector<std::string>{resolved.contains("march") ? "auto" : "every-step"};
+  const std::vector<std::string> marches =
+      resolved.contains("march") ? list_of<std::string>(resolved["march"]) : std::vector<std::string>{"every-step"};
+  const bool ways = given.contains("march");
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
@@ -243,9 +243,8 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 
   CaseIds ids;
   Product product;
-  for (const std::size_t size :
-       {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(), steps.size(), per_period.size(),
-        marches.size()})
+  for (const std::size_t size : {scenes.size(), masses.size(), contacts.size(), times.size(), meshes.size(),
+                                 steps.size(), per_period.size(), marches.size()})
     product.add(size);
   for (; !product.ended(); product.next()) {
     StudyCase one;

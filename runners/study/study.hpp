@@ -35,7 +35,7 @@ struct StudyCase {
   int steps_per_period = 0;  ///< of kinds that step by the forcing period, else 0
   double duration = 0;
   int samples = 0;
-  std::string march = "every-step";  ///< auto, every-step, flights
+  std::string march = "every-step";      ///< auto, every-step, flights
   std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
   Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
   std::optional<std::string> excluded;  ///< the reason given in `exclude`

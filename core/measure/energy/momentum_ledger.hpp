@@ -16,6 +16,8 @@ class MomentumLedger {
   /// Σ_i p_i that stage `k` of the start rule or of a step found (0 where it found none); every stage in turn.
   void stage(bool starting, std::size_t k, double force);
   void step_done();
+  /// Whether efforts found so far still give some.
+  bool moving() const { return moving_; }
   /// Where the scheme's velocity stands: at Program::velocity_offset.
   double momentum() const { return given_ + velocity_; }
 

@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
 
@@ -134,6 +136,25 @@ void ContactLog::look(const Marcher& marcher, const StageView& view) {
   momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
   // What only puts a position right is no force.
   if (view.program->momentum != 0) force_ += force;
+}
+
+// What efforts of some steps ago still give has to be followed.
+long long ContactLog::may_skip(const Marcher& marcher) {
+  if (momentum_.moving() && !closed_[0] && !closed_[1]) return 0;
+  return behind_ ? behind_->may_skip(marcher) : std::numeric_limits<long long>::max();
+}
+
+void ContactLog::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  if (behind_) behind_->skipped(marcher, steps);
+  if (steps.held.empty()) return;
+  const bool pushes = marcher.program().stages.front().momentum != 0;
+  steps.flight->each_effort([&](std::span<const double> efforts) {
+    double force = 0;
+    for (const double p : efforts) force += p;
+    momentum_.stage(false, 0, force);
+    momentum_.step_done();
+    if (pushes) force_ = force;
+  });
 }
 
 void ContactLog::close_instant(const StageView& view) {

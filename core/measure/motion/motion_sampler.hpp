@@ -27,6 +27,9 @@ class ContactLog final : public StepObserver {
     momentum_.step_done();
   }
 
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+
   const std::vector<ContactEvent>& events() const { return events_; }
   double impulse() const { return momentum_.momentum(); }  ///< ∫₀ᵗ Σp, signed, N s
   double force() const { return force_; }                  ///< Σp of the last step, N

@@ -22,7 +22,7 @@ std::vector<Field> basins_keys() {
   refine.spec.key = "refine";
   refine.spec.text = "Whether only cells near a boundary of basins are marched, after a coarse grid.";
   refine.fallback = false;
-  std::vector<Field> fields = {std::move(axes), steps_per_period()};
+  std::vector<Field> fields = {std::move(axes), steps_per_period(), march("every-step")};
   for (Field& field : orbit_keys()) fields.push_back(std::move(field));
   fields.push_back(std::move(refine));
   fields.push_back(budget());

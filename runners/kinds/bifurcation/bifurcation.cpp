@@ -32,7 +32,7 @@ std::vector<Field> bifurcation_keys() {
 
   std::vector<Field> fields = {
       object("parameter", std::nullopt, "What the diagram is drawn against.", std::move(parameter)), steps_per_period(),
-      std::move(start)};
+      march("every-step"), std::move(start)};
   for (Field& field : orbit_keys()) fields.push_back(std::move(field));
   fields.push_back(integer("exponents", {0, 100000, false, false}, 0, "Number of Lyapunov exponents, largest first."));
   fields.push_back(optional(real("refine", "as the parameter", positive, std::nullopt,

@@ -25,6 +25,7 @@ std::vector<Field> comparison_keys() {
   return {step(),
           duration(),
           samples(),
+          march("every-step"),
           std::move(reference),
           std::move(errors),
           optional(real("horizon", "s", positive, std::nullopt,

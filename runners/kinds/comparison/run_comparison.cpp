@@ -98,6 +98,7 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   const bool whole = sampler.sampled() == set.grid.times.size();
   const auto& events = sampler.contact().events();
   put_measure(record, "horizon", set.horizon);
+  put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));
   const bool of_the_mesh = set.applicable.front()->of_the_mesh;
   put_measure(record, "reference_of_mesh", of_the_mesh ? 1 : 0);
   put_measure(record, "reference_of_law", rigid || of_the_mesh ? 1 : 0);

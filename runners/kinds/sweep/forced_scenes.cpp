@@ -20,6 +20,9 @@ std::map<std::string, ParameterValue> shared_parameters(const Parameters& all, c
 
 }  // namespace
 
+ForcedScenes::ForcedScenes(const StudyCase& study_case, const Registry& registry)
+    : case_(study_case), registry_(registry), groups_(march_way(study_case)) {}
+
 int ForcedScenes::add(const std::function<StudyCase()>& variant) {
   const int number = count();
   scenes_.emplace_back();

@@ -25,7 +25,7 @@ struct ForcedScene {
 /// of one factorisation (LaneGroups).
 class ForcedScenes {
  public:
-  ForcedScenes(const StudyCase& study_case, const Registry& registry) : case_(study_case), registry_(registry) {}
+  ForcedScenes(const StudyCase& study_case, const Registry& registry);
 
   /// Prepares one more scene; its number is the count before. Refusals and bad values are kept, not thrown.
   int add(const std::function<StudyCase()>& variant);
@@ -44,6 +44,8 @@ class ForcedScenes {
   const std::vector<std::string>& notes(int group) const { return problem(group).notes; }
   const char* operator_chosen() const { return groups_.operator_chosen(); }
   const std::vector<LeftOut>& left_out(int group) const { return groups_.left_out(group); }
+  /// Whether orbits march one by one and leave out steps.
+  bool flies() const { return groups_.flies(); }
   double predicted_step_seconds(int group, int lanes) const { return groups_.predicted_step_seconds(group, lanes); }
   Program program(int group, std::vector<LaneSpec> lanes, int tangents = 0) const {
     return groups_.program(group, std::move(lanes), tangents);

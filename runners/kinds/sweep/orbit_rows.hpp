@@ -20,7 +20,7 @@ struct OrbitView {
   const Orbit* orbit = nullptr;
   int group = -1;
   const SemiDiscrete* problem = nullptr;  ///< of that group
-  std::string marginal;  ///< what the stability analysis says of roots that are the scheme's
+  std::string marginal;                   ///< what the stability analysis says of roots that are the scheme's
   std::optional<EquivalentViscosity> viscosity;
   OrbitExponents exponents;
   JudgedOrbit judged;

@@ -127,7 +127,9 @@ class OrbitScheduler::Shared {
 };
 
 OrbitScheduler::OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options)
-    : scenes_(scenes), options_(std::move(options)), queue_(scenes, options_.lean) {}
+    : scenes_(scenes), options_(std::move(options)), queue_(scenes, options_.lean) {
+  if (scenes.flies()) options_.lanes = 1;
+}
 
 // Orbits that start from an initial state march their first period together.
 std::vector<Orbit> OrbitScheduler::start(const std::vector<int>& numbers) {

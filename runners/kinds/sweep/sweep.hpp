@@ -8,8 +8,8 @@ namespace ricochet {
 /// A case of a sweep, with the desk at which it keeps what would be lost if it were killed.
 using RunSweep = CaseRecord (*)(const StudyCase&, const Registry&, const CaseDesk&, const std::atomic<bool>& stop);
 
-/// Format, runner, tables and study-of-one-case of a kind that goes through a parameter; name, text, keys, plan, measures
-/// and point are its own.
+/// Format, runner, tables and study-of-one-case of a kind that goes through a parameter; name, text, keys, plan,
+/// measures and point are its own.
 Kind sweep_kind(RunSweep run);
 
 /// The measures of orbits.

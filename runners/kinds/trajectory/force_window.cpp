@@ -57,7 +57,8 @@ void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
   }
   // Instants without a force, in one: they have no spread of their own.
   const double last = first + static_cast<double>(steps.steps - 1) * h;
-  const double begin = std::ceil((std::max(from_, first) - first) / h), end = std::floor((std::min(to_, last) - first) / h);
+  const double begin = std::ceil((std::max(from_, first) - first) / h),
+               end = std::floor((std::min(to_, last) - first) / h);
   if (end >= begin) add(0, (end - begin + 1) * lasts);
 }
 

@@ -216,8 +216,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
       const double now = thread_seconds();
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.
-      chunk =
-          now - before < 0.01 ? std::min(2 * chunk, longest_chunk) : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
+      chunk = now - before < 0.01 ? std::min(2 * chunk, longest_chunk)
+                                  : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
     }
     if (marcher.any_running() && marcher.step() == target) sampler.take(marcher);
   }
