@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runners/kinds/bifurcation/diagram_answers.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/html.hpp"
@@ -41,12 +42,17 @@ Table bifurcation_answers(const StudyResults& results) {
     const std::string range = from && to ? fmt::format(" of {} from {} to {}", parameter.name, number_text(*from, 5),
                                                        with_unit(*to, parameter))
                                          : "";
-    const std::string lead =
-        fmt::format("Over {}{} the motion is {}.", report::count_text(all, "interval", "intervals"), range, parts);
+    // Of one verdict there are no parts to count.
+    const std::string one = rows.text(0, "verdict");
+    const bool whole = rows.size() == 1 && one != "depends" && from && to;
+    const std::string lead = whole ? fmt::format("Over the whole range{} the motion is {}.", range, one)
+                                   : fmt::format("Over {}{} the motion is {}.",
+                                                 report::count_text(all, "interval", "intervals"), range, parts);
     for (std::size_t row = 0; row < rows.size(); ++row)
       add(rows.text(row, "choice"), rows.text(row, "verdict"), Cell(rows.number(row, "share")),
           row == 0 ? Cell(lead) : Cell());
   }
+  say_diagram(results, out);
   if (const Table* verdicts = find_table(results.derived, "verdicts")) {
     const TableReader rows(*verdicts);
     for (const char* wanted : {"depends", "undecided", "robust"})
