@@ -22,7 +22,7 @@ using report::list_text;
 using report::number_text;
 
 // Of more stretches the classes are counted, of more cases the steps are told from which on they agree.
-constexpr std::size_t most_stretches = 8, most_cases = 9;
+constexpr std::size_t most_stretches = 8, most_cases = 9, most_listed = 16;
 constexpr double nearly_all = 0.95;
 
 void add(Table& answers, const std::string& verdict, const Cell& effect, const std::string& sentence) {
@@ -90,7 +90,7 @@ void say_motions(const StudyResults& results, const CaseView& view, const CaseRe
                    [](const report::Orbit& a, const report::Orbit& b) { return a.parameter < b.parameter; });
   std::vector<std::string> said = stretches_of(orbits);
   if (said.size() > most_stretches) said = class_counts_of(orbits);
-  const std::string who = results.cases.size() > 1 ? ", in the finest case (" + view.name(standard) + ")" : "";
+  const std::string who = results.cases.size() > 1 ? ", in the reference case (" + view.name(standard) + ")" : "";
   add(answers, "diagram", {},
       fmt::format("{}{}, the motion over {} is {}.", from_where(start), who,
                   report::with_unit(report::swept_parameter(results)), list_text(said, most_stretches)));
@@ -108,10 +108,15 @@ std::vector<Compared> compared_with(const CaseRecord& standard, const StudyResul
   const Table* table = find_table(results.derived, "agreement");
   if (!table) return out;
   const TableReader rows(*table);
+  const auto of_standard = [&](std::size_t row) { return rows.text(row, "case") == standard.id; };
+  // What another case leaves open is not found by it: all that the standard case decides counts.
+  double all = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (of_standard(row) && rows.text(row, "other_case") == standard.id) all = rows.number(row, "compared").value_or(0);
+  if (all <= 0) return out;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const CaseRecord* other = view.find(rows.text(row, "other_case"));
-    const double all = rows.number(row, "compared").value_or(0);
-    if (rows.text(row, "case") != standard.id || !other || other == &standard || all <= 0) continue;
+    if (!of_standard(row) || !other || other == &standard || other->status != "done") continue;
     out.push_back({other, rows.number(row, "same_class").value_or(0), all,
                    CaseView::number(*other, "steps_per_period").value_or(0)});
   }
@@ -122,15 +127,16 @@ std::string name_without_steps(const CaseView& view, const CaseRecord& record) {
   return view.name(record, view.varying_without({"steps_per_period"}));
 }
 
-void say_each(const std::vector<Compared>& compared, const CaseView& view, const CaseRecord& standard, Table& answers) {
+void say_each(std::vector<Compared> compared, const CaseView& view, const CaseRecord& standard, Table& answers) {
+  std::stable_sort(compared.begin(), compared.end(),
+                   [](const Compared& a, const Compared& b) { return a.share() > b.share(); });
   std::vector<std::string> said;
-  for (const Compared& one : compared)
-    said.push_back(fmt::format("{} ({} of {})", case_words(view, *one.record), one.same, one.all));
-  const auto worst = std::min_element(compared.begin(), compared.end(),
-                                      [](const Compared& a, const Compared& b) { return a.share() < b.share(); });
-  add(answers, "agreement", worst->share(),
-      fmt::format("So many classes of motion, over values and starts, are those of {}: {}.", case_words(view, standard),
-                  list_text(said, most_cases)));
+  for (const Compared& one : compared) said.push_back(fmt::format("{} {}", case_words(view, *one.record), one.same));
+  add(answers, "agreement", compared.back().share(),
+      fmt::format(
+          "Of {} that {} has over values and starts, others have: {}.",
+          report::count_text(static_cast<std::size_t>(compared.front().all), "class of motion", "classes of motion"),
+          case_words(view, standard), list_text(said, most_listed)));
 }
 
 /// From which step on each method has nearly all classes of the standard case.
@@ -147,16 +153,15 @@ void say_steps(const std::vector<Compared>& compared, const CaseView& view, cons
       least = one.steps;
     }
     const Compared& finest = steps.front();
-    from[least].push_back(
-        std::isfinite(least) ? name : fmt::format("{} ({} of {} at {})", name, finest.same, finest.all, finest.steps));
+    from[least].push_back(std::isfinite(least) ? name : fmt::format("{} {}", name, finest.same));
   }
+  const std::string whole = fmt::format("the {} classes of {}", compared.front().all, case_words(view, standard));
   for (const auto& [least, names] : from)
     add(answers, "agreement", {},
-        std::isfinite(least)
-            ? fmt::format("At least {} of the classes of {} from {} steps per period on: {}.",
-                          report::share_text(nearly_all), case_words(view, standard), least,
-                          list_text(names, names.size()))
-            : fmt::format("Fewer at every step (at the finest one in brackets): {}.", list_text(names, names.size())));
+        std::isfinite(least) ? fmt::format("At least {} of {} from {} steps per period on: {}.",
+                                           report::share_text(nearly_all), whole, least, list_text(names, names.size()))
+                             : fmt::format("Fewer of {} at every step, with the most steps per period: {}.", whole,
+                                           list_text(names, names.size())));
 }
 
 void say_attractors(const StudyResults& results, Table& answers) {
@@ -168,12 +173,10 @@ void say_attractors(const StudyResults& results, Table& answers) {
   if (labels.size() == 1 && labels.front().first == "not compared") return;
   std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> said;
-  for (const auto& [label, count] : labels) said.push_back(fmt::format("{} {}", count, label));
+  for (const auto& [label, count] : labels) said.push_back(fmt::format("{} ({})", label, count));
   add(answers, "attractors", static_cast<double>(rows.size()),
-      labels.size() == 1 ? fmt::format("Of {} that were met, over all values, each is {}.",
-                                       report::count_text(rows.size(), "attractor", "attractors"), labels.front().first)
-                         : fmt::format("Of {} that were met, over all values: {}.",
-                                       report::count_text(rows.size(), "attractor", "attractors"), list_text(said)));
+      fmt::format("{} met over all values; as to who shows them: {}.",
+                  report::count_text(rows.size(), "attractor was", "attractors were"), list_text(said)));
 }
 
 }  // namespace
@@ -185,7 +188,7 @@ void say_diagram(const StudyResults& results, Table& answers) {
   say_motions(results, view, *standard, answers);
   const std::vector<Compared> compared = compared_with(*standard, results, view);
   if (!compared.empty()) {
-    if (compared.size() <= most_cases)
+    if (compared.size() <= most_cases || !view.varies("steps_per_period"))
       say_each(compared, view, *standard, answers);
     else
       say_steps(compared, view, *standard, answers);
