@@ -1,6 +1,7 @@
 #include "runners/march/march_pace.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "runners/march/prepare_case.hpp"
 
@@ -19,8 +20,10 @@ struct Part {
   bool whole = false;  ///< no lane stopped on the way
 };
 
-std::optional<Part> march_part(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe) {
-  Prepared prepared = prepare_case(study_case, registry);
+// `steps`: of the whole case, by which its operator is chosen.
+std::optional<Part> march_part(const StudyCase& study_case, long long steps, const Registry& registry,
+                               const MakeObserver& observe) {
+  Prepared prepared = prepare_case(study_case, registry, steps);
   if (!prepared.program) return std::nullopt;
   Marcher marcher(std::move(*prepared.program));
   const std::shared_ptr<StepObserver> observer = observe ? observe(marcher) : nullptr;
@@ -42,20 +45,21 @@ std::optional<Part> march_part(const StudyCase& study_case, const Registry& regi
 }  // namespace
 
 std::optional<double> march_pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe) {
+  const auto steps = std::llround(std::min(study_case.duration / study_case.step, 1e15));
   StudyCase coarse = study_case;
   coarse.step = std::max(study_case.step, study_case.duration / static_cast<double>(few_steps));
-  std::optional<Part> part = march_part(coarse, registry, observe);
+  std::optional<Part> part = march_part(coarse, steps, registry, observe);
   if (coarse.step > study_case.step && (!part || !part->whole)) {
     StudyCase beginning = study_case;
     beginning.duration = std::min(study_case.duration, study_case.step * static_cast<double>(few_steps));
-    part = march_part(beginning, registry, observe);
+    part = march_part(beginning, steps, registry, observe);
   }
   if (!part) return std::nullopt;
   if (coarse.step > study_case.step && part->whole && part->step_seconds > 0) {
     StudyCase finer = study_case;
     finer.step = std::max(study_case.step, study_case.duration * part->step_seconds / long_enough);
     if (finer.step * worth_refining < coarse.step)
-      if (const auto found = march_part(finer, registry, observe); found && found->whole) part = found;
+      if (const auto found = march_part(finer, steps, registry, observe); found && found->whole) part = found;
   }
   return part->step_seconds;
 }

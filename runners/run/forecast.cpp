@@ -16,6 +16,7 @@ namespace {
 
 constexpr double enough_measuring = 1.5;  // s for all parts together
 constexpr int most_measured = 64;
+constexpr double preparations = 2;  // that measuring a case takes
 // Processor time of a run that is no case's: the program and its plugins opened, the report written; and of each case:
 // its fingerprint, its row in the store, its curve, its share of tables and page.
 constexpr double each_run = 0.1, each_case = 3e-3;
@@ -85,7 +86,10 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
   if (kind.watch || kind.rehearse) {
     const double begin = thread_seconds();
     for (const PlannedCase* one : by_group(cases)) {
-      if (found.measured == most_measured || thread_seconds() - begin > enough_measuring) break;
+      const double left = enough_measuring - (thread_seconds() - begin);
+      if (found.measured == most_measured || left < 0) break;
+      // Setting up again what took that long to plan leaves no time for others: the model is believed.
+      if (preparations * one->plan_seconds > left) continue;
       const double ratio = measured_ratio(*one, kind, planner, registry);
       if (ratio <= 0) continue;
       ++found.measured;
