@@ -66,7 +66,7 @@ Table bifurcation_answers(const StudyResults& results) {
     const std::string one = rows.text(0, "verdict");
     const bool whole = rows.size() == 1 && one != "depends" && from && to;
     const std::string lead = whole ? fmt::format("Over the whole range{} the motion is {}.", range, one)
-                                   : fmt::format("Over {}{} the motion is {}.",
+                                   : fmt::format("The motion over {}{}: {}.",
                                                  report::count_text(all, "interval", "intervals"), range, parts);
     for (std::size_t row = 0; row < rows.size(); ++row)
       add(rows.text(row, "choice"), rows.text(row, "verdict"), Cell(rows.number(row, "share")),

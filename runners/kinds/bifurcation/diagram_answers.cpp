@@ -90,7 +90,8 @@ void say_motions(const StudyResults& results, const CaseView& view, const CaseRe
                    [](const report::Orbit& a, const report::Orbit& b) { return a.parameter < b.parameter; });
   std::vector<std::string> said = stretches_of(orbits);
   if (said.size() > most_stretches) said = class_counts_of(orbits);
-  const std::string who = results.cases.size() > 1 ? ", in the reference case (" + view.name(standard) + ")" : "";
+  const std::string who =
+      results.cases.size() > 1 ? ", in the reference case (" + case_words(view, standard) + ")" : "";
   add(answers, "diagram", {},
       fmt::format("{}{}, the motion over {} is {}.", from_where(start), who,
                   report::with_unit(report::swept_parameter(results)), list_text(said, most_stretches)));
@@ -131,10 +132,10 @@ void say_each(std::vector<Compared> compared, const CaseView& view, const CaseRe
   std::stable_sort(compared.begin(), compared.end(),
                    [](const Compared& a, const Compared& b) { return a.share() > b.share(); });
   std::vector<std::string> said;
-  for (const Compared& one : compared) said.push_back(fmt::format("{} {}", case_words(view, *one.record), one.same));
+  for (const Compared& one : compared) said.push_back(fmt::format("{} ({})", one.same, case_words(view, *one.record)));
   add(answers, "agreement", compared.back().share(),
       fmt::format(
-          "Of {} that {} has over values and starts, others have: {}.",
+          "Of {} that {} has over values and starts, others share: {}.",
           report::count_text(static_cast<std::size_t>(compared.front().all), "class of motion", "classes of motion"),
           case_words(view, standard), list_text(said, most_listed)));
 }
@@ -153,7 +154,7 @@ void say_steps(const std::vector<Compared>& compared, const CaseView& view, cons
       least = one.steps;
     }
     const Compared& finest = steps.front();
-    from[least].push_back(std::isfinite(least) ? name : fmt::format("{} {}", name, finest.same));
+    from[least].push_back(std::isfinite(least) ? name : fmt::format("{} ({})", finest.same, name));
   }
   const std::string whole = fmt::format("the {} classes of {}", compared.front().all, case_words(view, standard));
   for (const auto& [least, names] : from)

@@ -51,7 +51,10 @@ void say_precision(const StudyResults& results, Table& answers) {
     const auto share = rows.number(row, rows.column_if_any("share"));
     if (!record || !share || rows.text(row, "error") != error || *share > 0.1) continue;
     const std::string where = scene.empty() ? "" : ", " + view.label(*record, scene);
-    std::string sentence = fmt::format("Cheapest with {} at most {} % of the motion{}: {}", error_words(error),
+    // A reference of the mesh has the errors of mesh and mass itself.
+    const bool of_the_scheme = measure(*record, "reference_of_mesh").value_or(0) > 0;
+    std::string sentence = fmt::format("Cheapest with {}{} at most {} % of the motion{}: {}", error_words(error),
+                                       of_the_scheme ? ", against the same mesh and mass exact in time," : "",
                                        report::number_text(100 * *share, 2), where,
                                        how(view, *record, rows.number(row, "seconds").value_or(0)));
     const CaseRecord* other = view.find(rows.text(row, "other_case"));

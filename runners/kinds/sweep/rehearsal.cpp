@@ -7,9 +7,9 @@ namespace ricochet {
 namespace {
 
 // Seconds that a part is meant to take, and those after which it is given up.
-constexpr double part_wanted = 0.25, part_longest = 1;
+constexpr double part_wanted = 0.4, part_longest = 2;
 // With fewer an orbit is no longer what it is with more.
-constexpr int least_steps = 100;
+constexpr int least_steps = 250;
 
 }  // namespace
 

@@ -78,9 +78,10 @@ TEST_CASE("an answer follows the motion of the finest case along the parameter, 
 
 TEST_CASE("few cases are told one by one, many by the step from which on they agree") {
   const StudyResults few = agreements({500, 2000}, {{"a", {0.7, 1}}, {"b", {0.5, 0.9}}});
-  CHECK_THAT(said(few, "agreement"),
-             Contains("Of 100 classes of motion that a, 2000 steps per period has over values and starts, others have: "
-                      "b, 2000 steps per period 90, a, 500 steps per period 70, b, 500 steps per period 50."));
+  CHECK_THAT(
+      said(few, "agreement"),
+      Contains("Of 100 classes of motion that a, 2000 steps per period has over values and starts, others share: "
+               "90 (b, 2000 steps per period), 70 (a, 500 steps per period), 50 (b, 500 steps per period)."));
   const StudyResults many =
       agreements({500, 1000, 2000, 4000},
                  {{"a", {0.7, 0.96, 0.96, 1}}, {"b", {0.96, 0.5, 0.97, 0.98}}, {"c", {0.1, 0.2, 0.3, 0.4}}});
@@ -89,7 +90,7 @@ TEST_CASE("few cases are told one by one, many by the step from which on they ag
   // What agrees at a coarse step and not at a finer one agreed by chance.
   CHECK_THAT(text, Contains("from 2000 steps per period on: b."));
   CHECK_THAT(text,
-             Contains("Fewer of the 100 classes of a, 4000 steps per period at every step") && Contains(": c 40."));
+             Contains("Fewer of the 100 classes of a, 4000 steps per period at every step") && Contains(": 40 (c)."));
 }
 
 TEST_CASE("attractors are counted by who shows them; of a single case there is nothing to compare") {

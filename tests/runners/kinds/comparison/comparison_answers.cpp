@@ -55,6 +55,23 @@ TEST_CASE("an answer names an error by words, never by its column") {
   }
 }
 
+TEST_CASE("an error against a reference of the mesh is said to be that of the scheme alone") {
+  StudyResults results = two_schemes();
+  Table targets{
+      "precision_targets",
+      "",
+      named_columns({"case", "error", "at_most", "seconds", "other_case", "other_seconds", "overlap", "share"}),
+      {}};
+  targets.rows.push_back({"one", "tip-linf", 1e-3, 2e-4, "other", 3e-4, false, 0.01});
+  results.derived.push_back(std::move(targets));
+  for (const bool of_the_mesh : {false, true}) {
+    results.cases.front().measures = {{"reference_of_mesh", of_the_mesh}};
+    Table answers = answers_head();
+    say_precision(results, answers);
+    CHECK((sentences(answers).find("the same mesh and mass exact in time") != std::string::npos) == of_the_mesh);
+  }
+}
+
 TEST_CASE("orders that nobody declares are told by their middle, and their ends") {
   StudyResults results = two_schemes();
   Table orders{"orders", "", named_columns({"case", "refined", "order", "declared", "verdict"}), {}};
