@@ -17,8 +17,8 @@ struct Forecast {
 /// beside (references, repeats), what setting up, storing and describing a case costs. Fills predicted_seconds of each
 /// plan with what was found.
 ///
-/// It does not know cases that will diverge, and of a sweep's orbits it knows a few. Of 55 studies that were run 50 took
-/// what was predicted within a factor of 1.5, all of them within 2.1.
+/// It does not know cases that will diverge, and of a sweep's orbits it knows a few. Of 55 studies that were run 50
+/// took what was predicted within a factor of 1.5, all of them within 2.1.
 Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const CasePlanner& planner,
                   const Registry& registry);
 
