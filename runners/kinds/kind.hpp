@@ -69,6 +69,9 @@ struct Kind {
   /// What watches the steps of a case that marches its scene, once, from start to end: a forecast then rests on its
   /// measured pace. Empty: on what the plan predicts.
   MakeObserver watch;
+  /// How many times the processor time that its plan predicts a case takes, found by running a small part of it; 0
+  /// where that cannot be told. Of kinds whose cases march more than once. Empty: the plan is believed.
+  std::function<double(const StudyCase&, const Registry&)> rehearse;
   /// Processor seconds that a study takes beside the marches of its cases (references, repeats). Empty: none.
   std::function<double(const ForecastContext&)> beside;
   /// What runs the cases of a study.

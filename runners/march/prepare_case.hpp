@@ -22,7 +22,8 @@ struct Prepared {
 };
 
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).
-Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
+/// `expected_steps`: those that its operator is chosen for, where it marches a part of them; 0: its own.
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry, long long expected_steps = 0);
 
 /// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out; `refused`, with
 /// the sentence, where there is no program.

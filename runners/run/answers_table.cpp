@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <ricochet/measure/statistics/choices.hpp>
@@ -234,6 +235,20 @@ void say_shares(const report::CaseView& view, const std::vector<std::string>& ob
           AnswerRow{.measure = name, .verdict = "shares", .sentence = rows.text(row, "sentence")}.row());
 }
 
+/// Of cases that gave no result: how many, and what sets them apart.
+void say_ends(const report::CaseView& view, Table& table) {
+  for (const char* status : {"diverged", "failed", "refused"}) {
+    const Cases ended = view.with_status(status);
+    if (ended.empty()) continue;
+    const std::string who = ended.size() == 1 ? view.name(*ended.front()) : view.describe(ended);
+    table.rows.push_back(
+        AnswerRow{.verdict = status,
+                  .combinations = ended.size(),
+                  .sentence = fmt::format("{}{}: {}.", static_cast<char>(std::toupper(*status)), status + 1, who)}
+            .row());
+  }
+}
+
 Table choices_said(const StudyResults& results) {
   Table table = answers_head();
   const std::vector<std::string> observed = observed_measures(results);
@@ -278,6 +293,7 @@ Table choices_said(const StudyResults& results) {
                                    .sentence = line}
                              .row());
   }
+  say_ends(view, table);
   return table;
 }
 

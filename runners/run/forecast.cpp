@@ -16,26 +16,29 @@ namespace {
 
 constexpr double enough_measuring = 1.5;  // s for all parts together
 constexpr int most_measured = 64;
+constexpr double preparations = 2;  // that measuring a case takes
 // Processor time of a run that is no case's: the program and its plugins opened, the report written; and of each case:
 // its fingerprint, its row in the store, its curve, its share of tables and page.
-constexpr double each_run = 0.2, each_case = 6e-3;
+constexpr double each_run = 0.1, each_case = 3e-3;
 
 std::string group_of(const StudyCase& one) {
   return content_of(one.contact).dump() + "/" + std::to_string(one.elements) + "/" + one.mass.name;
 }
 
-/// 0 where it cannot be told.
-double measured_pace(const StudyCase& study_case, const CasePlanner& planner, const Registry& registry,
-                     const MakeObserver& watch) {
-  const std::string text = planner.ask(study_case, [&]() -> std::string {
-    return fmt::format("{}", march_pace(study_case, registry, watch).value_or(0));
-  });
-  return text.empty() ? 0 : std::strtod(text.c_str(), nullptr);
-}
-
 /// Seconds of a step by the model, of which the measured ones are a multiple.
 double modelled_step(const CasePlan& plan) {
   return plan.steps > 0 ? plan.predicted_seconds / static_cast<double>(plan.steps) : 0;
+}
+
+/// How many times what the model says a case costs, measured; 0 where it cannot be told.
+double measured_ratio(const PlannedCase& one, const Kind& kind, const CasePlanner& planner, const Registry& registry) {
+  const StudyCase& study_case = *one.study_case;
+  const std::string text = planner.ask(study_case, [&]() -> std::string {
+    return fmt::format("{}", kind.rehearse
+                                 ? kind.rehearse(study_case, registry)
+                                 : march_pace(study_case, registry, kind.watch).value_or(0) / modelled_step(one.plan));
+  });
+  return text.empty() ? 0 : std::strtod(text.c_str(), nullptr);
 }
 
 /// Those whose cost the model knows, the costliest of each group first, then the next of each.
@@ -80,14 +83,17 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
   const Kind& kind = *find_kind(study.kind);
   Forecast found;
   Ratios ratios;
-  if (kind.watch) {
+  if (kind.watch || kind.rehearse) {
     const double begin = thread_seconds();
     for (const PlannedCase* one : by_group(cases)) {
-      if (found.measured == most_measured || thread_seconds() - begin > enough_measuring) break;
-      const double pace = measured_pace(*one->study_case, planner, registry, kind.watch);
-      if (pace <= 0) continue;
+      const double left = enough_measuring - (thread_seconds() - begin);
+      if (found.measured == most_measured || left < 0) break;
+      // Setting up again what took that long to plan leaves no time for others: the model is believed.
+      if (preparations * one->plan_seconds > left) continue;
+      const double ratio = measured_ratio(*one, kind, planner, registry);
+      if (ratio <= 0) continue;
       ++found.measured;
-      ratios.add(group_of(*one->study_case), pace / modelled_step(one->plan));
+      ratios.add(group_of(*one->study_case), ratio);
     }
   }
   std::map<const StudyCase*, double> steps;

@@ -34,8 +34,10 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   const std::string pointer = study_case.settings.at("parameter").at("pointer").get<std::string>();
   ForcedScenes scenes(study_case, registry);
   int representative = -1;
+  // Orbits that go through the values begin at rest.
+  const bool own_state = !any_start(starts, false);
   for (const double value : values) {
-    const int scene = scenes.add(pointer, value, false);
+    const int scene = scenes.add(pointer, value, own_state);
     if (scenes[scene].refusal.empty()) {
       representative = scene;
       break;

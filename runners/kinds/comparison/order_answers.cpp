@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/report/case_view.hpp"
@@ -13,8 +14,9 @@ namespace {
 
 /// The orders in the step of one time scheme, over errors and everything else that varies.
 struct SchemeOrders {
-  std::size_t confirmed = 0, refuted = 0, undecided = 0, saturated = 0, found = 0;
-  std::optional<double> declared, low, high;  ///< of the orders that were fitted
+  std::size_t confirmed = 0, refuted = 0, undecided = 0, saturated = 0;
+  std::optional<double> declared;
+  std::vector<double> orders;  ///< that were fitted
   std::size_t declaring() const { return confirmed + refuted + undecided; }
   const char* verdict() const {
     // Of intervals that hold the order in 95 of 100 cases some do not, by chance.
@@ -27,15 +29,10 @@ struct SchemeOrders {
   }
 };
 
-void include(SchemeOrders& scheme, double order) {
-  scheme.low = std::min(scheme.low.value_or(order), order);
-  scheme.high = std::max(scheme.high.value_or(order), order);
-  ++scheme.found;
-}
-
 std::string span(const SchemeOrders& scheme) {
-  if (!scheme.low) return scheme.saturated > 0 ? "errors do not fall" : "no order found";
-  const std::string low = fmt::format("{:.2f}", *scheme.low), high = fmt::format("{:.2f}", *scheme.high);
+  if (scheme.orders.empty()) return scheme.saturated > 0 ? "errors do not fall" : "no order found";
+  const auto [least, most] = std::minmax_element(scheme.orders.begin(), scheme.orders.end());
+  const std::string low = fmt::format("{:.2f}", *least), high = fmt::format("{:.2f}", *most);
   return low == high ? low : low + " to " + high;
 }
 
@@ -48,12 +45,16 @@ std::string clause(const std::string& name, const SchemeOrders& scheme) {
   if (verdict == "not as declared")
     return fmt::format("{} (declared {}, found {}; {} of {} refuted)", name, report::number_text(*scheme.declared, 3),
                        span(scheme), scheme.refuted, scheme.declaring());
-  return fmt::format("{} ({})", name, span(scheme));
+  // Where no order is known beforehand, the errors fall each in their own way: the middle one says more than the ends.
+  constexpr std::size_t few = 3;
+  const std::string middle =
+      scheme.orders.size() >= few ? fmt::format("median {:.2f}; ", median(scheme.orders)) : std::string();
+  return fmt::format("{} ({}{})", name, middle, span(scheme));
 }
 
 std::string opening(const std::string& verdict) {
   if (verdict == "as declared") return "Converge with the order that they declare: ";
-  if (verdict == "not as declared") return "Do not: ";
+  if (verdict == "not as declared") return "Do not converge as they declare: ";
   if (verdict == "not decided") return "Not decided by these points: ";
   return "Orders where none is declared, which through contact is the rule: ";
 }
@@ -78,7 +79,7 @@ void say_orders(const StudyResults& results, Table& answers) {
       const std::string verdict = rows.text(row, "verdict");
       ++(verdict == "confirmed" ? scheme.confirmed : verdict == "refuted" ? scheme.refuted : scheme.undecided);
     }
-    if (const auto order = rows.number(row, "order")) include(scheme, *order);
+    if (const auto order = rows.number(row, "order")) scheme.orders.push_back(*order);
     scheme.saturated += !rows.text(row, rows.column_if_any("saturates_at")).empty();
   }
   for (const std::string verdict : {"as declared", "not as declared", "no order declared", "not decided"}) {
@@ -92,7 +93,7 @@ void say_orders(const StudyResults& results, Table& answers) {
       answers.rows.push_back(AnswerRow{.choice = name,
                                        .measure = "order in the step",
                                        .verdict = verdict,
-                                       .combinations = scheme.found,
+                                       .combinations = scheme.orders.size(),
                                        .sentence = first ? Cell(sentence + ".") : Cell()}
                                  .row());
       first = false;

@@ -270,32 +270,6 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
   });
 }
 
-std::vector<References::Aside> References::marches(const std::vector<const StudyCase*>& cases) const {
-  std::vector<Aside> found;
-  std::set<std::string> known;
-  const bool several = finest_ != coarsest_;
-  for (const StudyCase* one : cases) {
-    for (const MethodChoice& choice : one->references) {
-      if (choice.name != marched_reference || !known.insert(key(*one, choice)).second) continue;
-      const double least = one->duration / smallest_step_, elements = std::max(1, one->elements);
-      found.push_back({one, (4 + 8) * least, several ? 2 * finest_ / elements : 1});
-      if (several) found.push_back({one, 4 * least, finest_ / elements});
-    }
-    const Json twin = {{"scene", one->scene_json}, {"elements", one->elements}};
-    if (!one->settings.contains("horizon") && known.insert(twin.dump()).second)
-      found.push_back({one, 2 * one->duration / one->step, 1});
-  }
-  return found;
-}
-
-std::size_t References::solutions(const std::vector<const StudyCase*>& cases) const {
-  std::set<std::string> known;
-  for (const StudyCase* one : cases)
-    for (const MethodChoice& choice : one->references)
-      if (choice.name != marched_reference) known.insert(key(*one, choice));
-  return known.size();
-}
-
 References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {
   // One pair of nearby runs per scene and mesh: the first case of them, at its own step.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};

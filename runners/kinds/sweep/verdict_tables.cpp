@@ -80,6 +80,26 @@ class Verdicts {
     return out;
   }
 
+  /// What cases that agree show: one set of attractors, or the classes with how many values have them.
+  std::string motions(const Stretch& stretch, const std::set<std::size_t>& cases) const {
+    if (attractor_sets(stretch, cases).size() < 2) return sets(stretch, cases);
+    std::vector<std::pair<std::string, std::size_t>> found;
+    for (const Opinion& opinion : stretch) {
+      if (opinion.decided.empty()) continue;
+      std::set<std::string> words;
+      for (const int attractor : opinion.decided.begin()->second) words.insert(text(classes_.at(attractor)));
+      std::string name;
+      for (const std::string& word : words) name += (name.empty() ? "" : " and ") + word;
+      ++in_order_met(found, name);
+    }
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::string out;
+    for (const auto& [name, count] : found)
+      out += fmt::format("{}{} at {}", out.empty() ? "" : ", ", name,
+                         out.empty() ? count_of(count, "value") : std::to_string(count));
+    return out;
+  }
+
   std::set<std::size_t> decided(const Stretch& stretch) const {
     std::set<std::size_t> out;
     for (const Opinion& opinion : stretch)
@@ -127,12 +147,12 @@ class Verdicts {
     const std::set<std::size_t> cases = decided(stretch);
     const std::string where = place(stretch);
     if (stretch.front().verdict == Robustness::robust)
-      return fmt::format("{} all {} agree: {}.{}", where, count_of(cases.size(), "case"), sets(stretch, cases),
+      return fmt::format("{} all {} agree: {}.{}", where, count_of(cases.size(), "case"), motions(stretch, cases),
                          viscosity(stretch));
     if (stretch.front().verdict == Robustness::undecided) {
       const std::string agree = cases.empty() ? ""
                                               : fmt::format(" The {} that decide agree: {}.",
-                                                            count_of(cases.size(), "case"), sets(stretch, cases));
+                                                            count_of(cases.size(), "case"), motions(stretch, cases));
       return fmt::format("{} the comparison stays open.{}{}{}", where, open(stretch), agree, viscosity(stretch));
     }
     double share = 0, second = 0;

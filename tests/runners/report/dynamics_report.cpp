@@ -221,6 +221,21 @@ TEST_CASE("the answer tells verdicts, regimes, grazing and viscosity by their nu
   CHECK_THAT(html, Contains("Regimes of " + std::to_string(orbits) + " orbits"));
 }
 
+TEST_CASE("an answer tells the widest intervals of a verdict, and counts the others", "[report]") {
+  StudyResults results = synthetic::dynamics();
+  Table& verdicts = *find_table(results.derived, "verdicts");
+  verdicts.rows.clear();
+  for (int k = 0; k < 8; ++k)
+    verdicts.rows.push_back(
+        {0.07 + k, 0.07 + k + 0.01 * k, "depends", "time.beta", "Interval " + std::to_string(k) + "."});
+  const Table answers = bifurcation_answers(results);
+  const TableReader said(answers);
+  std::string sentences;
+  for (size_t row = 0; row < said.size(); ++row) sentences += said.text(row, "sentence");
+  CHECK_THAT(sentences, Contains("Interval 5.Interval 6.Interval 7.5 intervals are told in verdicts.csv alone"));
+  CHECK(sentences.find("Interval 4.") == std::string::npos);
+}
+
 TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {
   const std::string html = dynamics_tables_html(CaseView(synthetic::dynamics()));
   CHECK_THAT(html, Contains("<h3>Attractors</h3>") && Contains("common to all") && Contains("&lt;only&gt;"));

@@ -106,3 +106,11 @@ TEST_CASE("two levels have no share, nor does what round-off explains") {
   // 2⁻⁵² × 1000 steps is 2.2e-13.
   CHECK(shares(study([](int, int, double step) { return 0.5 + 1e-10 * step; })).empty());
 }
+
+TEST_CASE("cases that gave no result are told by what sets them apart; where all are done nothing is said of it") {
+  StudyResults results = study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; });
+  CHECK(said(answers_table(results)).find("iverged") == std::string::npos);
+  for (CaseRecord& record : results.cases)
+    if (record.axes[0].second == "heavy" && record.axes[1].second == "soft") record.status = "diverged";
+  CHECK_THAT(said(answers_table(results)), Catch::Contains("Diverged: 3 of 12 cases (mass heavy; contact soft)."));
+}

@@ -89,3 +89,65 @@ TEST_CASE("a pace is that of the case, whatever its step: what is refused has no
   Planned refused(impossible);
   CHECK_FALSE(march_pace(*refused.cases.front().study_case, refused.registry));
 }
+
+TEST_CASE("forecast: a reference that is solved costs what solving it takes, and not a second") {
+  Json study = Json::parse(R"({
+    "name": "forecast", "kind": "convergence",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 4}, "stops": {"upper": 0.7, "at": "tip"},
+              "initial": {"displacement": 0.5, "velocity": 1}},
+    "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark-dumont-paoli"},
+    "step": 1e-2, "duration": 2, "samples": 20, "reference": "exact"})");
+  Planned planned(study);
+  ForecastContext context{planned.study, planned.registry, {}, [](const StudyCase&) { return 0.0; }};
+  for (const StudyCase& one : planned.study.cases) context.cases.push_back(&one);
+  const double seconds = find_kind("convergence")->beside(context);
+  CHECK(seconds > 0);
+  CHECK(seconds < 0.5);
+}
+
+TEST_CASE("forecast: a part of a sweep, and of a range of steps, costs as much more than its plan as the whole does") {
+  Json sweep = Json::parse(R"({
+    "name": "sweep", "kind": "bifurcation",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.2,
+                            "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
+    "methods": {"mass": "consistent", "contact": "signorini",
+                "time": {"name": "newmark-dumont-paoli", "restitution": 0.5}},
+    "parameter": {"pointer": "/scene/structure/force/pulsation", "from": 2, "to": 3, "count": 24},
+    "steps_per_period": 400, "start": ["rest"], "transient": {"periods": 60, "at_most": 200}, "keep": 20})");
+  Json range = swinging_beam("stability");
+  range.erase("step");
+  range["mesh"]["elements"] = 6;
+  range["methods"]["mass"] = "consistent";
+  range["steps"] = {{"from", 1e-5}, {"to", 1e-3}, {"count", 16}};
+  for (const Json& study : {sweep, range}) {
+    Planned planned(study);
+    REQUIRE(planned.study.cases.size() == 1);
+    const StudyCase& one = planned.study.cases.front();
+    const Kind& kind = *find_kind(planned.study.kind);
+    const double ratio = kind.rehearse(one, planned.registry);
+    REQUIRE(ratio > 0);
+    const CaseRunner runner = kind.start({planned.study, planned.registry, [](const StudyCase&) { return ""; }, 1});
+    const std::atomic<bool> stop = false;
+    if (runner.open) runner.open({}, stop);
+    const CaseRecord record = runner.run(one, stop);
+    const double taken = record.setup_seconds + record.run_seconds,
+                 predicted = ratio * planned.cases.front().plan.predicted_seconds;
+    // A machine has its moods.
+    CHECK(predicted < 4 * taken);
+    CHECK(taken < 4 * predicted);
+  }
+}
+
+TEST_CASE("forecast: orbits that begin in the state of the scene are planned from there") {
+  Json study = Json::parse(R"({
+    "name": "behind", "kind": "bifurcation",
+    "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "force": {"amplitude": 1, "pulsation": 2}},
+              "stops": {"upper": -0.1, "at": "tip"}, "initial": {"displacement": -0.1}},
+    "methods": {"mass": "consistent", "contact": "signorini",
+                "time": {"name": "newmark-dumont-paoli", "restitution": 0.5}},
+    "parameter": {"pointer": "/scene/structure/force/pulsation", "values": [2.85, 2.89]},
+    "steps_per_period": 100, "start": ["state"], "transient": {"periods": 5, "at_most": 5}, "keep": 16})");
+  CHECK(Planned(study).cases.front().plan.refusal.empty());
+  study["start"] = Json::array({"rest"});
+  CHECK_FALSE(Planned(study).cases.front().plan.refusal.empty());
+}

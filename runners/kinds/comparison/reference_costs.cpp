@@ -1,0 +1,95 @@
+// What references cost, for a forecast.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <ricochet/loader/child.hpp>
+#include <set>
+
+#include "runners/kinds/comparison/references.hpp"
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+// Seconds that all solutions together may be tried for, and one of them; one that is not done by then costs as if it
+// had been.
+constexpr double enough_trying = 1, longest_trial = 2;
+// Shares of the duration that are solved: what the second adds to the first, the rest will add as well.
+constexpr double first_share = 0.125, second_share = 0.25;
+
+StudyCase beginning_of(const StudyCase& study_case, double share) {
+  StudyCase part = study_case;
+  part.duration = share * study_case.duration;
+  part.samples = std::max(1, static_cast<int>(share * study_case.samples));
+  return part;
+}
+
+}  // namespace
+
+std::vector<References::Aside> References::marches(const std::vector<const StudyCase*>& cases) const {
+  std::vector<Aside> found;
+  std::set<std::string> known;
+  const bool several = finest_ != coarsest_;
+  for (const StudyCase* one : cases) {
+    for (const MethodChoice& choice : one->references) {
+      if (choice.name != marched_reference || !known.insert(key(*one, choice)).second) continue;
+      const double least = one->duration / smallest_step_, elements = std::max(1, one->elements);
+      found.push_back({one, (4 + 8) * least, several ? 2 * finest_ / elements : 1});
+      if (several) found.push_back({one, 4 * least, finest_ / elements});
+    }
+    const Json twin = {{"scene", one->scene_json}, {"elements", one->elements}};
+    if (!one->settings.contains("horizon") && known.insert(twin.dump()).second)
+      found.push_back({one, 2 * one->duration / one->step, 1});
+  }
+  return found;
+}
+
+double References::solution_seconds(const std::vector<const StudyCase*>& cases) const {
+  std::set<std::string> known;
+  std::map<std::string, std::vector<double>> tried;  // by name
+  std::map<std::string, std::size_t> untried;
+  double spent = 0, all = 0;
+  for (const StudyCase* one : cases)
+    for (const MethodChoice& choice : one->references) {
+      if (choice.name == marched_reference || !known.insert(key(*one, choice)).second) continue;
+      if (spent > enough_trying) {
+        ++untried[choice.name];
+        continue;
+      }
+      // A reference may be anybody's library, and never return.
+      const ChildOutcome outcome = run_in_child(
+          [&] {
+            const std::atomic<bool> stop = false;
+            double seconds[2] = {};
+            for (const int k : {0, 1}) {
+              const double begin = thread_seconds();
+              compute(beginning_of(*one, k == 0 ? first_share : second_share), choice, stop);
+              seconds[k] = thread_seconds() - begin;
+            }
+            const double more = std::max(0.0, seconds[1] - seconds[0]) / (second_share - first_share);
+            return fmt::format("{} {}", seconds[0] + seconds[1], seconds[1] + (1 - second_share) * more);
+          },
+          longest_trial);
+      double trial = longest_trial, seconds = longest_trial / (first_share + second_share);
+      if (outcome.ok()) {
+        char* rest = nullptr;
+        trial = std::strtod(outcome.text.c_str(), &rest);
+        seconds = std::strtod(rest, nullptr);
+      } else if (outcome.end != ChildOutcome::End::timeout) {
+        continue;  // told in the rows of its cases
+      }
+      spent += trial;
+      all += seconds;
+      tried[choice.name].push_back(seconds);
+    }
+  for (const auto& [name, count] : untried) {
+    double sum = 0;
+    for (const double seconds : tried[name]) sum += seconds;
+    all += tried[name].empty() ? 0 : sum / static_cast<double>(tried[name].size()) * static_cast<double>(count);
+  }
+  return all;
+}
+
+}  // namespace ricochet
