@@ -107,9 +107,8 @@ void register_all(Registry& registry) {
                                      "ρ∞, what a step leaves of the highest frequencies; 1: two trapezia when split "
                                      "is ½"),
                       real_parameter("split", "1", 0.0, {.low = 0, .high = 1, .high_open = true},
-                                     "γ, where the first sub-step ends, in steps; 0 takes (2 − √(2+2ρ∞))/(1 − ρ∞), ½ "
-                                     "at ρ∞ = 1, with which both solves have the same matrix; 0.5 with ρ∞ = 0 is the "
-                                     "scheme of 2005")}},
+                                     "γ, where the first sub-step ends, in steps; 0: (2 − √(2+2ρ∞))/(1 − ρ∞), ½ at ρ∞ "
+                                     "= 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005")}},
       [](const Parameters& p) { return std::make_unique<Bathe>(p.real("rho_inf"), p.real("split")); });
 }
 

@@ -49,7 +49,7 @@ class GeneralisedAlpha final : public TimeScheme {
 void register_all(Registry& registry) {
   registry.add_time(
       {.name = "generalised-alpha",
-       .summary = "Chung–Hulbert α: second order, as much damping of high frequencies as asked, the least of low ones",
+       .summary = "Chung–Hulbert α: second order, damping of high frequencies as asked, least of low ones",
        .text =
            "Newmark's updates, inertia and forces weighted over both ends of the step so that the highest frequencies "
            "keep ρ∞ of their amplitude per step: of second order, unconditionally stable. Stops are at position level. "
@@ -61,8 +61,8 @@ void register_all(Registry& registry) {
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
-                                     "how a rigid effort enters: end, whole (π = 1); weighted, among the internal "
-                                     "forces (1−α_f now, α_f of the effort before)")}},
+                                     "how a rigid effort enters: end, whole; weighted, as internal forces (1−α_f now, "
+                                     "α_f of the one before)")}},
       [](const Parameters& p) {
         return std::make_unique<GeneralisedAlpha>(p.real("rho_inf"), p.word("contact") == "weighted");
       });

@@ -76,8 +76,8 @@ void register_all(Registry& registry) {
                  "structural dynamics; Hughes (1987), The Finite Element Method, section 9.3",
        .parameters = {real_parameter("alpha", "1", -0.1, {.low = -1.0 / 3, .high = 0}, "α; 0 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
-                                     "how a rigid effort enters: end, whole (π = 1); weighted, among the internal "
-                                     "forces (1+α now, −α of the effort before)")}},
+                                     "how a rigid effort enters: end, whole; weighted, as internal forces (1+α now, −α "
+                                     "of the one before)")}},
       [](const Parameters& p) {
         return std::make_unique<HilberHughesTaylor>(p.real("alpha"), p.word("contact") == "weighted");
       });

@@ -118,7 +118,7 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
 void register_all(Registry& registry) {
   registry.add_time(
       {.name = "nonsmooth-generalised-alpha",
-       .summary = "generalised α whose velocities jump by Newton's impact law: order 2 and damping of a choice between",
+       .summary = "generalised α whose velocities jump by Newton's impact law",
        .text =
            "The smooth motion is that of generalised-alpha, of second order with ρ∞ at the highest frequencies; "
            "contact "

@@ -65,8 +65,7 @@ Field step() {
 }
 
 Field duration() {
-  return single(real("duration", "s", positive, std::nullopt,
-                     "Simulated time; the run ends at the last whole step not beyond it."));
+  return single(real("duration", "s", positive, std::nullopt, "Simulated time; the run ends at its last whole step."));
 }
 
 Field samples() {
@@ -81,8 +80,8 @@ Field optional(Field field) {
 }
 
 Field budget() {
-  return optional(real("budget", "s", positive, std::nullopt,
-                       "Processor time after which a case counts as failed; null: no limit."));
+  return optional(
+      real("budget", "s", positive, std::nullopt, "Processor time after which a case has failed; null: none."));
 }
 
 Field observe(std::vector<std::string> measures) {
@@ -93,8 +92,8 @@ Field observe(std::vector<std::string> measures) {
 }
 
 Field march(const char* unless_given) {
-  Field field = word("march", {"auto", "every-step", "flights"}, unless_given,
-                     "Whether steps without change of contact are left out.");
+  Field field =
+      word("march", {"auto", "every-step", "flights"}, unless_given, "Leave out steps without change of contact.");
   field.axis = true;
   return field;
 }

@@ -196,7 +196,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   // A kind without the key marches every step.
   const std::vector<std::string> marches =
       resolved.contains("march") ? list_of<std::string>(resolved["march"]) : std::vector<std::string>{"every-step"};
+  // One that is not given is none of the study's axes, and none of the study as it is kept.
   const bool ways = given.contains("march");
+  if (!ways) resolved.erase("march");
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 

@@ -24,8 +24,8 @@ ObjectForm section() {
         "",
         {}}},
       {{"given"},
-       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness, given as a number."),
-         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length, given as a number.")},
+       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness."),
+         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length.")},
         "",
         {}}},
   };
@@ -61,7 +61,7 @@ ObjectForm structure() {
                 real("EA", "N", positive, std::nullopt, "Stiffness EA."),
                 real("rhoA", "kg/m", positive, std::nullopt, "Mass per length ρA."),
                 word("fixed", {"right", "left", "none"}, std::nullopt,
-                     "The end that is held; the tip is the free one (x = 0 where both are free)."),
+                     "The end that is held; the tip is the free one, or x = 0."),
                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
   ObjectForm keys;
   keys.fields = {word("type", {"beam", "oscillator", "bar"}, std::nullopt, "What moves.")};
@@ -79,7 +79,7 @@ ObjectForm scene() {
   stops.fields.back().axis = true;
 
   ObjectForm support;
-  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the clamp's motion φ(t) = A0 sin(ωt + ψ)."),
+  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the clamp's motion."),
                     real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the clamp's motion."),
                     real("phase", "rad", any, 0.0, "ψ of the clamp's motion.")};
 
@@ -92,7 +92,7 @@ ObjectForm scene() {
   initial.fields.back().axis = true;
 
   ObjectForm point;
-  point.fields = {optional(real("at", "m", any, std::nullopt, "Where the force acts; an oscillator has no such key.")),
+  point.fields = {optional(real("at", "m", any, std::nullopt, "Where the force acts; an oscillator has none.")),
                   single(formula("force", "N", "t", false, std::nullopt, "Force F(t)."))};
   ObjectForm spread;
   spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
@@ -102,13 +102,12 @@ ObjectForm scene() {
   load.nested.back().ways = {point, spread};
 
   ObjectForm keys;
-  keys.fields = {
-      object("structure", std::nullopt, "The structure.", structure()),
-      object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: no stops.", stops),
-      object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
-             "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
-      std::move(load),
-      object("initial", Json::object(), "Absolute initial state; absent: at rest in the laboratory frame.", initial)};
+  keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
+                 object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: none.", stops),
+                 object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+                        "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+                 std::move(load),
+                 object("initial", Json::object(), "Absolute initial state; absent: at rest.", initial)};
   return keys;
 }
 
@@ -124,20 +123,20 @@ ObjectForm study() {
   mesh.fields.back().axis = true;
 
   ObjectForm chosen;
-  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised, hence the mass matrix."),
+  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised."),
                    methods("contact", Role::contact, "The contact law."),
                    methods("time", Role::time, "The time scheme.")};
 
   ObjectForm keys;
   keys.fields = {
       of_form(Field::Form::text, "name", std::nullopt,
-              "Name of the study: letters, digits, '-', '_' and '.'; results go to results/NAME."),
+              "Letters, digits, '-', '_' and '.'; results go to results/NAME."),
       of_form(Field::Form::text, "question", Json(""), "The question that the study answers."),
       word("kind", kind_names(), std::nullopt, "What is made of each case."),
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
       object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),
-      object("methods", std::nullopt, "The methods whose combinations are run.", chosen),
-      of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations that are not run, each with its reason.")};
+      object("methods", std::nullopt, "The methods that are combined.", chosen),
+      of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations left out, each with its reason.")};
   keys.discriminator = "/kind";
   for (const StudyKind* kind : study_kinds()) keys.variants.push_back({{kind->name}, {kind->keys, "", {}}});
   return keys;

@@ -5,7 +5,6 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t most_sets = 64;   // of held points that are remembered
 constexpr long long longest_wait = 64;  // steps between two looks that found nothing
 constexpr int most_powers = 40;
 
@@ -14,6 +13,9 @@ constexpr int most_powers = 40;
 Flight::Flight(const Program& program, double layer, long long steps)
     : layer_(layer),
       powers_(std::clamp(static_cast<int>(std::bit_width(static_cast<unsigned long long>(steps))), 4, most_powers)) {
+  const double n = program.model->rows(), slots = static_cast<double>(program.plan.slots.size()), width = slots + 3;
+  const double numbers = n * n + n * powers_ * (slots * width + 2 * width * (width + 1));
+  most_sets_ = static_cast<std::size_t>(std::clamp(0.25e9 / (8 * numbers), 1.0, 64.0));
   free_ = std::make_unique<FlightSet>(program, layer, std::vector<HeldPoint>{}, powers_);
   set_ = free_.get();
   held_cause_ = why_not_held(program);
@@ -45,7 +47,7 @@ void Flight::place(const LaneSpec& lane, double layer) {
 Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   for (auto& one : sets_)
     if (std::equal(held.begin(), held.end(), one->held.begin(), one->held.end())) return *one;
-  if (sets_.size() == most_sets) {
+  if (sets_.size() == most_sets_) {
     // The one that was seen least makes room.
     const auto least_seen =
         std::min_element(sets_.begin(), sets_.end(), [](const auto& a, const auto& b) { return a->seen < b->seen; });

@@ -7,8 +7,9 @@
 
 namespace ricochet {
 
-/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them and in the step after.
 class Flight;
+
+/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them and in the step after.
 struct SkippedSteps {
   long long steps = 0;
   double from = 0, to = 0;          ///< s
@@ -17,7 +18,8 @@ struct SkippedSteps {
   Flight* flight = nullptr;         ///< what else may be asked of them
 };
 
-/// Leaves out the steps of one lane in which nothing happens.
+/// Leaves out the steps of one lane in which nothing happens. Allocates when constructed, and when points close
+/// together that it does not remember.
 class Flight {
  public:
   /// Below it a flight costs more than its steps.
@@ -78,6 +80,7 @@ class Flight {
 
   double layer_;
   int powers_;
+  std::size_t most_sets_;  // of held points that are remembered: as many as a quarter of a gigabyte holds, 64 at most
   std::unique_ptr<FlightSet> free_;
   Pace pace_;
   std::string held_cause_;

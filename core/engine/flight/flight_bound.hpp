@@ -10,9 +10,9 @@
 ///
 ///     |r Aⁱ x| ≤ a = Σ_l |r V|_l |V⁻¹ x|_l,     |r Aⁱ (A − I)² x| ≤ z = Σ_l |λ_l − 1|² |r V|_l |V⁻¹ x|_l (3)
 ///
-/// (a double root λ of two slots has Aⁱ = λⁱ(1 + i N), N² = 0: a and z then grow by |r N x| and |λ − 1|² of it a step,)
-/// a steady motion under the drive taken off first, and given its own amplitude and its own second difference. A point
-/// h of the modes then stands after i ≤ k steps within
+/// a steady motion under the drive taken off first, and given its own amplitude and its own second difference. (A
+/// double root λ of two slots has Aⁱ = λⁱ(1 + i N), N² = 0: a then grows by |r N x| a step, and z with it.) A point h
+/// of the modes then stands after i ≤ k steps within
 ///
 ///     Σ_j h_j (c_j + i d_j) ± Σ_j |h_j| min(½ i (i−1) z_j, a_j),     c_j = r x_j, d_j = r D x_j (4)
 ///
@@ -32,6 +32,7 @@ struct FlightWatch {
   enum class Bounds { own, stops, layer } bounds = Bounds::own;
 };
 
+/// The bound of some measures. Allocates when constructed.
 class FlightBound {
  public:
   /// A step of the bound is 2^power of the motion's: what alternates from step to step may then stand still.

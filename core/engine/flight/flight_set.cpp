@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/infinity.hpp>
+#include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
 
 namespace ricochet {
@@ -17,46 +18,6 @@ using Eigen::VectorXd;
 // Of positions: what round-off leaves of a transient that is over.
 constexpr double over = 64 * 0x1p-52;
 
-MatrixXd dense(const RowMatrix& rows, int columns) {
-  MatrixXd matrix = MatrixXd::Zero(rows.rows(), columns);
-  for (int i = 0; i < rows.rows(); ++i)
-    for (int k = rows.start[static_cast<std::size_t>(i)]; k < rows.start[static_cast<std::size_t>(i) + 1]; ++k)
-      matrix(i, rows.index[static_cast<std::size_t>(k)]) += rows.value[static_cast<std::size_t>(k)];
-  return matrix;
-}
-
-// What a combination of levels of the clamp's motion is over e.
-RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1) {
-  RowVectorXd row = RowVectorXd::Zero(drive.count());
-  if (!drive.harmonic) return row;
-  row[0] = factor * phase.along;
-  row[1] = factor * phase.across;
-  return row;
-}
-
-// One load over e, all rows: of the clamp's inertia, and of a distributed load that is constant.
-MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive) {
-  const int rows = program.model->rows();
-  MatrixXd load = MatrixXd::Zero(rows, drive.count());
-  const double omega = program.problem->support.pulsation;
-  if (drive.harmonic)
-    load += program.model->support_shape() * harmonic(PhaseWeights(levels, omega, program.h), drive, omega * omega);
-  if (program.load) {
-    double weight = 0;
-    for (const Level& level : levels) weight += level.weight;
-    VectorXd nodal(rows), own(rows);
-    program.problem->load->assemble(0, nodal.data());
-    program.model->load_to_model(nodal.data(), own.data());
-    load.col(drive.one()) += weight * own;
-  }
-  return load;
-}
-
-// The symmetric form of (a y)(b y).
-MatrixXd product(const RowVectorXd& a, const RowVectorXd& b) {
-  return 0.5 * (a.transpose() * b + b.transpose() * a);
-}
-
 // Whether two watches of the same points watch the same.
 bool same(const StepRows& rows, const FlightWatch& a, const FlightWatch& b) {
   constexpr double round_off = 1e-12;
@@ -66,10 +27,6 @@ bool same(const StepRows& rows, const FlightWatch& a, const FlightWatch& b) {
     if (!(one - other).isZero(round_off * (one.norm() + other.norm()))) return false;
   }
   return true;
-}
-
-double at(const std::vector<double>& weights, int j) {
-  return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
 }
 
 }  // namespace
@@ -85,7 +42,7 @@ RowVectorXd FlightSet::unknown_at_rest(const Stage& plan, const MatrixXd& steady
     if (update.z == 0) continue;
     RowVectorXd row = change.row(j), size = row.cwiseAbs();
     for (int i = 0; i < slots_; ++i) {
-      const double weight = at(update.slots, i) - (i == j ? 1.0 : 0.0);
+      const double weight = weight_at(update.slots, i) - (i == j ? 1.0 : 0.0);
       row -= weight * steady.row(i);
       size += (weight * steady.row(i)).cwiseAbs();
     }
@@ -107,7 +64,8 @@ bool FlightSet::rest(const Program& program) {
   for (int j = 0; j < slots_; ++j) {
     const Combination& update = plan.update[static_cast<std::size_t>(j)];
     moves[j] = update.z;
-    for (int i = 0; i < slots_; ++i) held(j, i) = at(update.slots, i) - update.z * at(stage.measure.slots, i) / push;
+    for (int i = 0; i < slots_; ++i)
+      held(j, i) = weight_at(update.slots, i) - update.z * weight_at(stage.measure.slots, i) / push;
   }
   const RowVectorXd carried = harmonic(stage.measure_phase, drive_);
   for (const HeldPoint& point : held_) {
@@ -183,7 +141,8 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     MatrixXd force = load_over_drive(program, program.plan.stages[k].load, drive_);
     if (holds) {
       MatrixXd weighed = folded.mass * lifted;
-      for (int j = 0; j < slots_; ++j) weighed -= at(folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
+      for (int j = 0; j < slots_; ++j)
+        weighed -= weight_at(folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
       inertia.push_back(full_mass.asDiagonal() * weighed);
       stages.push_back({folded, program.plan.stages[k].update, project(force - inertia.back())});
     } else {
@@ -240,10 +199,12 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     FlightWatch pushed;
     pushed.value.z = folded.mass;
     pushed.value.slots.resize(static_cast<std::size_t>(slots_));
-    for (int j = 0; j < slots_; ++j) pushed.value.slots[static_cast<std::size_t>(j)] = -at(folded.mass_history, j);
+    for (int j = 0; j < slots_; ++j)
+      pushed.value.slots[static_cast<std::size_t>(j)] = -weight_at(folded.mass_history, j);
     pushed.rows = lever_.transpose() * full_mass.asDiagonal() * basis_;
     MatrixXd elastic = folded.stiffness * lifted;
-    for (int j = 0; j < slots_; ++j) elastic -= at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
+    for (int j = 0; j < slots_; ++j)
+      elastic -= weight_at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
     pushed.drive = lever_.transpose() *
                    (inertia.front() + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
     for (const HeldPoint& point : held_) {
@@ -280,75 +241,6 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   works_ = std::make_unique<FlightWorks>(rows, forms(program, rows, mass, lifted), powers);
 }
 
-// The balance of a step as quadratic forms. M couples what is held to what moves; K does not.
-FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows, const VectorXd& mass,
-                                    const MatrixXd& lifted) {
-  FlightWorks::Forms forms;
-  const int width = rows.width(), drives = drive_.count();
-  const VectorXd full_mass = program.model->inertia().mass.diagonal();
-  const bool holds = !held_.empty();
-  const auto project = [&](const MatrixXd& all) { return holds ? MatrixXd(basis_.transpose() * all) : all; };
-  const auto begin = [&](FlightWorks::Form& form) {
-    if (form.empty()) form.assign(static_cast<std::size_t>(modes_), MatrixXd::Zero(width, width));
-  };
-  const auto padded = [&](const RowVectorXd& drive) {
-    RowVectorXd row = RowVectorXd::Zero(width);
-    row.tail(drives) = drive;
-    return row;
-  };
-  // (m μ + k) of two combinations of a stage.
-  const auto add = [&](FlightWorks::Form& form, double m, double k, int stage, const Combination& a,
-                       const Combination& b) {
-    begin(form);
-    const MatrixXd lift_a = lift_of(a, lifted), lift_b = lift_of(b, lifted);
-    const MatrixXd inert_a = project(full_mass.asDiagonal() * lift_a),
-                   inert_b = project(full_mass.asDiagonal() * lift_b);
-    for (int mode = 0; mode < modes_; ++mode) {
-      const RowVectorXd row_a = rows.of(mode, stage, a), row_b = rows.of(mode, stage, b);
-      MatrixXd& Q = form[static_cast<std::size_t>(mode)];
-      Q += (m * mass[mode] + k) * product(row_a, row_b);
-      if (holds) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
-    }
-    if (!holds) return;
-    const MatrixXd common = m * lift_a.transpose() * full_mass.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
-    form.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
-  };
-  for (std::size_t at = 0; at < program.plan.stages.size(); ++at) {
-    const Stage& plan = program.plan.stages[at];
-    const int stage = static_cast<int>(at);
-    for (const LossTerm& term : plan.loss) {
-      const bool inertial = term.matrix == EnergyMatrix::M;
-      add(forms.scheme, inertial ? term.coefficient : 0, inertial ? 0 : term.coefficient, stage, term.value,
-          term.value);
-    }
-    if (!plan.work) continue;
-    const WorkForm& work = *plan.work;
-    const Damping& damping = program.problem->damping;
-    if (program.problem->damped())
-      add(forms.damping, damping.mass, damping.stiffness, stage, work.displacement, work.rate);
-    if (!program.support && !program.load) continue;
-    begin(forms.loads);
-    const MatrixXd load = load_over_drive(program, work.load, drive_), modal = project(load);
-    for (int mode = 0; mode < modes_; ++mode)
-      forms.loads[static_cast<std::size_t>(mode)] +=
-          product(rows.of(mode, stage, work.displacement), padded(modal.row(mode)));
-    if (!holds) continue;
-    const MatrixXd common = lift_of(work.displacement, lifted).transpose() * load;
-    forms.loads.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
-    if (!program.support) continue;
-    const RowVectorXd along =
-        harmonic(PhaseWeights(work.support, program.problem->support.pulsation, program.h), drive_);
-    const FlightWatch& pushed = bound_->watch(effort_watch_);
-    const RowVectorXd push = pushed.drive.colwise().sum();
-    forms.loads.front() -= product(padded(push), padded(along));
-    const RowVectorXd weights = pushed.rows.colwise().sum();
-    for (int mode = 0; mode < modes_; ++mode)
-      forms.loads[static_cast<std::size_t>(mode)] -=
-          product(weights[mode] * rows.of(mode, 0, pushed.value), padded(along));
-  }
-  return forms;
-}
-
 // Held points are watched by their efforts.
 void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const {
   if (watch.bounds == FlightWatch::Bounds::own) return;
@@ -374,7 +266,7 @@ void FlightSet::place(const LaneSpec& lane, double layer) {
 MatrixXd FlightSet::lift_of(const Combination& c, const MatrixXd& lifted) const {
   MatrixXd sum = c.z * lifted;
   for (int j = 0; j < slots_; ++j)
-    if (at(c.slots, j) != 0) sum += at(c.slots, j) * lift_[static_cast<std::size_t>(j)];
+    if (weight_at(c.slots, j) != 0) sum += weight_at(c.slots, j) * lift_[static_cast<std::size_t>(j)];
   return sum;
 }
 

@@ -52,7 +52,7 @@ class EventDrivenSemiDiscrete final : public ReferenceSolver {
 void register_all(Registry& registry) {
   registry.add_reference(
       {.name = "event-driven-semi-discrete",
-       .summary = "the semi-discrete motion on the mesh of the case, exact in time between changes of the contact set",
+       .summary = "the motion of the case's own mesh, exact in time between changes of the contact set",
        .text =
            "While the set of closed contact points stays as it is, M w'' + C w' + K w = F + Hᵀp is linear with "
            "constant "

@@ -141,9 +141,9 @@ void register_all(Registry& registry) {
                  "modal bases is elementary L² projection",
        .parameters = {integer_parameter("modes", 80, {.low = 4, .high = 320},
                                         "number of modes of each phase; the coarser motion has half of it"),
-                      real_parameter("tolerance", "1", 1e-12, {.low = 1e-14, .high = 1e-6},
-                                     "how closely the gap is resolved in the search for events, over the largest "
-                                     "displacement of the scene"),
+                      real_parameter(
+                          "tolerance", "1", 1e-12, {.low = 1e-14, .high = 1e-6},
+                          "resolution of the gap in the search for events, over the largest displacement of the scene"),
                       integer_parameter(
                           "events", 2000, {.low = 1, .high = 1e9},
                           "impacts and releases allowed per period of the first mode before the motion is "

@@ -168,7 +168,7 @@ class Exact final : public ReferenceSolver {
 void register_all(Registry& registry) {
   registry.add_reference(
       {.name = "exact",
-       .summary = "closed forms: the oscillator between stops, the bar that bounces, the bar that touches nothing",
+       .summary = "closed forms: the oscillator between stops, the bar that bounces or touches nothing",
        .text =
            "Oscillator: flights under constant and harmonic force, on a moving support, in every regime of damping and "
            "in resonance; impacts v⁺ = −e v⁻ at rigid stops, rests on them while the force pushes, or phases on linear "

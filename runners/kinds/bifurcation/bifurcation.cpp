@@ -24,9 +24,10 @@ std::vector<Field> bifurcation_keys() {
   ObjectForm random;
   random.fields = {integer("random", {1, 10000, false, false}, std::nullopt, "Number of random initial states."),
                    integer("seed", {0, 9007199254740992.0, false, false}, 1, "Seed of the random states.")};
-  Field start = of_form(Field::Form::starts, "start", Json::array({"rest"}),
-                        "Where orbits begin: at rest in the laboratory frame, as the scene says, where the next lower "
-                        "(up) or higher (down) value ended, or at random.");
+  Field start =
+      of_form(Field::Form::starts, "start", Json::array({"rest"}),
+              "Where orbits begin: at rest, as the scene says, where the next lower (up) or higher (down) value "
+              "ended, or at random.");
   start.spec = word_parameter("start", {"rest", "state", "up", "down"}, std::nullopt, start.spec.text);
   start.nested.push_back(std::move(random));
 
@@ -36,7 +37,7 @@ std::vector<Field> bifurcation_keys() {
   for (Field& field : orbit_keys()) fields.push_back(std::move(field));
   fields.push_back(integer("exponents", {0, 100000, false, false}, 0, "Number of Lyapunov exponents, largest first."));
   fields.push_back(optional(real("refine", "as the parameter", positive, std::nullopt,
-                                 "Width to which changes of class are located; null: not located.")));
+                                 "Width to which changes of class are located; null: none.")));
   fields.push_back(budget());
   return fields;
 }

@@ -16,8 +16,8 @@ std::vector<Field> comparison_keys() {
   using namespace keys;
   Field reference =
       methods("reference", Role::reference,
-              "Compared with: a reference, \"self\" (the method on finer steps and meshes) or a list, whose first is "
-              "the reference; its gap to the others is part of the error floor.");
+              "A reference, \"self\" (the method on finer steps and meshes) or a list, whose first counts; its gap to "
+              "the others enters the error floor.");
   reference.marched = true;
   Field errors = of_form(Field::Form::words, "errors", std::nullopt, "Errors.");
   errors.spec = word_parameter("errors", error_names(), std::nullopt, errors.spec.text.c_str());

@@ -10,12 +10,11 @@ std::vector<Field> orbit_keys() {
   transient.fields = {
       integer("periods", {1, 100000000, false, false}, 300, "Forcing periods before the first reading."),
       integer("at_most", {1, 100000000, false, false}, 2000,
-              "Forcing periods after which an orbit is read though it has not settled.")};
-  return {object("transient", Json::object(), "What is left out until the orbit has settled, in forcing periods.",
-                 transient),
+              "Periods after which an orbit is read though it has not settled.")};
+  return {object("transient", Json::object(), "Forcing periods until an orbit has settled.", transient),
           integer("keep", {16, 10000000, false, false}, 300, "Forcing periods that are read."),
           word("section", {"strobe", "impact", "extremum"}, "strobe",
-               "When the state is read: once per forcing period, at impacts, or at extrema of the tip."),
+               "When the state is read: each forcing period, at impacts, or at extrema of the tip."),
           single(real("phase", "rad", any, 0.0, "Phase of the forcing at which the strobe reads."))};
 }
 
@@ -32,8 +31,8 @@ Field swept_pointer() {
   using namespace keys;
   return of_form(
       Field::Form::text, "pointer", std::nullopt,
-      "JSON pointer to a number of the scene (\"/scene/support/amplitude\"; a formula in x or t is multiplied "
-      "by the value) or to a real parameter of a method (\"/methods/contact/stiffness\").");
+      "Pointer to a number of the scene (\"/scene/support/amplitude\"; a formula is multiplied by the value) or to a "
+      "real parameter of a method (\"/methods/contact/stiffness\").");
 }
 
 }  // namespace ricochet

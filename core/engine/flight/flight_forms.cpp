@@ -1,0 +1,87 @@
+#include <ricochet/engine/flight/drive_rows.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
+
+namespace ricochet {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+// The symmetric form of (a y)(b y).
+MatrixXd product(const RowVectorXd& a, const RowVectorXd& b) {
+  return 0.5 * (a.transpose() * b + b.transpose() * a);
+}
+
+}  // namespace
+
+// The balance of a step as quadratic forms. M couples what is held to what moves; K does not.
+FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows, const VectorXd& mass,
+                                    const MatrixXd& lifted) {
+  FlightWorks::Forms forms;
+  const int width = rows.width(), drives = drive_.count();
+  const VectorXd full_mass = program.model->inertia().mass.diagonal();
+  const bool holds = !held_.empty();
+  const auto project = [&](const MatrixXd& all) { return holds ? MatrixXd(basis_.transpose() * all) : all; };
+  const auto begin = [&](FlightWorks::Form& form) {
+    if (form.empty()) form.assign(static_cast<std::size_t>(modes_), MatrixXd::Zero(width, width));
+  };
+  const auto padded = [&](const RowVectorXd& drive) {
+    RowVectorXd row = RowVectorXd::Zero(width);
+    row.tail(drives) = drive;
+    return row;
+  };
+  // (m μ + k) of two combinations of a stage.
+  const auto add = [&](FlightWorks::Form& form, double m, double k, int stage, const Combination& a,
+                       const Combination& b) {
+    begin(form);
+    const MatrixXd lift_a = lift_of(a, lifted), lift_b = lift_of(b, lifted);
+    const MatrixXd inert_a = project(full_mass.asDiagonal() * lift_a),
+                   inert_b = project(full_mass.asDiagonal() * lift_b);
+    for (int mode = 0; mode < modes_; ++mode) {
+      const RowVectorXd row_a = rows.of(mode, stage, a), row_b = rows.of(mode, stage, b);
+      MatrixXd& Q = form[static_cast<std::size_t>(mode)];
+      Q += (m * mass[mode] + k) * product(row_a, row_b);
+      if (holds) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
+    }
+    if (!holds) return;
+    const MatrixXd common = m * lift_a.transpose() * full_mass.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
+    form.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
+  };
+  for (std::size_t at = 0; at < program.plan.stages.size(); ++at) {
+    const Stage& plan = program.plan.stages[at];
+    const int stage = static_cast<int>(at);
+    for (const LossTerm& term : plan.loss) {
+      const bool inertial = term.matrix == EnergyMatrix::M;
+      add(forms.scheme, inertial ? term.coefficient : 0, inertial ? 0 : term.coefficient, stage, term.value,
+          term.value);
+    }
+    if (!plan.work) continue;
+    const WorkForm& work = *plan.work;
+    const Damping& damping = program.problem->damping;
+    if (program.problem->damped())
+      add(forms.damping, damping.mass, damping.stiffness, stage, work.displacement, work.rate);
+    if (!program.support && !program.load) continue;
+    begin(forms.loads);
+    const MatrixXd load = load_over_drive(program, work.load, drive_), modal = project(load);
+    for (int mode = 0; mode < modes_; ++mode)
+      forms.loads[static_cast<std::size_t>(mode)] +=
+          product(rows.of(mode, stage, work.displacement), padded(modal.row(mode)));
+    if (!holds) continue;
+    const MatrixXd common = lift_of(work.displacement, lifted).transpose() * load;
+    forms.loads.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
+    if (!program.support) continue;
+    const RowVectorXd along =
+        harmonic(PhaseWeights(work.support, program.problem->support.pulsation, program.h), drive_);
+    const FlightWatch& pushed = bound_->watch(effort_watch_);
+    const RowVectorXd push = pushed.drive.colwise().sum();
+    forms.loads.front() -= product(padded(push), padded(along));
+    const RowVectorXd weights = pushed.rows.colwise().sum();
+    for (int mode = 0; mode < modes_; ++mode)
+      forms.loads[static_cast<std::size_t>(mode)] -=
+          product(weights[mode] * rows.of(mode, 0, pushed.value), padded(along));
+  }
+  return forms;
+}
+
+}  // namespace ricochet
