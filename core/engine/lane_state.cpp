@@ -99,6 +99,9 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
 
 void Marcher::set_clock(long long step) {
   step_ = step;
+  // What comes depends on the state alone, whoever marched before.
+  quiet_ = 0;
+  if (program_.flight) program_.flight->forget();
 }
 
 }  // namespace ricochet

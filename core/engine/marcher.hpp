@@ -38,6 +38,7 @@ class Marcher {
   LaneState lane_state(int lane) const;
   void set_lane(int lane, const LaneSpec& spec, const LaneState& state);
   /// Sets the number of steps made, hence the time: a periodic problem may be marched period after period on one clock.
+  /// From there on the march depends on the lanes' states alone.
   void set_clock(long long step);
 
   /// Tangent columns per lane: X_k' = Df X_k along the lane, with its own contact set and without loads. The derivative

@@ -44,6 +44,14 @@ void Flight::place(const LaneSpec& lane, double layer) {
   set_ = free_.get();
 }
 
+void Flight::forget() {
+  pace_ = {};
+  for (auto& one : sets_) {
+    one->seen = 0;
+    one->pace = {};
+  }
+}
+
 Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   for (auto& one : sets_)
     if (std::equal(held.begin(), held.end(), one->held.begin(), one->held.end())) return *one;

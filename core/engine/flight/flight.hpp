@@ -36,6 +36,9 @@ class Flight {
   /// Another lane: its stops, and the layer from which the law acts.
   void place(const LaneSpec& lane, double layer);
 
+  /// Forgets what it has learnt of the steps so far, so that those to come depend on the state alone.
+  void forget();
+
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
   /// march. `slots`, `e`: the lane's state; `held`: its closed points.
   long long look(const Program& program, const double* const* slots, const double* e, std::span<const HeldPoint> held,

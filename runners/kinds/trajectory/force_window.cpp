@@ -57,8 +57,10 @@ void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
   }
   // Instants without a force, in one: they have no spread of their own.
   const double last = first + static_cast<double>(steps.steps - 1) * h;
-  const double begin = std::ceil((std::max(from_, first) - first) / h),
-               end = std::floor((std::min(to_, last) - first) / h);
+  // A step is at a bound of the window up to the rounding of two times.
+  constexpr double rounding = 1e-6;
+  const double begin = std::ceil((std::max(from_, first) - first) / h - rounding);
+  const double end = std::floor((std::min(to_, last) - first) / h + rounding);
   if (end >= begin) add(0, (end - begin + 1) * lasts);
 }
 

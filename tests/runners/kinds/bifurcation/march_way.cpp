@@ -31,7 +31,7 @@ TEST_CASE("bifurcation: orbits that leave out steps land where those that march 
         &b = column_of(numbers_of(flown, "impacts"), "speed");
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i] == Approx(b[i]).epsilon(1e-5).margin(1e-7));
-  CHECK(bits_of(run_sweep(text, 3)) == bits_of(flown));
+  CHECK((bits_of(run_sweep(text, 3)) == bits_of(flown)));
 }
 
 TEST_CASE("bifurcation: exponents of orbits that leave out steps are marched at every step") {
