@@ -1,7 +1,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
@@ -58,15 +60,20 @@ RowVectorXd FlightSet::unknown_at_rest(const Stage& plan, const MatrixXd& steady
 bool FlightSet::rest(const Program& program) {
   const Stage& plan = program.plan.stages.front();
   const StageProgram& stage = program.stages.front();
-  const double push = stage.measure.z;
-  MatrixXd held = MatrixXd::Zero(slots_, slots_);
-  VectorXd moves(slots_);
+  // A displacement of a step is a small difference of positions: with the digits of doubles alone, what they lose would
+  // be a velocity of round-off over h, met again by every flight.
+  using Real = long double;
+  using Complex = std::complex<Real>;
+  const Real push = stage.measure.z;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> held(slots_, slots_);
+  Eigen::Matrix<Real, Eigen::Dynamic, 1> moves(slots_);
   for (int j = 0; j < slots_; ++j) {
     const Combination& update = plan.update[static_cast<std::size_t>(j)];
     moves[j] = update.z;
     for (int i = 0; i < slots_; ++i)
       held(j, i) = weight_at(update.slots, i) - update.z * weight_at(stage.measure.slots, i) / push;
   }
+  const auto identity = decltype(held)::Identity(slots_, slots_);
   const RowVectorXd carried = harmonic(stage.measure_phase, drive_);
   for (const HeldPoint& point : held_) {
     const LaneSpec& lane = program.lanes.front();
@@ -74,16 +81,17 @@ bool FlightSet::rest(const Program& program) {
     bound[drive_.one()] += point.lower ? lane.lower[point.point] : lane.upper[point.point];
     MatrixXd steady = MatrixXd::Zero(slots_, drive_.count());
     if (drive_.harmonic) {
-      using Complex = std::complex<double>;
-      const Complex turned(std::cos(drive_.angle), std::sin(drive_.angle));
-      const Eigen::MatrixXcd shifted = turned * Eigen::MatrixXcd::Identity(slots_, slots_) - held.cast<Complex>();
-      const Eigen::VectorXcd phasor =
+      const Real angle = drive_.angle;
+      const Complex turned(std::cos(angle), std::sin(angle));
+      const Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic> shifted =
+          turned * identity.cast<Complex>() - held.cast<Complex>();
+      const Eigen::Matrix<Complex, Eigen::Dynamic, 1> phasor =
           shifted.fullPivLu().solve((Complex(bound[1], -bound[0]) / push) * moves.cast<Complex>());
-      steady.col(0) = -phasor.imag();
-      steady.col(1) = phasor.real();
+      steady.col(0) = -phasor.imag().cast<double>();
+      steady.col(1) = phasor.real().cast<double>();
     }
     const int one = drive_.one();
-    steady.col(one) = (MatrixXd::Identity(slots_, slots_) - held).fullPivLu().solve(moves * (bound[one] / push));
+    steady.col(one) = (identity - held).fullPivLu().solve(moves * (bound[one] / push)).cast<double>();
     if (!steady.allFinite()) return false;
     rest_unknown_.push_back(unknown_at_rest(plan, steady));
     rest_.push_back(std::move(steady));
@@ -102,6 +110,14 @@ void FlightSet::hold(const Program& program) {
   const VectorXd mass = program.model->inertia().mass.diagonal();
   const SymmetricModes modes = symmetric_modes(null.transpose() * mass.asDiagonal() * null);
   basis_ = null * modes.vectors;
+  // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
+  // a static lever would move the whole structure by it.
+  const FoldedStage& folded = program.stages.front().folded;
+  const MatrixXd response =
+      (folded.mass * mass.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
+  settle_ = basis_.transpose() * response *
+            (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
+  apart_.resize(held_rows_.rows());
   lever_ = held_rows_.transpose() *
            (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
 }
@@ -121,6 +137,14 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     }
     const VectorXd own = mass;
     mass = (basis_.transpose() * own.asDiagonal() * basis_).diagonal().cwiseMax(0);
+    // What holds of the structure's own massless modes holds of these.
+    const double most = mass.maxCoeff(), nothing = 1e-14;
+    const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - held_rows_.rows();
+    std::vector<Index> order(static_cast<std::size_t>(mass.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return mass[a] < mass[b]; });
+    for (Index k = 0; k < massless; ++k)
+      if (double& light = mass[order[static_cast<std::size_t>(k)]]; light <= nothing * most) light = 0;
   }
   modes_ = static_cast<int>(mass.size());
   for (int j = 0; j < slots_; ++j) {
@@ -281,13 +305,15 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
   for (int j = 0; j < slots_; ++j) {
     const Eigen::Map<const VectorXd> slot(slots[j], rows_);
     for (std::size_t i = 0; i < held_.size(); ++i) {
-      const RowVectorXd row = held_rows_.row(static_cast<Index>(i));
+      const auto row = held_rows_.row(static_cast<Index>(i));
       if (j == 0) size = std::max(size, row.cwiseAbs().dot(slot.cwiseAbs()));
-      const double apart = metres_[static_cast<std::size_t>(j)] * (row.dot(slot) - rest_[i].row(j).dot(drive));
-      if (!(std::abs(apart) <= over * size)) return false;
+      apart_[static_cast<Index>(i)] = row.dot(slot) - rest_[i].row(j).dot(drive);
+      if (!(std::abs(metres_[static_cast<std::size_t>(j)] * apart_[static_cast<Index>(i)]) <= over * size))
+        return false;
     }
     Eigen::Map<VectorXd> mode(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
     mode.noalias() = basis_.transpose() * slot;
+    mode.noalias() -= settle_ * apart_;
   }
   return true;
 }

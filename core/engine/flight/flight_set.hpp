@@ -58,8 +58,10 @@ class FlightSet {
   int rows_ = 0, modes_ = 0, slots_ = 0;
   FlightDrive drive_;
   std::string cause_;
-  std::vector<double> metres_;                    // what a slot has to be multiplied by to be a length
-  Eigen::MatrixXd basis_;                         // Ψ; empty: the modes of the structure
+  std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
+  Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
+  mutable Eigen::VectorXd apart_;
   Eigen::MatrixXd lever_;                         // L, rows × held
   std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
