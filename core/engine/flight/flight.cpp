@@ -121,8 +121,28 @@ FlightSums Flight::fly(long long k, double* const* slots, bool works) {
   }
   set_->leave(x_, e_, slots);
   flown_ = k;
-  efforts_.resize(set_->held().size());
+  efforts_from_ = -1;
   return sums;
+}
+
+long long Flight::find_efforts(long long first) {
+  const long long count = std::min(effort_block, flown_ - first);
+  if (efforts_from_ == first) return count;
+  // The first block begins where the flight does, the next where the last one ended.
+  if (efforts_from_ < 0 || effort_next_ != first) {
+    effort_x_ = start_;
+    std::copy_n(start_e_, 3, effort_e_);
+    set_->motion().advance(first, effort_x_.data(), effort_e_);
+  }
+  const std::size_t points = set_->held().size();
+  efforts_.resize(static_cast<std::size_t>(effort_block) * points);
+  for (long long k = 0; k < count; ++k) {
+    set_->efforts(effort_x_.data(), effort_e_, efforts_.data() + static_cast<std::size_t>(k) * points);
+    set_->motion().leap(0, effort_x_.data(), effort_e_);
+  }
+  efforts_from_ = first;
+  effort_next_ = first + count;
+  return count;
 }
 
 void Flight::tip_extremes(double& low, double& high) {

@@ -48,15 +48,14 @@ class Flight {
 
   /// Widens [low, high] by the tip's displacement, absolute, after each of the steps last left out.
   void tip_extremes(double& low, double& high);
-  /// The efforts of the held points in each of them, in their order: `see`(efforts), N.
+  /// The efforts of the held points in each of them, in their order: `see`(efforts), N. Found once for all who ask.
   template <class See>
   void each_effort(See&& see) {
-    x_ = start_;
-    std::copy(start_e_, start_e_ + 3, e_);
-    for (long long k = 0; k < flown_; ++k) {
-      set_->efforts(x_.data(), e_, efforts_);
-      see(std::span<const double>(efforts_));
-      set_->motion().leap(0, x_.data(), e_);
+    const std::size_t points = set_->held().size();
+    for (long long first = 0; first < flown_; first += effort_block) {
+      const long long count = find_efforts(first);
+      for (long long k = 0; k < count; ++k)
+        see(std::span<const double>(efforts_.data() + static_cast<std::size_t>(k) * points, points));
     }
   }
   /// Whether no step of it can gain energy beyond what loads bring, whatever the state.
@@ -74,6 +73,8 @@ class Flight {
     std::unique_ptr<FlightSet> set;
     Pace pace;
   };
+  /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
+  long long find_efforts(long long first);
   Kept& kept(std::span<const HeldPoint> held);
   struct Leg;
   bool told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, double& low, double& high);
@@ -90,7 +91,12 @@ class Flight {
   std::vector<std::unique_ptr<Kept>> sets_;
   // Of the last flight:
   FlightSet* set_ = nullptr;
-  std::vector<double> start_, x_, efforts_;
+  std::vector<double> start_, x_;
+  // Efforts of up to effort_block steps from one of them on; −1: of none yet.
+  static constexpr long long effort_block = 4096;
+  std::vector<double> efforts_, effort_x_;
+  double effort_e_[3] = {};
+  long long efforts_from_ = -1, effort_next_ = 0;
   double start_e_[3] = {}, e_[3] = {};
   long long flown_ = 0;
   struct Leg {

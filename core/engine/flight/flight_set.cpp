@@ -331,8 +331,8 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
   }
 }
 
-void FlightSet::efforts(const double* x, const double* e, std::vector<double>& out) {
-  bound_->values(effort_watch_, x, e, out.data());
+void FlightSet::efforts(const double* x, const double* e, double* out) {
+  bound_->values(effort_watch_, x, e, out);
 }
 
 }  // namespace ricochet

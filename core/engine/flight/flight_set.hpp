@@ -42,7 +42,7 @@ class FlightSet {
   /// The same of every fourth step; null where no mode alternates.
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// Efforts of the held points in the step that begins at (x, e), N.
-  void efforts(const double* x, const double* e, std::vector<double>& out);
+  void efforts(const double* x, const double* e, double* out);
   int modes() const { return modes_; }
 
  private:
