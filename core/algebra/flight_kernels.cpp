@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/algebra/instruction_set.hpp>
 
 namespace ricochet {
 namespace {
@@ -25,11 +26,7 @@ RICOCHET_BODY void add_row(int n, int slots, int drives, const double* row, cons
 RICOCHET_BODY void row_body(int n, int slots, int drives, const double* row, const double* x, const double* e,
                             double* __restrict out) {
   for (int j = 0; j < n; ++j) out[j] = row[j] * x[j];
-  if (slots > 1) {
-    add_row(n, slots - 1, drives, row + n, x + n, e, out);
-    return;
-  }
-  add_row(n, 0, drives, row + n, x, e, out);
+  add_row(n, slots - 1, drives, row + n, x + n, e, out);
 }
 
 RICOCHET_BODY void leap_body(int n, int slots, int drives, const double* table, const double* x, const double* e,
@@ -162,14 +159,13 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, quadratic};                           \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
-RICOCHET_FLIGHT_SET(Avx2, __attribute__((target("avx2,fma"))))
+RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)
 // clang-format on
 
 }  // namespace
 
 const FlightKernels& flight_kernels() {
-  static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return avx2 ? Avx2::kernels : Baseline::kernels;
+  return has_avx2() ? Avx2::kernels : Baseline::kernels;
 }
 
 }  // namespace ricochet

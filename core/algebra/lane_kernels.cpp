@@ -1,10 +1,9 @@
+#include <ricochet/algebra/instruction_set.hpp>
 #include <ricochet/algebra/lane_band.hpp>
 #include <ricochet/algebra/lane_combinations.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/algebra/lane_rows.hpp>
 #include <stdexcept>
-
-#define RICOCHET_AVX2 __attribute__((target("avx2,fma")))
 
 namespace ricochet {
 namespace {
@@ -86,11 +85,6 @@ const LaneKernels& select(int lanes) {
     default:
       throw std::logic_error("a block has 1, 2, 4, 8, 16 or 32 lanes");
   }
-}
-
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return has;
 }
 
 }  // namespace

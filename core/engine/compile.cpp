@@ -324,11 +324,12 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   const double by_flights = flies ? predict_flights(*problem, work, options.expected_steps) : 0;
   if (program.kind == OperatorKind::automatic)
     program.kind = cheapest_kind(*problem, work, program.width, options.expected_steps);
-  const Cost every_step = predict_cost(program.kind, *problem, work, program.width);
   // A prediction within a factor of two of the other chooses nothing.
-  if (options.march == MarchWay::automatic)
-    flies = flies && 2 * by_flights < every_step.setup_seconds +
-                                          static_cast<double>(options.expected_steps) * every_step.step_seconds;
+  if (flies && options.march == MarchWay::automatic) {
+    const Cost every_step = predict_cost(program.kind, *problem, work, program.width);
+    flies = 2 * by_flights <
+            every_step.setup_seconds + static_cast<double>(options.expected_steps) * every_step.step_seconds;
+  }
   if (flies)
     program.kind = OperatorKind::modal;
   else if (!kind_applies(program.kind, *problem))
@@ -370,10 +371,8 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
     if (diagonal) program.kind = OperatorKind::diagonal;
   }
   say_what_is_left_out(program);
-  if (!flies) {
-    if (!grounded.empty()) program.every_step_because = grounded;
-    return program;
-  }
+  program.every_step_because = grounded;
+  if (!flies) return program;
   if (const std::string cause = let_fly(program, options); !cause.empty()) {
     if (options.march == MarchWay::flights) return refuse_flight(cause);
     // Once more, with the operator that every step is cheapest with.

@@ -28,6 +28,12 @@ Rates rates(int width) {
   return {0.064, 0.118, 0.10, 0.125, 0.087};
 }
 
+// A step in modes, and a look at what may come, as bench_flight measures them.
+double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
+  return predict_cost(OperatorKind::modal, problem, work, 1).step_seconds + 5e-7 +
+         2.5e-10 * problem.dofs() * problem.points();
+}
+
 }  // namespace
 
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
@@ -69,16 +75,6 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
   cost.step_seconds = stages * (nanoseconds * lanes + fixed) * nano;
   return cost;
 }
-
-namespace {
-
-// A step in modes, and a look at what may come, as bench_flight measures them.
-double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
-  return predict_cost(OperatorKind::modal, problem, work, 1).step_seconds + 5e-7 +
-         2.5e-10 * problem.dofs() * problem.points();
-}
-
-}  // namespace
 
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps) {
   const double n = problem.dofs(),

@@ -5,12 +5,14 @@
 
 namespace ricochet {
 
-// The closed points of the lane into held_; false where what contact was still acts, or may.
+// The closed points of the lane into held_; false where what contact was still acts, or may. To be asked before every
+// step.
 bool Marcher::contact_set() {
   held_.clear();
+  const bool closed = std::any_of(stage_states_.begin(), stage_states_.end(),
+                                  [](const auto& stage) { return (stage->contact_lanes & 1U) != 0; });
+  quiet_ = closed ? 0 : quiet_ + 1;
   if (!program_.contact) return true;
-  bool closed = false;
-  for (const auto& stage : stage_states_) closed = closed || (stage->contact_lanes & 1U) != 0;
   if (!closed) {
     if (quiet_ < quiet_after_) return false;
     const double* memory = memory_.data();
@@ -25,10 +27,7 @@ bool Marcher::contact_set() {
 
 // Leaves out steps in which contact stays what it is, before the next one; returns how many.
 long long Marcher::fly(long long most, StepObserver* observer) {
-  bool closed = false;
-  for (const auto& stage : stage_states_) closed = closed || (stage->contact_lanes & 1U) != 0;
-  quiet_ = closed ? 0 : quiet_ + 1;
-  if (most < Flight::least || !status_.front().running || !contact_set()) return 0;
+  if (!contact_set() || most < Flight::least || !status_.front().running) return 0;
   if (observer) most = std::min(most, observer->may_skip(*this));
   if (most < Flight::least) return 0;
   double e[3] = {0, 0, 0};

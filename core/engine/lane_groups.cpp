@@ -6,6 +6,10 @@
 namespace ricochet {
 namespace {
 
+// For which operators are chosen.
+constexpr int full_block = 8;
+constexpr long long long_march = 100000000;
+
 bool same_matrix(const SparseMatrix& a, const SparseMatrix& b) {
   if (a.rows() != b.rows() || a.cols() != b.cols() || a.nonZeros() != b.nonZeros()) return false;
   return a.nonZeros() == 0 || (a - b).cwiseAbs().sum() == 0;
@@ -60,24 +64,27 @@ bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const
   CompileOptions options;
   options.march = MarchWay::flights;
   options.moving_support = true;
-  options.expected_steps = 100000000;
+  options.expected_steps = long_march;
   auto compiled =
       compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(), {candidate.lane}, options);
   if (const auto* refusal = std::get_if<Refusal>(&compiled)) {
     if (way_ == MarchWay::flights) throw *refusal;
     return false;
   }
+  if (way_ == MarchWay::automatic) {
+    const double steps = 2 * std::numbers::pi / (candidate.problem->support.pulsation * candidate.h);
+    const StepWork work{static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()),
+                        false};
+    const OperatorKind kind = cheapest_kind(*candidate.problem, work, full_block, long_march);
+    const double lane = predict_cost(kind, *candidate.problem, work, full_block).step_seconds / full_block;
+    if (2 * predict_visits(*candidate.problem, work, steps) >= steps * lane) return false;
+  }
   const Program& program = std::get<Program>(compiled);
   group.kind = OperatorKind::modal;
   group.model = program.model;
   group.left_out = program.left_out;
   group.flies = true;
-  if (way_ == MarchWay::flights) return true;
-  const double steps = 2 * std::numbers::pi / (candidate.problem->support.pulsation * candidate.h);
-  StepWork work{static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()), false};
-  const OperatorKind kind = cheapest_kind(*candidate.problem, work, 8, 100000000);
-  const double lane = predict_cost(kind, *candidate.problem, work, 8).step_seconds / 8;
-  return 2 * predict_visits(*candidate.problem, work, steps) < steps * lane;
+  return true;
 }
 
 bool LaneGroups::flies() const {
@@ -94,19 +101,19 @@ int LaneGroups::add(LaneCandidate candidate) {
   auto group = std::make_unique<Group>();
   // The first group decides for all.
   const bool first = groups_.empty();
-  if (!(way_ != MarchWay::every_step && (first || flies()) && try_flights(candidate, *group))) {
+  const bool flights = way_ != MarchWay::every_step && (first || flies());
+  if (!flights || !try_flights(candidate, *group)) {
     CompileOptions options;
     options.kind = first ? OperatorKind::automatic : groups_.front()->kind;
     options.moving_support = true;
-    options.expected_steps = 100000000;
+    options.expected_steps = long_march;
     auto compiled = compile(candidate.problem, candidate.plan, candidate.h, candidate.make_law(),
-                            std::vector<LaneSpec>(8, candidate.lane), options);
+                            std::vector<LaneSpec>(full_block, candidate.lane), options);
     if (const auto* refusal = std::get_if<Refusal>(&compiled)) throw *refusal;
     const Program& program = std::get<Program>(compiled);
     group->kind = program.kind == OperatorKind::diagonal ? OperatorKind::band : program.kind;
     group->model = program.model;
     group->left_out = program.left_out;
-    group->flies = false;
   }
   group->scene = std::move(candidate);
   groups_.push_back(std::move(group));
@@ -142,7 +149,7 @@ Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents
   options.tangents = tangents;
   if (one.flies && lanes.size() == 1 && tangents == 0) {
     options.march = MarchWay::flights;
-    options.expected_steps = 100000000;
+    options.expected_steps = long_march;
   }
   auto compiled = compile(with_own_load(one.scene.problem), one.scene.plan, one.scene.h, one.scene.make_law(),
                           std::move(lanes), options);

@@ -14,8 +14,6 @@ nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecor
   if (record.status == "done")
     study["question"] = fmt::format("The case {} of {} alone. {}", record.id, results.name, results.question);
   if (study["step"].is_null()) study.erase("step");
-  // A way to march that the study left open is none of the case's axes.
-  study.erase("march");
   for (const auto& [name, value] : record.axes) {
     const std::string role = name.substr(0, name.find('.'));
     if (name == "steps_per_period" || name == "march") {
@@ -35,7 +33,7 @@ nlohmann::ordered_json single_study(const StudyResults& results, const CaseRecor
   }
   study["scene"].erase("steps_per_period");
   for (const auto& [key, value] : results.study.items())
-    if (!study.contains(key) && key != "exclude" && key != "march") study[key] = value;
+    if (!study.contains(key) && key != "exclude") study[key] = value;
   return study;
 }
 

@@ -92,10 +92,10 @@ long long Flight::look(const Program& program, const double* const* slots, const
     pace->next = 2 * least;
     return 0LL;
   };
-  std::copy_n(e, 3, start_e_);
-  if (!set->enter(slots, e, start_)) return fails();
+  std::copy_n(e, 3, start_.e);
+  if (!set->enter(slots, e, start_.x)) return fails();
   FlightBound& bound = set->bound();
-  bound.look(start_.data(), e);
+  bound.look(start_.x.data(), e);
   long long k = std::min(pace->next, most);
   if (bound.holds(k)) {
     while (k < most && bound.holds(std::min(2 * k, most))) k = std::min(2 * k, most);
@@ -112,14 +112,13 @@ long long Flight::look(const Program& program, const double* const* slots, const
 
 FlightSums Flight::fly(long long k, double* const* slots, bool works) {
   FlightSums sums;
-  x_ = start_;
-  std::copy(start_e_, start_e_ + 3, e_);
+  last_ = start_;
   for (int power = 0; k >> power != 0; ++power) {
     if (((k >> power) & 1) == 0) continue;
-    if (works) set_->works().add(power, x_.data(), e_, sums);
-    set_->motion().leap(power, x_.data(), e_);
+    if (works) set_->works().add(power, last_.x.data(), last_.e, sums);
+    set_->motion().leap(power, last_.x.data(), last_.e);
   }
-  set_->leave(x_, e_, slots);
+  set_->leave(last_.x, last_.e, slots);
   flown_ = k;
   efforts_from_ = -1;
   return sums;
@@ -130,15 +129,14 @@ long long Flight::find_efforts(long long first) {
   if (efforts_from_ == first) return count;
   // The first block begins where the flight does, the next where the last one ended.
   if (efforts_from_ < 0 || effort_next_ != first) {
-    effort_x_ = start_;
-    std::copy_n(start_e_, 3, effort_e_);
-    set_->motion().advance(first, effort_x_.data(), effort_e_);
+    after_efforts_ = start_;
+    advance(first, after_efforts_);
   }
   const std::size_t points = set_->held().size();
   efforts_.resize(static_cast<std::size_t>(effort_block) * points);
   for (long long k = 0; k < count; ++k) {
-    set_->efforts(effort_x_.data(), effort_e_, efforts_.data() + static_cast<std::size_t>(k) * points);
-    set_->motion().leap(0, effort_x_.data(), effort_e_);
+    set_->efforts(after_efforts_.x.data(), after_efforts_.e, efforts_.data() + static_cast<std::size_t>(k) * points);
+    advance(1, after_efforts_);
   }
   efforts_from_ = first;
   effort_next_ = first + count;
@@ -146,32 +144,26 @@ long long Flight::find_efforts(long long first) {
 }
 
 void Flight::tip_extremes(double& low, double& high) {
-  const auto set_leg = [](Leg& leg, const std::vector<double>& x, const double* e) {
-    leg.x = x;
-    std::copy_n(e, 3, leg.e);
-  };
-  set_leg(legs_[0], start_, start_e_);
   // The last first: most of what comes before it is then known to be no extreme.
-  set_leg(legs_[1], start_, start_e_);
-  set_->motion().advance(flown_ - 1, legs_[1].x.data(), legs_[1].e);
+  legs_[1] = start_;
+  advance(flown_ - 1, legs_[1]);
   double last = 0;
   set_->tip().values(0, legs_[1].x.data(), legs_[1].e, &last);
   low = std::min(low, last);
   high = std::max(high, last);
+  legs_[0] = start_;
   FlightBound* by_four = set_->tip_by_four();
-  if (!by_four || told_by_ends(set_->tip(), legs_[0], flown_, 1, low, high)) {
-    search(set_->tip(), 0, flown_, 1, low, high);
-    return;
-  }
+  if (!by_four) return search(set_->tip(), 0, flown_, 1, low, high);
+  if (told_by_ends(set_->tip(), legs_[0], flown_, 1, low, high)) return;
   for (long long first = 0; first < std::min(4LL, flown_); ++first) {
-    set_leg(legs_[0], start_, start_e_);
-    set_->motion().advance(first, legs_[0].x.data(), legs_[0].e);
+    legs_[0] = start_;
+    advance(first, legs_[0]);
     search(*by_four, 0, (flown_ - first + 3) / 4, 4, low, high);
   }
 }
 
 // Whether the first of k readings and the last one are all that may be an extreme; these are then told.
-bool Flight::told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, double& low, double& high) {
+bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high) {
   const auto see = [&](double value) {
     low = std::min(low, value);
     high = std::max(high, value);
@@ -185,26 +177,23 @@ bool Flight::told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, d
     const FlightBound::Range change = tip.range(1, 0, k - 2);
     if (change.low <= 0 && change.high >= 0) return false;
   }
-  x_ = leg.x;
-  std::copy_n(leg.e, 3, e_);
-  set_->motion().advance((k - 1) * stride, x_.data(), e_);
+  last_ = leg;
+  advance((k - 1) * stride, last_);
   double last = 0;
-  tip.values(0, x_.data(), e_, &last);
+  tip.values(0, last_.x.data(), last_.e, &last);
   see(last);
   return true;
 }
 
 // Of k readings from a leg on, `stride` steps apart: by halves, as far as they may tell something.
 void Flight::search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high) {
-  Leg& leg = legs_[depth];
+  const Leg& leg = legs_[depth];
   if (told_by_ends(tip, leg, k, stride, low, high)) return;
   Leg& next = legs_[depth + 1];
-  next.x = leg.x;
-  std::copy_n(leg.e, 3, next.e);
-  set_->motion().advance(k / 2 * stride, next.x.data(), next.e);
+  next = leg;
+  advance(k / 2 * stride, next);
   search(tip, depth + 1, k - k / 2, stride, low, high);
-  next.x = leg.x;
-  std::copy_n(leg.e, 3, next.e);
+  next = leg;
   search(tip, depth + 1, k / 2, stride, low, high);
 }
 

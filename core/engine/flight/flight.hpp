@@ -58,11 +58,12 @@ class Flight {
         see(std::span<const double>(efforts_.data() + static_cast<std::size_t>(k) * points, points));
     }
   }
-  /// Whether no step of it can gain energy beyond what loads bring, whatever the state.
-  bool never_gains() const { return set_->works().never_gains(); }
+  /// Whether no step without contact can gain energy beyond what loads bring, whatever the state.
   bool free_never_gains() const { return free_->works().never_gains(); }
 
  private:
+  static constexpr long long effort_block = 4096;
+
   struct Pace {
     long long next = 2 * least;
     long long wait = 0, penalty = least;
@@ -73,14 +74,19 @@ class Flight {
     std::unique_ptr<FlightSet> set;
     Pace pace;
   };
+  /// A state in the modes of set_.
+  struct Leg {
+    std::vector<double> x;
+    double e[3] = {};
+  };
+  static std::string why_not_held(const Program& program);
+  Kept& kept(std::span<const HeldPoint> held);
+  /// `leg` moved on by k steps.
+  void advance(long long k, Leg& leg) const { set_->motion().advance(k, leg.x.data(), leg.e); }
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
   long long find_efforts(long long first);
-  Kept& kept(std::span<const HeldPoint> held);
-  struct Leg;
-  bool told_by_ends(FlightBound& tip, Leg& leg, long long k, int stride, double& low, double& high);
+  bool told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high);
   void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
-
-  static std::string why_not_held(const Program& program);
 
   double layer_;
   int powers_;
@@ -91,18 +97,12 @@ class Flight {
   std::vector<std::unique_ptr<Kept>> sets_;
   // Of the last flight:
   FlightSet* set_ = nullptr;
-  std::vector<double> start_, x_;
-  // Efforts of up to effort_block steps from one of them on; −1: of none yet.
-  static constexpr long long effort_block = 4096;
-  std::vector<double> efforts_, effort_x_;
-  double effort_e_[3] = {};
-  long long efforts_from_ = -1, effort_next_ = 0;
-  double start_e_[3] = {}, e_[3] = {};
+  Leg start_, last_;
   long long flown_ = 0;
-  struct Leg {
-    std::vector<double> x;
-    double e[3] = {};
-  };
+  // Efforts of up to effort_block steps from one of them on (−1: of none yet), and the state that they lead to.
+  std::vector<double> efforts_;
+  Leg after_efforts_;
+  long long efforts_from_ = -1, effort_next_ = 0;
   std::vector<Leg> legs_;  // of a search, by depth
 };
 

@@ -36,6 +36,7 @@ void put(std::vector<double>& table, const RowVectorXd& row, int modes, int mode
 // A = I + D of a mode, with x = X e + (right · left + rest)(x − X e): the steady motion, the roots that are not zero,
 // and what is over after `rest_steps` steps.
 struct FlightBound::ModeRoots {
+  MatrixXd step;            // (D B) of a step of the bound
   Eigen::VectorXcd change;  // λ − 1
   MatrixXcd right, left;
   MatrixXd rest;
@@ -100,11 +101,10 @@ bool FlightBound::double_root(const MatrixXd& D, ModeRoots& found) {
 
 FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   ModeRoots found;
-  const MatrixXd D = step_change(rows, mode).leftCols(slots_);
+  found.step = step_change(rows, mode);
+  const MatrixXd D = found.step.leftCols(slots_);
   if (double_root(D, found)) {
-    found.steady = MatrixXd::Zero(slots_, drives_);
-    const MatrixXd B = step_change(rows, mode).rightCols(drives_);
-    steady(D, B, Eigen::VectorXd::Ones(slots_), found);
+    steady(D, Eigen::VectorXd::Ones(slots_), found);
     return found;
   }
   MatrixXd scaled = D;
@@ -157,15 +157,14 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   found.right = scale.cast<Complex>().asDiagonal() * V;
   found.left = W * scale.cwiseInverse().cast<Complex>().asDiagonal();
   found.rest = MatrixXd::Identity(slots_, slots_) - (found.right * found.left).real();
-  found.steady = MatrixXd::Zero(slots_, drives_);
-  const MatrixXd B = step_change(rows, mode).rightCols(drives_);
-  steady(scaled, B, scale, found);
+  steady(scaled, scale, found);
   return found;
 }
 
 // X of the drive, in slots of one size.
-void FlightBound::steady(const MatrixXd& scaled, const MatrixXd& B, const Eigen::VectorXd& scale, ModeRoots& found) {
-  const MatrixXd scaled_B = scale.cwiseInverse().asDiagonal() * B;
+void FlightBound::steady(const MatrixXd& scaled, const Eigen::VectorXd& scale, ModeRoots& found) {
+  const MatrixXd scaled_B = scale.cwiseInverse().asDiagonal() * found.step.rightCols(drives_);
+  found.steady = MatrixXd::Zero(slots_, drives_);
   if (drive_.harmonic) {
     const double half = std::sin(drive_.angle / 2);
     const Complex turn(-2 * half * half, std::sin(drive_.angle));  // e^{iωh} − 1
@@ -184,7 +183,7 @@ void FlightBound::steady(const MatrixXd& scaled, const MatrixXd& B, const Eigen:
 void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched) {
   RowVectorXd row = rows.of(mode, watched.watch.stage, watched.watch.value);
   const auto next = [&](const RowVectorXd& of) {
-    RowVectorXd change = of.head(slots_) * step_change(rows, mode);
+    RowVectorXd change = of.head(slots_) * found.step;
     if (drives_ > 0) change.tail(drives_) += of.tail(drives_) * turn_;
     return change;
   };
@@ -228,7 +227,7 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
   RowVectorXd over = row.head(slots_);
   for (int k = 0; k < found.rest_steps; ++k) {
     add((over * found.rest).cast<Complex>(), 4);
-    over += over * step_change(rows, mode).leftCols(slots_);
+    over += over * found.step.leftCols(slots_);
   }
   if (drive_.harmonic) {
     const Complex steady = (own * found.phasor)[0] + Complex(row[slots_ + 1], -row[slots_]);
@@ -246,6 +245,9 @@ void FlightBound::look(const double* x, const double* e) {
   const FlightKernels& kernels = flight_kernels();
   const double drive = drive_.harmonic ? std::hypot(e[0], e[1]) : 0.0;
   const double turn = 2 * std::sin(drive_.angle / 2);
+  double turned[3] = {};  // what e changes by
+  for (int k = 0; k < drives_; ++k)
+    for (int l = 0; l < drives_; ++l) turned[k] += turn_(k, l) * e[l];
   for (Watched& watched : watches_) {
     kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, watched.now.data());
     kernels.row(modes_, slots_, drives_, watched.change.data(), x, e, watched.step.data());
@@ -266,17 +268,12 @@ void FlightBound::look(const double* x, const double* e) {
     for (std::size_t i = 0; i < watched.offset.size() && drives_ > 0; ++i) {
       const auto row = static_cast<Index>(i);
       const MatrixXd& own = watched.watch.drive;
-      double value = 0, change = 0, size = 0;
+      watched.offset[i] = watched.offset_step[i] = 0;
       for (int k = 0; k < drives_; ++k) {
-        value += own(row, k) * e[k];
-        double turned = 0;
-        for (int l = 0; l < drives_; ++l) turned += turn_(k, l) * e[l];
-        change += own(row, k) * turned;
+        watched.offset[i] += own(row, k) * e[k];
+        watched.offset_step[i] += own(row, k) * turned[k];
       }
-      if (drive_.harmonic) size = std::hypot(own(row, 0), own(row, 1)) * drive;
-      watched.offset[i] = value;
-      watched.offset_step[i] = change;
-      watched.offset_bend[i] = turn * turn * size;
+      if (drive_.harmonic) watched.offset_bend[i] = turn * turn * std::hypot(own(row, 0), own(row, 1)) * drive;
     }
   }
   placed_of_ = nullptr;

@@ -81,7 +81,7 @@ class FlightBound {
   struct ModeRoots;
   ModeRoots roots(const StepRows& rows, int mode);
   bool double_root(const Eigen::MatrixXd& D, ModeRoots& found);
-  void steady(const Eigen::MatrixXd& scaled, const Eigen::MatrixXd& B, const Eigen::VectorXd& scale, ModeRoots& found);
+  void steady(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scale, ModeRoots& found);
   void shares(const StepRows& rows, int mode, const ModeRoots& found, Watched& watched);
 
   Eigen::MatrixXd step_change(const StepRows& rows, int mode) const;

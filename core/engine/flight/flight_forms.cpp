@@ -20,9 +20,7 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
                                     const MatrixXd& lifted) {
   FlightWorks::Forms forms;
   const int width = rows.width(), drives = drive_.count();
-  const VectorXd full_mass = program.model->inertia().mass.diagonal();
   const bool holds = !held_.empty();
-  const auto project = [&](const MatrixXd& all) { return holds ? MatrixXd(basis_.transpose() * all) : all; };
   const auto begin = [&](FlightWorks::Form& form) {
     if (form.empty()) form.assign(static_cast<std::size_t>(modes_), MatrixXd::Zero(width, width));
   };
@@ -36,8 +34,8 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
                        const Combination& b) {
     begin(form);
     const MatrixXd lift_a = lift_of(a, lifted), lift_b = lift_of(b, lifted);
-    const MatrixXd inert_a = project(full_mass.asDiagonal() * lift_a),
-                   inert_b = project(full_mass.asDiagonal() * lift_b);
+    const MatrixXd inert_a = project(own_mass_.asDiagonal() * lift_a),
+                   inert_b = project(own_mass_.asDiagonal() * lift_b);
     for (int mode = 0; mode < modes_; ++mode) {
       const RowVectorXd row_a = rows.of(mode, stage, a), row_b = rows.of(mode, stage, b);
       MatrixXd& Q = form[static_cast<std::size_t>(mode)];
@@ -45,7 +43,7 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
       if (holds) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
     }
     if (!holds) return;
-    const MatrixXd common = m * lift_a.transpose() * full_mass.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
+    const MatrixXd common = m * lift_a.transpose() * own_mass_.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
     form.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
   };
   for (std::size_t at = 0; at < program.plan.stages.size(); ++at) {

@@ -99,6 +99,13 @@ bool FlightSet::rest(const Program& program) {
   return true;
 }
 
+MatrixXd FlightSet::project(const MatrixXd& all) const {
+  return held_.empty() ? all : MatrixXd(basis_.transpose() * all);
+}
+MatrixXd FlightSet::onto(const MatrixXd& points) const {
+  return held_.empty() ? points : MatrixXd(points * basis_);
+}
+
 void FlightSet::hold(const Program& program) {
   const MatrixXd H = dense(program.model->contact(), rows_);
   held_rows_.resize(static_cast<Index>(held_.size()), rows_);
@@ -107,14 +114,13 @@ void FlightSet::hold(const Program& program) {
   const Eigen::HouseholderQR<MatrixXd> qr(held_rows_.transpose());
   const MatrixXd Q = qr.householderQ();
   const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
-  const VectorXd mass = program.model->inertia().mass.diagonal();
-  const SymmetricModes modes = symmetric_modes(null.transpose() * mass.asDiagonal() * null);
+  const SymmetricModes modes = symmetric_modes(null.transpose() * own_mass_.asDiagonal() * null);
   basis_ = null * modes.vectors;
   // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
   // a static lever would move the whole structure by it.
   const FoldedStage& folded = program.stages.front().folded;
   const MatrixXd response =
-      (folded.mass * mass.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
+      (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
   settle_ = basis_.transpose() * response *
             (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
   apart_.resize(held_rows_.rows());
@@ -128,15 +134,15 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   for (const auto& [position, velocity] : program.plan.initial)
     metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
   drive_ = {program.support, program.load || holds, program.problem->support.pulsation * program.h};
-  VectorXd mass = program.model->inertia().mass.diagonal();
+  own_mass_ = program.model->inertia().mass.diagonal();
+  VectorXd mass = own_mass_;
   if (holds) {
     hold(program);
     if (!rest(program)) {
       cause_ = "the scheme never rests at a stop";
       return;
     }
-    const VectorXd own = mass;
-    mass = (basis_.transpose() * own.asDiagonal() * basis_).diagonal().cwiseMax(0);
+    mass = (basis_.transpose() * own_mass_.asDiagonal() * basis_).diagonal().cwiseMax(0);
     // What holds of the structure's own massless modes holds of these.
     const double most = mass.maxCoeff(), nothing = 1e-14;
     const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - held_rows_.rows();
@@ -154,24 +160,18 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   }
   MatrixXd lifted = MatrixXd::Zero(rows_, drive_.count());  // of z
   for (std::size_t i = 0; i < held_.size(); ++i) lifted += lever_.col(static_cast<Index>(i)) * rest_unknown_[i];
-  const VectorXd full_mass = program.model->inertia().mass.diagonal();
-  const auto project = [&](const MatrixXd& rows) { return holds ? MatrixXd(basis_.transpose() * rows) : rows; };
-  const auto onto = [&](const MatrixXd& rows) { return holds ? MatrixXd(rows * basis_) : rows; };
-
   std::vector<FlightStage> stages;
-  std::vector<MatrixXd> inertia;  // M L(s_M H z − Σ β^M_j ξ_j) of each stage
-  for (std::size_t k = 0; k < program.stages.size(); ++k) {
-    const FoldedStage& folded = program.stages[k].folded;
-    MatrixXd force = load_over_drive(program, program.plan.stages[k].load, drive_);
-    if (holds) {
-      MatrixXd weighed = folded.mass * lifted;
-      for (int j = 0; j < slots_; ++j)
-        weighed -= weight_at(folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
-      inertia.push_back(full_mass.asDiagonal() * weighed);
-      stages.push_back({folded, program.plan.stages[k].update, project(force - inertia.back())});
-    } else {
-      stages.push_back({folded, program.plan.stages[k].update, force});
-    }
+  for (std::size_t k = 0; k < program.stages.size(); ++k)
+    stages.push_back({program.stages[k].folded, program.plan.stages[k].update,
+                      load_over_drive(program, program.plan.stages[k].load, drive_)});
+  MatrixXd inertia;  // M L(s_M H z − Σ β^M_j ξ_j) of the stage that holds
+  if (holds) {
+    FlightStage& stage = stages.front();
+    MatrixXd weighed = stage.folded.mass * lifted;
+    for (int j = 0; j < slots_; ++j)
+      weighed -= weight_at(stage.folded.mass_history, j) * lift_[static_cast<std::size_t>(j)];
+    inertia = own_mass_.asDiagonal() * weighed;
+    stage.force = project(stage.force - inertia);
   }
   const StepRows rows(stages, slots_, mass, drive_);
 
@@ -225,12 +225,12 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     pushed.value.slots.resize(static_cast<std::size_t>(slots_));
     for (int j = 0; j < slots_; ++j)
       pushed.value.slots[static_cast<std::size_t>(j)] = -weight_at(folded.mass_history, j);
-    pushed.rows = lever_.transpose() * full_mass.asDiagonal() * basis_;
+    pushed.rows = lever_.transpose() * own_mass_.asDiagonal() * basis_;
     MatrixXd elastic = folded.stiffness * lifted;
     for (int j = 0; j < slots_; ++j)
       elastic -= weight_at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
-    pushed.drive = lever_.transpose() *
-                   (inertia.front() + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
+    pushed.drive =
+        lever_.transpose() * (inertia + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
     for (const HeldPoint& point : held_) {
       pushed.lower.push_back(point.lower ? 0 : -infinity);
       pushed.upper.push_back(point.lower ? infinity : 0);

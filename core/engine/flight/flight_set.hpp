@@ -46,6 +46,9 @@ class FlightSet {
   int modes() const { return modes_; }
 
  private:
+  /// Loads and the like in these modes, and rows of points.
+  Eigen::MatrixXd project(const Eigen::MatrixXd& all) const;
+  Eigen::MatrixXd onto(const Eigen::MatrixXd& points) const;
   void hold(const Program& program);
   bool rest(const Program& program);
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
@@ -59,6 +62,7 @@ class FlightSet {
   FlightDrive drive_;
   std::string cause_;
   std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
+  Eigen::VectorXd own_mass_;    // M of the structure's modes
   Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
   Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
   mutable Eigen::VectorXd apart_;

@@ -14,7 +14,6 @@ FlightWorks::FlightWorks(const StepRows& rows, const Forms& forms, int powers)
       drives_(rows.drive().count()),
       damping_(tables(rows, forms.damping, powers)),
       loads_(tables(rows, forms.loads, powers)),
-      contact_(tables(rows, forms.contact, powers)),
       scheme_(tables(rows, forms.scheme, powers)) {
   const int width = rows.width();
   for (int mode = 0; mode < modes_; ++mode) {
@@ -63,7 +62,6 @@ void FlightWorks::add(int power, const double* x, const double* e, FlightSums& s
   };
   sums.damping += sum(damping_);
   sums.loads += sum(loads_);
-  sums.contact += sum(contact_);
   sums.scheme += sum(scheme_);
 }
 

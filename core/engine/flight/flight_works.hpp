@@ -3,11 +3,10 @@
 
 namespace ricochet {
 
-/// Works over many steps, J.
+/// Works over many steps, J. Points that rest on their stops do none there.
 struct FlightSums {
   double damping = 0;  ///< Σ sᵀC r
   double loads = 0;    ///< Σ sᵀF̄, and the support's work through the stops
-  double contact = 0;  ///< Σ p̄ᵀ(H s + Δφ)
   double scheme = 0;   ///< Σ of the plan's loss terms
 };
 
@@ -19,7 +18,7 @@ class FlightWorks {
   /// Q of each mode over (x, e), symmetric; empty: zero.
   using Form = std::vector<Eigen::MatrixXd>;
   struct Forms {
-    Form damping, loads, contact, scheme;
+    Form damping, loads, scheme;
   };
   FlightWorks(const StepRows& rows, const Forms& forms, int powers);
 
@@ -33,7 +32,7 @@ class FlightWorks {
   static Tables tables(const StepRows& rows, const Form& form, int powers);
 
   int modes_, slots_, drives_;
-  Tables damping_, loads_, contact_, scheme_;
+  Tables damping_, loads_, scheme_;
   bool never_gains_ = true;
 };
 

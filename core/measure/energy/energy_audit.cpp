@@ -280,7 +280,6 @@ void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
   EnergyTotals& totals = state.energy;
   totals.work_of_loads += steps.works.loads;
   totals.work_of_damping += steps.works.damping;
-  totals.work_of_contact += steps.works.contact;
   totals.work_of_scheme += steps.works.scheme;
   state.now.scheme = scheme_energy(marcher, 0);
   if (steps.held.empty()) return;

@@ -53,10 +53,7 @@ Json minimal_study(const StudyResults& results, const CaseRecord& record) {
   for (const char* key : {"duration", "samples", "window", "snapshots", "budget"})
     if (const auto found = results.study.find(key); found != results.study.end() && !found->is_null())
       study[key] = *found;
-  if (march.is_null() && results.study.contains("march") && results.study.at("march").is_string() &&
-      results.study.at("march") != "auto")
-    march = results.study.at("march");
-  if (march.is_string()) study["march"] = march;
+  if (!march.is_null()) study["march"] = march;
   return study;
 }
 

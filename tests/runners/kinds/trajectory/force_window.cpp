@@ -1,17 +1,14 @@
 #include "runners/kinds/trajectory/force_window.hpp"
 
 #include <catch2/catch.hpp>
-#include <ricochet/loader/catalogue.hpp>
 
-#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/study/load_study.hpp"
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
+using namespace ricochet::testing;
 
 namespace {
-
-const std::atomic<bool> never = false;
 
 Json bar_study() {
   return Json::parse(R"({
@@ -26,21 +23,10 @@ Json bar_study() {
     "step": 0.005, "duration": 1.5, "window": {"from": 0, "to": 1.5}})");
 }
 
-struct Runs {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
-  Registry registry;
-  std::vector<CaseRecord> of(const Json& text) {
-    std::vector<CaseRecord> out;
-    for (const StudyCase& one : parse_study(text.dump(1), catalogue, registry).cases)
-      out.push_back(run_case(one, registry, never));
-    return out;
-  }
-};
-
 }  // namespace
 
 TEST_CASE("the mean force over a window is the impulse that came in it, whatever the stages of the scheme") {
-  for (const CaseRecord& record : Runs().of(bar_study())) {
+  for (const CaseRecord& record : CaseRuns().of(bar_study())) {
     INFO(axis(record, "time").text() << " " << axis(record, "time.velocity").text());
     REQUIRE(record.status == "done");
     // One stop, so that all efforts have one sign; an instant at an end of the window may fall in or out: a step of
@@ -58,7 +44,7 @@ TEST_CASE("the force on a mass that is pressed to its stop is the load, and devi
                                   "initial": {"displacement": 0, "velocity": 0}})");
   text.erase("mesh");
   text["window"] = {{"from", 0.5}, {"to", 1}};
-  for (const CaseRecord& record : Runs().of(text)) {
+  for (const CaseRecord& record : CaseRuns().of(text)) {
     INFO(axis(record, "time").text() << " " << axis(record, "time.velocity").text());
     CHECK(measure(record, "contact_force_mean").value() == Approx(5).epsilon(1e-9));
     // A force is found from positions of 1e-4 m over h²: round-off of 1e-16 m is 1e-11 N.
@@ -67,7 +53,7 @@ TEST_CASE("the force on a mass that is pressed to its stop is the load, and devi
 }
 
 TEST_CASE("a window is a range of time within the run, or none") {
-  Runs runs;
+  CaseRuns runs;
   Json text = bar_study();
   text.erase("window");
   text["methods"]["time"] = "midpoint";

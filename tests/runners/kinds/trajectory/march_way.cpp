@@ -1,16 +1,13 @@
 // Steps that a trajectory leaves out: its rows, its curve and its window are those of the march of every step.
 #include <catch2/catch.hpp>
-#include <ricochet/loader/catalogue.hpp>
 
-#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/study/load_study.hpp"
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
+using namespace ricochet::testing;
 
 namespace {
-
-const std::atomic<bool> never_stopped = false;
 
 Json shaken_study() {
   return Json::parse(R"({
@@ -25,29 +22,19 @@ Json shaken_study() {
     "march": ["every-step", "flights"]})");
 }
 
-struct Shaken {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
-  Registry registry;
-  Study study(const Json& text) { return parse_study(text.dump(1), catalogue, registry); }
-  std::vector<CaseRecord> of(const Json& text) {
-    std::vector<CaseRecord> out;
-    for (const StudyCase& one : study(text).cases) out.push_back(run_case(one, registry, never_stopped));
-    return out;
+std::string error_of(CaseRuns& runs, const Json& text) {
+  try {
+    runs.study(text);
+  } catch (const InputError& wrong) {
+    return wrong.pointer() + ": " + wrong.what();
   }
-  std::string error(const Json& text) {
-    try {
-      study(text);
-    } catch (const InputError& wrong) {
-      return wrong.pointer() + ": " + wrong.what();
-    }
-    return "";
-  }
-};
+  return "";
+}
 
 }  // namespace
 
 TEST_CASE("a trajectory that leaves out steps has the measures, the curve and the impacts of one that marches them") {
-  const std::vector<CaseRecord> records = Shaken().of(shaken_study());
+  const std::vector<CaseRecord> records = CaseRuns().of(shaken_study());
   REQUIRE(records.size() == 2);
   const CaseRecord &every = records[0], &flown = records[1];
   REQUIRE(every.status == "done");
@@ -81,7 +68,7 @@ TEST_CASE("a trajectory that leaves out steps has the measures, the curve and th
 }
 
 TEST_CASE("how a march goes is an axis of the study, and absent it is chosen case by case") {
-  Shaken shaken;
+  CaseRuns shaken;
   Json text = shaken_study();
   const Study two = shaken.study(text);
   CHECK(std::find(two.columns.begin(), two.columns.end(), "march") != two.columns.end());
@@ -99,7 +86,7 @@ TEST_CASE("how a march goes is an axis of the study, and absent it is chosen cas
 }
 
 TEST_CASE("a march by flights that cannot fly is refused with the reason, and one that may choose marches") {
-  Shaken shaken;
+  CaseRuns shaken;
   Json text = shaken_study();
   text["scene"]["load"] = "0.1*sin(3*t)";
   const std::vector<CaseRecord> records = shaken.of(text);
@@ -111,7 +98,7 @@ TEST_CASE("a march by flights that cannot fly is refused with the reason, and on
   CHECK(chosen.status == "done");
   CHECK_THAT(chosen.notes.back(), Catch::Contains("every step is marched") || Catch::Contains("Delassus"));
   text["march"] = "fly";
-  CHECK_THAT(shaken.error(text), Catch::Contains("/march") && Catch::Contains("every-step"));
+  CHECK_THAT(error_of(shaken, text), Catch::Contains("/march") && Catch::Contains("every-step"));
   text["march"] = 3;
-  CHECK_THAT(shaken.error(text), Catch::Contains("/march"));
+  CHECK_THAT(error_of(shaken, text), Catch::Contains("/march"));
 }

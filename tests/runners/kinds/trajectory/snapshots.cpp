@@ -2,17 +2,14 @@
 #include "runners/store/snapshots.hpp"
 
 #include <catch2/catch.hpp>
-#include <ricochet/loader/catalogue.hpp>
 
-#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/study/load_study.hpp"
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
+using namespace ricochet::testing;
 
 namespace {
-
-const std::atomic<bool> not_stopped = false;
 
 Json beam_study() {
   return Json::parse(R"({
@@ -26,14 +23,6 @@ Json beam_study() {
     "methods": {"mass": "consistent", "contact": "signorini", "time": "newmark-dumont-paoli"},
     "step": 1e-4, "duration": 0.2, "samples": 40, "snapshots": 40})");
 }
-
-struct FilmRuns {
-  Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
-  Registry registry;
-  CaseRecord of(const Json& text) {
-    return run_case(parse_study(text.dump(1), catalogue, registry).cases.front(), registry, not_stopped);
-  }
-};
 
 Snapshots snapshots(const CaseRecord& record) {
   const NumberTable* table = find_table(record.numbers, snapshots_name);
@@ -50,7 +39,7 @@ double tip(const Snapshots& shots, std::size_t k) {
 }  // namespace
 
 TEST_CASE("a snapshot's last place is the tip of the curve at that time, to half a count") {
-  const CaseRecord record = FilmRuns().of(beam_study());
+  const CaseRecord record = CaseRuns().first_of(beam_study());
   REQUIRE(record.status == "done");
   const Snapshots shots = snapshots(record);
   REQUIRE(shots.t.size() == 41);
@@ -70,7 +59,7 @@ TEST_CASE("a snapshot's last place is the tip of the curve at that time, to half
 TEST_CASE("the forces of snapshots give the impulse of the run") {
   Json text = beam_study();
   text["scene"]["stops"]["at"] = "tip";
-  const CaseRecord record = FilmRuns().of(text);
+  const CaseRecord record = CaseRuns().first_of(text);
   const Snapshots shots = snapshots(record);
   REQUIRE_FALSE(shots.force.empty());
   double impulse = 0;
@@ -85,10 +74,10 @@ TEST_CASE("the forces of snapshots give the impulse of the run") {
 
 TEST_CASE("results are the same with snapshots as without, and without there is no table") {
   Json text = beam_study();
-  FilmRuns runs;
-  const CaseRecord with = runs.of(text);
+  CaseRuns runs;
+  const CaseRecord with = runs.first_of(text);
   text.erase("snapshots");
-  const CaseRecord without = runs.of(text);
+  const CaseRecord without = runs.first_of(text);
   CHECK(find_table(without.numbers, snapshots_name) == nullptr);
   CHECK(with.curve.columns == without.curve.columns);
   CHECK(with.steps == without.steps);
@@ -103,7 +92,7 @@ TEST_CASE("an oscillator has one place, and a bar moves along its axis") {
                                   "initial": {"displacement": -1, "velocity": 0}})");
   text.erase("mesh");
   text.update(Json::parse(R"({"step": 0.01, "duration": 8})"));
-  const Snapshots mass = snapshots(FilmRuns().of(text));
+  const Snapshots mass = snapshots(CaseRuns().first_of(text));
   CHECK(mass.x == std::vector<double>{0});
   CHECK_FALSE(mass.along);
   CHECK(mass.upper == std::vector<double>{0.5});
@@ -112,11 +101,11 @@ TEST_CASE("an oscillator has one place, and a bar moves along its axis") {
   text["scene"] = Json::parse(R"({"structure": {"type": "bar", "length": 10, "EA": 900, "rhoA": 1, "fixed": "right"},
                                   "stops": {"lower": -0.1, "at": "tip"}, "initial": {"displacement": 0, "velocity": 0}})");
   text["mesh"] = {{"elements", 10}};
-  CHECK(snapshots(FilmRuns().of(text)).along);
+  CHECK(snapshots(CaseRuns().first_of(text)).along);
 }
 
 TEST_CASE("a table that is cut short is no film") {
-  NumberTable table = *find_table(FilmRuns().of(beam_study()).numbers, snapshots_name);
+  NumberTable table = *find_table(CaseRuns().first_of(beam_study()).numbers, snapshots_name);
   REQUIRE(snapshots_of(table));
   for (std::vector<double>& column : table.values) column.resize(column.size() / 2);
   CHECK_FALSE(snapshots_of(table));

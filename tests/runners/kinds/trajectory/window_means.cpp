@@ -3,17 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <ricochet/loader/catalogue.hpp>
 
-#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/study/load_study.hpp"
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
 
 using namespace ricochet;
+using namespace ricochet::testing;
 
 namespace {
-
-const std::atomic<bool> not_now = false;
 
 Json bouncing_study() {
   return Json::parse(R"({
@@ -25,17 +22,10 @@ Json bouncing_study() {
     "step": 0.01, "duration": 64, "window": {"from": 0, "to": 64, "parts": 16}})");
 }
 
-CaseRecord run_of(const Json& text) {
-  Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
-  Registry registry;
-  const Study study = parse_study(text.dump(1), catalogue, registry);
-  return run_case(study.cases.front(), registry, not_now);
-}
-
 }  // namespace
 
 TEST_CASE("window means: over the whole run they are what the run adds up, divided by its length") {
-  const CaseRecord record = run_of(bouncing_study());
+  const CaseRecord record = CaseRuns().first_of(bouncing_study());
   REQUIRE(record.status == "done");
   REQUIRE(measure(record, "impacts").value() > 20);
   const auto times_length = [&](const char* name) { return 64 * measure(record, name).value(); };
@@ -56,7 +46,7 @@ TEST_CASE("window means: a free oscillation has the root mean square of a sine, 
   text["step"] = period / 1000;
   text["duration"] = 16 * period;
   text["window"] = {{"from", 0}, {"to", 16 * period}, {"parts", 16}};
-  const CaseRecord record = run_of(text);
+  const CaseRecord record = CaseRuns().first_of(text);
   REQUIRE(record.status == "done");
   // The scheme's period is longer by (2π/1000)²/12 = 3.3e-6 of it.
   CHECK(measure(record, "window_tip_rms").value() == Approx(2 / std::sqrt(2.0)).epsilon(1e-4));
@@ -72,7 +62,7 @@ TEST_CASE("window means: twice the window is an interval narrower by about the r
   const auto width = [&](double length, int parts) {
     text["duration"] = 100 + length;
     text["window"] = {{"from", 100}, {"to", 100 + length}, {"parts", parts}};
-    return measure(run_of(text), "confidence.window_force").value();
+    return measure(CaseRuns().first_of(text), "confidence.window_force").value();
   };
   const double once = width(800, 64), four = width(3200, 256);
   CHECK(four < 0.8 * once);
@@ -82,14 +72,14 @@ TEST_CASE("window means: twice the window is an interval narrower by about the r
 TEST_CASE("window means: without parts there are none, and a run that ends before its window says so") {
   Json text = bouncing_study();
   text["window"].erase("parts");
-  CHECK_FALSE(measure(run_of(text), "window_force"));
+  CHECK_FALSE(measure(CaseRuns().first_of(text), "window_force"));
   // 64.005 s are no whole number of steps: the last one ends before the window does.
   text["duration"] = 64.005;
   text["window"] = {{"from", 0}, {"to", 64.005}, {"parts", 8}};
-  const CaseRecord record = run_of(text);
+  const CaseRecord record = CaseRuns().first_of(text);
   CHECK(measure(record, "window_force"));
   text["budget"] = 1e-9;
-  const CaseRecord stopped = run_of(text);
+  const CaseRecord stopped = CaseRuns().first_of(text);
   CHECK(stopped.status == "failed");
   CHECK_FALSE(measure(stopped, "window_force"));
 }

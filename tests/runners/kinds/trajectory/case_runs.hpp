@@ -1,0 +1,29 @@
+#pragma once
+#include <atomic>
+#include <ricochet/loader/catalogue.hpp>
+#include <vector>
+
+#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/study/load_study.hpp"
+
+namespace ricochet::testing {
+
+/// The cases of small studies of kind `trajectory`, from their text to what running them leaves.
+class CaseRuns {
+ public:
+  Study study(const Json& text) { return parse_study(text.dump(1), catalogue_, registry_); }
+  std::vector<CaseRecord> of(const Json& text) {
+    std::vector<CaseRecord> out;
+    for (const StudyCase& one : study(text).cases) out.push_back(run_case(one, registry_, stop_));
+    return out;
+  }
+  /// Its first case alone.
+  CaseRecord first_of(const Json& text) { return run_case(study(text).cases.front(), registry_, stop_); }
+
+ private:
+  Catalogue catalogue_{RICOCHET_PLUGIN_DIR, {}, {}};
+  Registry registry_;
+  const std::atomic<bool> stop_ = false;
+};
+
+}  // namespace ricochet::testing
