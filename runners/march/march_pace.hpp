@@ -9,13 +9,15 @@
 
 namespace ricochet {
 
-/// Makes what watches the steps of a march in this kind of study; null: nothing does.
-using MakeObserver = std::function<std::shared_ptr<StepObserver>(const Marcher& marcher)>;
+/// Makes what watches a case of this kind of study over so many steps; null: nothing does.
+using MakeObserver =
+    std::function<std::shared_ptr<StepObserver>(const StudyCase& study_case, const Marcher& marcher, long long steps)>;
 
 /// Processor seconds that one step of a case costs, measured: marches its whole duration in a few hundred steps, then
 /// in as many as some milliseconds allow, so that it touches its stops for the share of the time for which the case
-/// will; a step that is too coarse for the scheme gives way to the case's own, over the beginning. Nothing where the
-/// case does not march. The contact of a coarse step may ask for more or fewer iterations than that of a fine one: a
+/// will; a step that is too coarse for the scheme or for the motion of the support gives way to a finer one, over the
+/// beginning. Where steps are left out, the time grows with their number as it did between the two finest of these
+/// marches. Nothing where the case does not march. The contact of a coarse step may ask for more or fewer iterations than that of a fine one: a
 /// forecast, not a measure of the method.
 std::optional<double> march_pace(const StudyCase& study_case, const Registry& registry,
                                  const MakeObserver& observe = {});

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
-#include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -41,14 +41,18 @@ double measured_ratio(const PlannedCase& one, const Kind& kind, const CasePlanne
   return text.empty() ? 0 : std::strtod(text.c_str(), nullptr);
 }
 
-/// Those whose cost the model knows, the costliest of each group first, then the next of each.
+/// Those whose cost the model knows, one of the costliest of each group first, then the next of each. Of cases that
+/// cost about the same those come first that lie furthest apart in the study: neighbours differ in one value.
 std::vector<const PlannedCase*> by_group(const std::vector<PlannedCase>& cases) {
+  constexpr double golden = 0.6180339887498949;
+  std::vector<std::pair<std::pair<int, double>, const PlannedCase*>> places;
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    if (modelled_step(cases[i].plan) > 0)
+      places.push_back(
+          {{-std::ilogb(cases[i].plan.predicted_seconds), std::fmod(golden * static_cast<double>(i), 1)}, &cases[i]});
+  std::sort(places.begin(), places.end());
   std::vector<const PlannedCase*> costliest;
-  for (const PlannedCase& one : cases)
-    if (modelled_step(one.plan) > 0) costliest.push_back(&one);
-  std::stable_sort(costliest.begin(), costliest.end(), [](const PlannedCase* a, const PlannedCase* b) {
-    return a->plan.predicted_seconds > b->plan.predicted_seconds;
-  });
+  for (const auto& [place, one] : places) costliest.push_back(one);
   std::map<std::string, int> met;
   std::vector<std::pair<int, const PlannedCase*>> ranked;
   for (const PlannedCase* one : costliest) ranked.emplace_back(met[group_of(*one->study_case)]++, one);
@@ -58,22 +62,33 @@ std::vector<const PlannedCase*> by_group(const std::vector<PlannedCase>& cases) 
   return ordered;
 }
 
-/// The ratio of measured to modelled steps, by group.
+/// How many times what the model says cases cost: of one that was measured its own, of others that of all measured ones
+/// of their group together, so that the few costly ones count for what they cost.
 class Ratios {
  public:
-  void add(const std::string& group, double ratio) {
-    groups_[group].push_back(ratio);
-    all_.push_back(ratio);
+  void add(const PlannedCase& one, double ratio) {
+    own_[one.study_case] = ratio;
+    groups_[group_of(*one.study_case)].add(one, ratio);
+    all_.add(one, ratio);
   }
-  double of(const std::string& group) const {
-    const auto found = groups_.find(group);
-    if (found != groups_.end()) return median(found->second);
-    return all_.empty() ? 1 : median(all_);
+  double of(const StudyCase& one) const {
+    if (const auto own = own_.find(&one); own != own_.end()) return own->second;
+    if (const auto group = groups_.find(group_of(one)); group != groups_.end()) return group->second.ratio();
+    return all_.modelled > 0 ? all_.ratio() : 1;
   }
 
  private:
-  std::map<std::string, std::vector<double>> groups_;
-  std::vector<double> all_;
+  struct Sum {
+    double measured = 0, modelled = 0;
+    void add(const PlannedCase& one, double ratio) {
+      measured += ratio * one.plan.predicted_seconds;
+      modelled += one.plan.predicted_seconds;
+    }
+    double ratio() const { return measured / modelled; }
+  };
+  std::map<const StudyCase*, double> own_;
+  std::map<std::string, Sum> groups_;
+  Sum all_;
 };
 
 }  // namespace
@@ -93,12 +108,12 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
       const double ratio = measured_ratio(*one, kind, planner, registry);
       if (ratio <= 0) continue;
       ++found.measured;
-      ratios.add(group_of(*one->study_case), ratio);
+      ratios.add(*one, ratio);
     }
   }
   std::map<const StudyCase*, double> steps;
   for (PlannedCase& one : cases) {
-    const double ratio = ratios.of(group_of(*one.study_case));
+    const double ratio = ratios.of(*one.study_case);
     steps[one.study_case] = ratio * modelled_step(one.plan);
     // Planned once more by the run, and prepared.
     one.plan.predicted_seconds = ratio * one.plan.predicted_seconds + 2 * one.plan_seconds;

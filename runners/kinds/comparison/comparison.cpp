@@ -60,7 +60,7 @@ CaseRunner compare_cases(const RunContext& context) {
   return runner;
 }
 
-std::shared_ptr<StepObserver> recorded(const Marcher& marcher) {
+std::shared_ptr<StepObserver> recorded(const StudyCase&, const Marcher& marcher, long long) {
   return std::make_shared<ImpactRecorder>(marcher);
 }
 

@@ -24,13 +24,6 @@ namespace {
 // The audit of every step costs about this much more than the step alone.
 constexpr double audit_seconds_per_step = 6e-7;
 
-/// The two observers of a step, the one behind the other.
-struct Audited {
-  EnergyAudit audit;
-  ImpactRecorder recorder;
-  explicit Audited(const Marcher& marcher) : audit(marcher), recorder(marcher, &audit) {}
-};
-
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
 // samples. Passes everything on to the observer behind it.
 class Sampler final : public StepObserver {
@@ -95,6 +88,24 @@ class Sampler final : public StepObserver {
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;
   Curve curve_;
+};
+
+/// What looks at every step of a trajectory, the one before the other.
+struct Watched {
+  EnergyAudit audit;
+  ImpactRecorder recorder;
+  WindowMeans means;
+  ForceWindow forces;
+  SnapshotTaker snapshots;
+  Sampler sampler;
+  Watched(const StudyCase& study_case, const Marcher& marcher, long long steps)
+      : audit(marcher),
+        recorder(marcher, &audit),
+        means(study_case.settings, audit, recorder),
+        forces(study_case.settings, means),
+        snapshots(marcher, steps, snapshots_asked(study_case.settings), forces),
+        sampler(audit, recorder,
+                snapshots_asked(study_case.settings) > 0 ? static_cast<StepObserver&>(snapshots) : forces) {}
 };
 
 void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem) {
@@ -174,9 +185,9 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   return plan;
 }
 
-std::shared_ptr<StepObserver> audited(const Marcher& marcher) {
-  const auto both = std::make_shared<Audited>(marcher);
-  return {both, &both->recorder};
+std::shared_ptr<StepObserver> watched(const StudyCase& study_case, const Marcher& marcher, long long steps) {
+  const auto all = std::make_shared<Watched>(study_case, marcher, steps);
+  return {all, &all->sampler};
 }
 
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
@@ -186,15 +197,8 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   if (!prepared.program) return record;
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
-  Audited watched(marcher);
-  EnergyAudit& audit = watched.audit;
-  ImpactRecorder& recorder = watched.recorder;
-  WindowMeans means(study_case.settings, audit, recorder);
-  ForceWindow forces(study_case.settings, means);
-  const int instants = snapshots_asked(study_case.settings);
-  SnapshotTaker snapshots(marcher, prepared.steps, instants, forces);
-  StepObserver& observed = instants > 0 ? static_cast<StepObserver&>(snapshots) : forces;
-  Sampler sampler(audit, recorder, observed);
+  Watched watched(study_case, marcher, prepared.steps);
+  auto& [audit, recorder, means, forces, snapshots, sampler] = watched;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
