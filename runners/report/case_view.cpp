@@ -174,9 +174,7 @@ const CaseRecord* CaseView::find(std::string_view id) const {
   return found == results_.cases.end() ? nullptr : &*found;
 }
 
-std::string CaseView::describe(const Cases& cases, const Cases& among) const {
-  const size_t total = among.size();
-  if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
+std::string CaseView::set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns) {
   const auto values_in = [](const Cases& some, const std::string& column) {
     std::vector<std::string> out;
     for (const CaseRecord* record : some) {
@@ -186,11 +184,18 @@ std::string CaseView::describe(const Cases& cases, const Cases& among) const {
     return out;
   };
   std::string what;
-  for (const std::string& column : varying_) {
+  for (const std::string& column : columns) {
     const std::vector<std::string> inside = values_in(cases, column);
     if (inside.empty() || inside.size() == values_in(among, column).size()) continue;
     what += fmt::format("{}{} {}", what.empty() ? "" : "; ", column, fmt::join(inside, ", "));
   }
+  return what;
+}
+
+std::string CaseView::describe(const Cases& cases, const Cases& among) const {
+  const size_t total = among.size();
+  if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
+  const std::string what = set_apart(cases, among, varying_);
   return fmt::format("{} of {} cases{}", cases.size(), total, what.empty() ? "" : " (" + what + ")");
 }
 

@@ -73,6 +73,8 @@ class CaseView {
   /// What sets `cases` apart from `among`: "all 24 cases", "12 of 24 cases (mass singular)".
   std::string describe(const Cases& cases, const Cases& among) const;
   std::string describe(const Cases& cases) const { return describe(cases, all()); }
+  /// The same of some columns alone, without the count: "mass singular; time.beta 0.25"; "" where nothing does.
+  static std::string set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns);
 
  private:
   const StudyResults& results_;

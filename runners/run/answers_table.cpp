@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
@@ -14,6 +15,8 @@
 #include "runners/report/effects.hpp"
 #include "runners/report/html.hpp"
 #include "runners/run/choice_effects.hpp"
+#include "runners/run/measure_scale.hpp"
+#include "runners/run/reasons_table.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/table_reader.hpp"
@@ -193,6 +196,13 @@ std::string clause(const report::CaseView& view, const Said& said) {
                      effects.groups.size(), of_scale(effects, said.largest));
 }
 
+/// Whether some effect is larger than all that step, mesh and window leave open: it is seen, and small.
+bool beyond_refinement(const std::vector<const Said*>& same) {
+  return std::any_of(same.begin(), same.end(), [](const Said* said) {
+    return said->median > said->step.value_or(0) + said->mesh.value_or(0) + said->sampling.value_or(0);
+  });
+}
+
 /// A sentence on what has the same choice and verdict.
 std::string sentence_of(const std::vector<const Said*>& same) {
   const Said& first = *same.front();
@@ -203,7 +213,9 @@ std::string sentence_of(const std::vector<const Said*>& same) {
   if (first.verdict == "decides")
     out = fmt::format("{} decides: {}", name, clauses);
   else if (first.verdict == "does not matter")
-    out = fmt::format("{} does not matter here: {}", name, clauses);
+    out = fmt::format("{} {} here: {}", name,
+                      beyond_refinement(same) ? "changes less than " + percent(answer_threshold) : "does not matter",
+                      clauses);
   else if (first.verdict == "not resolved")
     out = fmt::format("what {} changes is not resolved: {}{}", name, clauses, next_sizes(same));
   else if (first.verdict == "not told")
@@ -217,7 +229,21 @@ std::string sentence_of(const std::vector<const Said*>& same) {
   return as_sentence(out);
 }
 
-/// What each choice explains of the spread of what is observed, where effects.csv tells most of it.
+/// How far the finished cases spread in a measure, over what its differences are shares of.
+double spread_of(const StudyResults& results, const std::string& name) {
+  const MeasureScale scale(name);
+  double low = infinity, high = -infinity, unit = 0;
+  for (const CaseRecord& record : results.cases) {
+    const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
+    if (!value) continue;
+    low = std::min(low, *value);
+    high = std::max(high, *value);
+    unit = std::max(unit, scale.of(record).value_or(0));
+  }
+  return unit > 0 ? (high - low) / unit : 0;
+}
+
+/// What each choice explains of the spread of what is observed, where that is one and effects.csv tells most of it.
 void say_shares(const report::CaseView& view, const std::vector<std::string>& observed, Table& table) {
   const Table* effects = find_table(view.results().derived, "effects");
   if (!effects) return;
@@ -230,22 +256,44 @@ void say_shares(const report::CaseView& view, const std::vector<std::string>& ob
   const TableReader rows(shares);
   for (std::size_t row = 0; row < rows.size(); ++row)
     if (const std::string name = rows.text(row, "measure");
-        told[name] >= most && std::find(observed.begin(), observed.end(), name) != observed.end())
+        told[name] >= most && spread_of(view.results(), name) > answer_threshold &&
+        std::find(observed.begin(), observed.end(), name) != observed.end())
       table.rows.push_back(
           AnswerRow{.measure = name, .verdict = "shares", .sentence = rows.text(row, "sentence")}.row());
 }
 
-/// Of cases that gave no result: how many, and what sets them apart.
+/// " Why: the step is beyond … (12 cases); and 3 other reasons." of what most of these cases say; "" where each says
+/// its own.
+std::string why(const Table& reasons, const std::string& status, std::size_t cases) {
+  constexpr std::size_t most = 3;
+  constexpr double few = 0.05;
+  std::vector<std::pair<double, std::string>> found;
+  const TableReader rows(reasons);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (rows.text(row, "status") == status && !rows.text(row, "reason").empty())
+      found.emplace_back(rows.number(row, "cases").value_or(0), rows.text(row, "reason"));
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string out;
+  std::size_t said = 0;
+  for (; said < std::min(most, found.size()) && found[said].first > few * static_cast<double>(cases); ++said)
+    out += fmt::format("{} {} ({:.0f})", said == 0 ? " Why:" : ";", found[said].second, found[said].first);
+  if (said == 0) return "";
+  if (said < found.size()) out += "; " + report::count_text(found.size() - said, "other reason", "other reasons");
+  return out + ".";
+}
+
+/// Of cases that gave no result: how many, what sets them apart, and why.
 void say_ends(const report::CaseView& view, Table& table) {
+  const Table reasons = reasons_table(view.results());
   for (const char* status : {"diverged", "failed", "refused"}) {
     const Cases ended = view.with_status(status);
     if (ended.empty()) continue;
     const std::string who = ended.size() == 1 ? view.name(*ended.front()) : view.describe(ended);
-    table.rows.push_back(
-        AnswerRow{.verdict = status,
-                  .combinations = ended.size(),
-                  .sentence = fmt::format("{}{}: {}.", static_cast<char>(std::toupper(*status)), status + 1, who)}
-            .row());
+    table.rows.push_back(AnswerRow{.verdict = status,
+                                   .combinations = ended.size(),
+                                   .sentence = fmt::format("{}{}: {}.{}", static_cast<char>(std::toupper(*status)),
+                                                           status + 1, who, why(reasons, status, ended.size()))}
+                             .row());
   }
 }
 

@@ -102,6 +102,7 @@ std::string spoken_choice(const std::string& column) {
   if (column == "time") return "the time scheme";
   if (column == "step") return "the step";
   if (column == "elements") return "the mesh";
+  if (column == "steps_per_period") return "the number of steps per period";
   static const std::pair<const char*, const char*> scene[] = {
       {"structure.damping.stiffness", "the viscosity α"},
       {"structure.damping.mass", "the damping η"},

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/contract/unit_mass.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>

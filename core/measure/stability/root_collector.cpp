@@ -17,15 +17,15 @@ double physical_modulus(double m, double c, double k, double h) {
   return sum > 0 ? std::exp(-2 * k * h / sum) : 1.0;
 }
 
-std::string root_text(std::complex<double> r) {
-  const double near = 1e-6;
-  if (std::abs(r - 1.0) < near) return "root +1";
-  if (std::abs(r + 1.0) < near) return "root −1";
-  if (std::abs(r.real()) < near) return "roots ±i";
-  return fmt::format("roots of modulus 1 at ±{:.4g}°", std::abs(std::arg(r)) * 180 / std::numbers::pi);
-}
-
 }  // namespace
+
+std::string root_text(std::complex<double> root) {
+  const double near = 1e-6;
+  if (std::abs(root - 1.0) < near) return "root +1";
+  if (std::abs(root + 1.0) < near) return "root −1";
+  if (std::abs(root.real()) < near) return "roots ±i";
+  return fmt::format("roots of modulus 1 at ±{:.4g}°", std::abs(std::arg(root)) * 180 / std::numbers::pi);
+}
 
 void RootCollector::largest(const Root& root, double pulsation, bool on_kernel, const std::string& mode) {
   const double size = std::abs(root.value);
@@ -38,7 +38,7 @@ void RootCollector::largest(const Root& root, double pulsation, bool on_kernel, 
   spectrum.mode = mode;
 }
 
-void RootCollector::judge(const Root& root, double m, double c, double k, int others, double tolerance,
+void RootCollector::judge(const Root& root, double m, double c, double k, int others, double tolerance, RootPlace place,
                           const std::string& where) {
   const double size = std::abs(root.value);
   if (size < 1 - tolerance || size > 1 + growth_tolerance) return;
@@ -47,34 +47,35 @@ void RootCollector::judge(const Root& root, double m, double c, double k, int ot
     // A motion that neither decays nor lacks inertia has two roots on the circle, which meet at +1 as h → 0.
     if (std::abs(root.value - 1.0) < 1e-3) return;
     if (!root.defective && others <= 2) return;
-    name(root, where);
+    name(root, place, where);
   } else {
-    name(root, where + (m > 0 ? ", though the structure is damped" : ""));
+    name(root, place, where + (m > 0 ? ", though the structure is damped" : ""));
   }
 }
 
-void RootCollector::name(const Root& root, const std::string& where) {
+void RootCollector::name(const Root& root, RootPlace place, const std::string& where) {
   spectrum.grows_linearly = spectrum.grows_linearly || root.defective;
-  for (Finding& finding : findings_)
+  for (MarginalRoot& finding : spectrum.marginal_roots)
     if (finding.where == where && finding.defective == root.defective &&
-        std::min(std::abs(finding.root - root.value), std::abs(finding.root - std::conj(root.value))) < 1e-6) {
-      finding.count += std::abs(finding.root - root.value) < 1e-6;
+        std::min(std::abs(finding.value - root.value), std::abs(finding.value - std::conj(root.value))) < 1e-6) {
+      finding.count += std::abs(finding.value - root.value) < 1e-6;
       return;
     }
-  findings_.push_back({root.value, where, root.defective, 1});
+  spectrum.marginal_roots.push_back({root.value, place, where, root.defective, 1});
 }
 
 StepSpectrum RootCollector::finish(const std::string& contact) {
   spectrum.contact = contact;
-  for (std::size_t i = 0; i < findings_.size(); ++i) {
-    const Finding& finding = findings_[i];
+  const std::vector<MarginalRoot>& findings = spectrum.marginal_roots;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const MarginalRoot& finding = findings[i];
     if (!spectrum.marginal.empty()) spectrum.marginal += "; ";
     if (i == most_findings) {
-      spectrum.marginal += fmt::format("and {} more", findings_.size() - i);
+      spectrum.marginal += fmt::format("and {} more", findings.size() - i);
       break;
     }
     spectrum.marginal += finding.defective ? "double " : "";
-    spectrum.marginal += root_text(finding.root) + " on " + finding.where;
+    spectrum.marginal += root_text(finding.value) + " on " + finding.where;
     if (finding.count > 1) spectrum.marginal += fmt::format(" ({} times)", finding.count);
     if (finding.defective) spectrum.marginal += ": grows linearly";
   }

@@ -18,25 +18,20 @@ class RootCollector {
   void largest(const Root& root, double pulsation, bool on_kernel, const std::string& mode);
 
   /// A root that lives on a motion (m, c, k), of which `others` roots with this one are on the unit circle.
-  void judge(const Root& root, double m, double c, double k, int others, double tolerance, const std::string& where);
-  void name(const Root& root, const std::string& where);
+  void judge(const Root& root, double m, double c, double k, int others, double tolerance, RootPlace place,
+             const std::string& where);
 
   StepSpectrum finish(const std::string& contact);
 
   StepSpectrum spectrum;
 
  private:
-  struct Finding {
-    std::complex<double> root;
-    std::string where;
-    bool defective;
-    int count;
-  };
+  void name(const Root& root, RootPlace place, const std::string& where);
+
   Damping damping_;
   double h_;
   Detail detail_;
   static constexpr std::size_t most_findings = 3;
-  std::vector<Finding> findings_;
 };
 
 }  // namespace ricochet

@@ -119,7 +119,8 @@ std::optional<Refusal> StabilityPredictor::add_modes(RootCollector& found, const
       found.largest(root, modes.pulsation(i), i >= modes.regular, modes.name(i));
       if (!found.full()) break;
       if (std::abs(root.value) >= 1 - modal_marginal) others += root.multiplicity;
-      found.judge(root, m, c, k, others, modal_marginal, modes.name(i));
+      found.judge(root, m, c, k, others, modal_marginal, i >= modes.regular ? RootPlace::kernel : RootPlace::mode,
+                  modes.name(i));
     }
   }
   return std::nullopt;
@@ -151,7 +152,7 @@ SpectrumOrRefusal StabilityPredictor::held(const StepPlan& plan, double h, const
   for (const Root& root : step_roots(in_metres(*points, plan, h, 1), found.full())) {
     found.largest(root, 0, false, "the held points");
     // Held points do not move: no root of theirs has a motion behind it.
-    if (found.full()) found.judge(root, 0, 0, 1, 0, modal_marginal, "the held points");
+    if (found.full()) found.judge(root, 0, 0, 1, 0, modal_marginal, RootPlace::held_points, "the held points");
   }
   return found.finish(set.name);
 }
@@ -205,7 +206,7 @@ SpectrumOrRefusal StabilityPredictor::dense(const StepPlan& plan, double h, cons
     found.largest(root, modes.pulsation(mode), mode >= modes.regular, modes.name(mode));
     const bool massless = mode >= modes.regular;
     found.judge(root, massless ? 0.0 : m, damping.stiffness * elastic + damping.mass * m, elastic + spring, 0,
-                dense_marginal, modes.name(mode));
+                dense_marginal, massless ? RootPlace::kernel : RootPlace::mode, modes.name(mode));
   }
   return found.finish(set.name);
 }

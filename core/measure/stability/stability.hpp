@@ -39,6 +39,20 @@ struct ClosedSet {
   std::vector<int> points;
 };
 
+/// Where a root lives: on motions without mass, on points that contact holds, or on a mode.
+enum class RootPlace { kernel, held_points, mode };
+
+/// A root of modulus one where the motion itself is damped, or has no inertia.
+struct MarginalRoot {
+  std::complex<double> value;
+  RootPlace place = RootPlace::mode;
+  std::string where;       ///< the same in words: "mode 40 of 40 (1.43e5 rad/s)"
+  bool defective = false;  ///< what it multiplies grows linearly
+  int count = 1;           ///< how many times
+};
+/// "root −1", "roots ±i", "roots of modulus 1 at ±104.5°".
+std::string root_text(std::complex<double> root);
+
 /// One step's spectrum with a contact set that stays.
 struct StepSpectrum {
   std::string contact;          ///< "open", or the closed set
@@ -48,8 +62,8 @@ struct StepSpectrum {
   bool on_kernel = false;       ///< the motion has no mass: it lies in Ker M
   std::string mode;             ///< the same in words: "mode 40 of 40 (1.43e5 rad/s)", "the kernel of the mass"
   bool grows_linearly = false;  ///< a defective root on the unit circle
-  /// Roots of modulus one where the motion itself is damped, or has no inertia: named, with where they live; "" when
-  /// there is none.
+  std::vector<MarginalRoot> marginal_roots;
+  /// The same in words, the first of them; "" when there is none.
   std::string marginal;
   bool stable() const { return radius <= 1 + growth_tolerance; }
 };

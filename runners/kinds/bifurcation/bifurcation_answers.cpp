@@ -8,6 +8,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/html.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
@@ -55,7 +56,7 @@ Table bifurcation_answers(const StudyResults& results) {
       const auto share = rows.number(row, "share");
       all += intervals;
       const bool depends = verdict == "depends" && !choice.empty();
-      parts += fmt::format("{}{} in {}{}", parts.empty() ? "" : ", ", depends ? "depends on " + choice : verdict,
+      parts += fmt::format("{}{} in {}{}", parts.empty() ? "" : ", ", depends ? "depends on " + spoken_choice(choice) : verdict,
                            intervals, share ? fmt::format(" ({} of the range)", report::share_text(*share)) : "");
     }
     const auto from = rows.number(0, "from"), to = rows.number(0, "to");

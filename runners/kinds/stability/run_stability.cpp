@@ -11,6 +11,7 @@
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/kinds/stability/stability_steps.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -256,10 +257,11 @@ class StabilityRun {
   }
 
   void tabulate(const std::vector<Side>& sides, bool observed) {
-    Table table = stability_head(), seen = stability_observed_head();
+    Table table = stability_head(), seen = stability_observed_head(), roots = stability_roots_head();
     for (const Side& side : sides)
       for (std::size_t i = 0; i < steps_.size(); ++i) {
         const StepSpectrum* known = side.spectrum(i);
+        if (known) add_roots(roots, side.closed, steps_[i], steps_.size(), *known);
         const auto [status, reason] = verdict(sides.front(), side, i, observed);
         table.rows.push_back({steps_[i], side.closed, known ? Cell(known->radius) : Cell(),
                               known ? known->marginal : "", side.predicted.step, side.observed.step, status, reason});
@@ -273,6 +275,7 @@ class StabilityRun {
                              cell.cause});
       }
     record_.tables.push_back(std::move(table));
+    record_.tables.push_back(std::move(roots));
     if (observed) record_.tables.push_back(std::move(seen));
     for (const Side& side : sides) say_limits(sides, side, observed);
     if (observed) say_contradictions(sides.front());

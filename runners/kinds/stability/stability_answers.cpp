@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
@@ -53,7 +54,7 @@ Table stability_answers(const StudyResults& results) {
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const CaseRecord* record = view.find(rows.text(row, "case"));
     if (!record || rows.truth(row, "counted") != true || rows.truth(row, "closed") == true) continue;
-    SchemeLimits& scheme = in_order_met(schemes, view.name(*record, columns));
+    SchemeLimits& scheme = in_order_met(schemes, method_name(view, *record, columns));
     ++scheme.ranges;
     scheme.unlimited += !rows.text(row, "prediction").empty() && !rows.number(row, "first_unstable");
     if (const auto limit = rows.number(row, "predicted")) {
@@ -75,6 +76,7 @@ Table stability_answers(const StudyResults& results) {
     add("limited", fmt::format("Stable without contact up to a largest step: {}.", report::list_text(limited)));
   if (!free.empty())
     add("unlimited", fmt::format("Stable without contact at every step of the range: {}.", report::list_text(free)));
+  for (const std::string& sentence : roots_told(results, columns)) add("roots", sentence);
   if (const std::string agreement = agreement_text(results); !agreement.empty()) add("agreement", agreement);
   return out;
 }

@@ -1,5 +1,7 @@
 #include "runners/kinds/stability/stability_tables.hpp"
 
+#include "runners/kinds/stability/stability_roots.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -35,7 +37,9 @@ Table stability_observed_head() {
            {"changes_per_impact", "1",
             "Changes of the set of closed points for each time that contact began anywhere; 2: it closes and opens."},
            {"fast_share", "1", "Share of the contact force's power above a quarter of the step frequency."},
-           {"chatter", "", "Whether contact flickers: over 0.75 of the power is fast, or over 20 changes for each time that contact began."},
+           {"chatter", "",
+            "Whether contact flickers: over 0.75 of the power is fast, or over 20 changes for each time that contact "
+            "began."},
            {"first_bad_step", "1", "Number of the step at which the growth showed."},
            {"steps", "1", "Steps that were marched."},
            {"cause", "", "What was seen, one sentence; empty where it is stable."}},
@@ -56,7 +60,8 @@ Table restitution_head() {
 
 void describe_stability(CaseRecord& record) {
   for (Table& table : record.tables)
-    for (const Table& head : {stability_head(), stability_observed_head(), restitution_head()}) {
+    for (const Table& head :
+         {stability_head(), stability_observed_head(), stability_roots_head(), restitution_head()}) {
       if (head.name != table.name) continue;
       if (const auto contact = find_column(table.columns, "contact")) {
         table.columns[*contact].name = "closed";

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "runners/kinds/sweep/diagram_tables.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::dynamics {
@@ -175,7 +176,8 @@ class Verdicts {
         list += fmt::format("{}{} gives {}", k ? "; " : "", levels[k].first, sets(stretch, levels[k].second));
       if (levels.size() > kLevelsNamed) list += fmt::format("; {} more levels", levels.size() - kLevelsNamed);
       out = fmt::format("{} {} decides, with {} of the differences between {}: {}.", where,
-                        choice_name(stretch.front()), percent(share), count_of(cases.size(), "case"), list);
+                        spoken_choice(choice_name(stretch.front())), percent(share), count_of(cases.size(), "case"),
+                        list);
       if (second > kSpread * share)
         out += fmt::format(" Another choice tells {} of them: the two cannot be held apart here.", percent(second));
     }

@@ -140,6 +140,14 @@ TEST_CASE("marginal cells are named, refused ones say why") {
   for (const Cell& seen : quarter.column("behaviour", "open", "stability_observed")) CHECK(seen == "marginal");
   for (const Cell& limit : quarter.column("limit_predicted", "open")) CHECK(limit.is_nothing());
   CHECK_FALSE(quarter.measure("limit_predicted"));
+  // The same over the steps, as a row: the root, where it lives, and that every step has it.
+  CHECK(quarter.column("place", "open", "stability_roots") == std::vector<Cell>{"kernel of the mass"});
+  CHECK(quarter.column("root", "open", "stability_roots") == std::vector<Cell>{"root −1"});
+  CHECK(quarter.column("double", "open", "stability_roots") == std::vector<Cell>{true});
+  CHECK(quarter.column("steps", "open", "stability_roots") == std::vector<Cell>{3});
+  CHECK(quarter.column("times", "open", "stability_roots") == std::vector<Cell>{5});
+  const Result none = run(study_text("consistent", "signorini", dumont_paoli(0.25), 1e-4, 1e-2, 3));
+  CHECK(none.column("root", "open", "stability_roots").empty());
 
   const Result refused = run(study_text(singular, "signorini", dumont_paoli(0), 1e-4, 1e-2, 3));
   CHECK(refused.record.status == "refused");
