@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <ricochet/measure/orbits/motion_class.hpp>
+#include <set>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
@@ -79,6 +80,47 @@ std::vector<std::string> class_counts_of(const std::vector<report::Orbit>& orbit
   return out;
 }
 
+/// Speed of the one impact that repeats from one start, by value of the parameter.
+std::map<double, double> single_impacts(const CaseRecord& record, const std::string& start) {
+  std::map<double, double> speeds;
+  const NumberTable* table = find_table(record.numbers, "impacts");
+  if (!table) return speeds;
+  const auto *parameter = &table->values.front(), *from = table->numbers("start"), *speed = table->numbers("speed");
+  const std::vector<std::string>* words = table->words_of("start");
+  if (!from || !speed || !words) return speeds;
+  std::set<double> several;
+  for (std::size_t row = 0; row < table->rows(); ++row)
+    if ((*words)[static_cast<std::size_t>((*from)[row])] == start &&
+        !speeds.emplace((*parameter)[row], (*speed)[row]).second)
+      several.insert((*parameter)[row]);
+  for (const double value : several) speeds.erase(value);
+  return speeds;
+}
+
+/// How hard the stop is hit, where a motion repeats with one impact: of few values, in the standard case and how far
+/// the others are from it.
+void say_speeds(const CaseView& view, const CaseRecord& standard, const std::string& start, Table& answers) {
+  const std::map<double, double> speeds = single_impacts(standard, start);
+  if (speeds.empty() || speeds.size() > most_stretches) return;
+  std::vector<std::string> said;
+  double apart = 0;
+  std::size_t others = 0;
+  for (const auto& [value, speed] : speeds)
+    said.push_back(fmt::format("{} m/s at {}", number_text(speed, 5), number_text(value, 5)));
+  for (const CaseRecord* other : view.with_status("done")) {
+    if (other == &standard) continue;
+    for (const auto& [value, speed] : single_impacts(*other, start))
+      if (const auto found = speeds.find(value); found != speeds.end()) {
+        ++others;
+        apart = std::max(apart, std::abs(speed / found->second - 1));
+      }
+  }
+  add(answers, "impacts", {},
+      fmt::format(
+          "Where the motion repeats with one impact it hits the stop with {}{}.", list_text(said, said.size()),
+          others > 0 ? fmt::format("; in other cases with up to {} % more or less", number_text(100 * apart, 2)) : ""));
+}
+
 void say_motions(const StudyResults& results, const CaseView& view, const CaseRecord& standard, Table& answers) {
   std::vector<report::Orbit> orbits = report::orbits_of(standard);
   const auto first =
@@ -95,6 +137,7 @@ void say_motions(const StudyResults& results, const CaseView& view, const CaseRe
   add(answers, "diagram", {},
       fmt::format("{}{}, the motion over {} is {}.", from_where(start), who,
                   report::with_unit(report::swept_parameter(results)), list_text(said, most_stretches)));
+  say_speeds(view, standard, start, answers);
 }
 
 /// How a case compares with the standard one.

@@ -135,7 +135,7 @@ std::vector<std::string> roots_told(const StudyResults& results, const std::vect
     }
     const std::string all = fmt::format("{}", fmt::join(said, "; "));
     // Motions without mass mostly do the same whatever contact does.
-    if (all == before)
+    if (!said.empty() && all == before)
       out.back() += " The same on " + place + ".";
     else if (!said.empty())
       out.push_back(fmt::format("On the unit circle by the scheme alone, on {}, are {}.", place, all));

@@ -76,6 +76,25 @@ TEST_CASE("an answer follows the motion of the finest case along the parameter, 
   CHECK_THAT(said(results, "diagram"), Contains("periodic 3 at 80 of 120 values, chaotic at 40"));
 }
 
+TEST_CASE("motions of one impact are told with its speed, and how far others are from it") {
+  synthetic::DynamicsShape shape;
+  shape.values = 4;
+  shape.starts = {"rest"};
+  StudyResults results = synthetic::dynamics(shape);
+  for (CaseRecord& record : results.cases) record.numbers.clear();
+  CHECK(said(results, "impacts").empty());
+  // Twice within a period is no one speed.
+  for (CaseRecord& record : results.cases) {
+    NumberTable table = number_table("impacts", {{"parameter"}, {"start"}, {"speed"}});
+    table.words = {{"start", {"rest"}}};
+    table.add({0.08, 0, &record == &results.cases.front() ? 2 : 2.1});
+    for (const double speed : {3, 4}) table.add({0.09, 0, speed});
+    record.numbers = {table};
+  }
+  CHECK_THAT(said(results, "impacts"),
+             Contains("hits the stop with 2 m/s at 0.08; in other cases with up to 5 % more"));
+}
+
 TEST_CASE("few cases are told one by one, many by the step from which on they agree") {
   const StudyResults few = agreements({500, 2000}, {{"a", {0.7, 1}}, {"b", {0.5, 0.9}}});
   CHECK_THAT(
