@@ -85,7 +85,7 @@ TEST_CASE("motions of one impact are told with its speed, and how far others are
   CHECK(said(results, "impacts").empty());
   // Twice within a period is no one speed.
   for (CaseRecord& record : results.cases) {
-    NumberTable table = number_table("impacts", {{"parameter"}, {"start"}, {"speed"}});
+    NumberTable table = number_table("impacts", named_columns({"parameter", "start", "speed"}));
     table.words = {{"start", {"rest"}}};
     table.add({0.08, 0, &record == &results.cases.front() ? 2 : 2.1});
     for (const double speed : {3, 4}) table.add({0.09, 0, speed});
