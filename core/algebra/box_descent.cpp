@@ -45,11 +45,7 @@ void BoxSolver::descend(const Operator& A, LaneOutcome& outcome) {
 // A_SS is singular: along its null vector y does not move, and the sum decreases at the rate at which the entering
 // point's violation is worked on, until a point of the set has no effort left. If none ever has, no p satisfies (1).
 bool BoxSolver::slide(int entering) {
-  for (int j = rank_ - 1; j >= 0; --j) {
-    null_[j] = -null_[j];
-    const double* row = factor_.data() + j * static_cast<std::size_t>(points_);
-    for (int t = 0; t < j; ++t) null_[t] += row[t] * null_[j];
-  }
+  find_null();
   side_[dropped_] = dropped_side_;
   double along = dropped_ == entering ? 1 : 0;
   for (int j = 0; j < rank_; ++j)

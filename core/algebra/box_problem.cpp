@@ -25,10 +25,11 @@ std::uint64_t fingerprint(int point, int side) {
 void BoxSolver::prepare(int points) {
   assert(points >= 0);
   const auto m = static_cast<std::size_t>(points);
-  for (auto* v :
-       {&free_, &lower_, &upper_, &measure_, &effort_, &feasible_, &best_, &diagonal_, &pivot_, &right_, &null_})
+  for (auto* v : {&free_, &lower_, &upper_, &measure_, &effort_, &feasible_, &best_, &diagonal_, &pivot_, &right_,
+                  &null_, &compliance_, &step_})
     v->assign(m, 0.0);
-  factor_.assign(m * m, 0.0);
+  factor_ = std::make_unique_for_overwrite<double[]>(m * m);
+  interior_ = {};
   column_.assign(m, nullptr);
   set_.assign(m, 0);
   side_.assign(m, Side::none);
@@ -156,13 +157,27 @@ LaneOutcome BoxSolver::search(const Operator& A, const double* previous, int str
   outcome.iterations = count_;
   visited_.clear();
   choose_first_set(previous, stride);
+  bool looked_inside = false;
+  int fewest = points_ + 1;
   for (;;) {
     try_set(A);
     ++outcome.iterations;
     if (all_right()) break;
-    if (seen_before()) {
-      descend(A, outcome);
-      break;
+    // From a set far off, sets of many points go astray for as long as they are followed.
+    bool astray = false;
+    if (held_ && !looked_inside) {
+      const int wrong = wrong_points();
+      astray = wrong >= fewest;
+      fewest = wrong;
+    }
+    if (astray || seen_before()) {
+      if (looked_inside || !look_inside(A, outcome)) {
+        descend(A, outcome);
+        break;
+      }
+      looked_inside = true;
+      visited_.clear();
+      continue;
     }
     move_all();
   }
@@ -183,6 +198,12 @@ bool BoxSolver::all_right() const {
   for (int i = 0; i < points_ && spill_ > 0; ++i)
     if (side_[i] == Side::none && beyond(i) != Side::none) return false;
   return true;
+}
+
+int BoxSolver::wrong_points() const {
+  int count = 0;
+  for (int i = 0; i < points_; ++i) count += side_[i] == Side::none ? beyond(i) != Side::none : active(i) && pulls(i);
+  return count;
 }
 
 void BoxSolver::move_all() {

@@ -1,9 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <memory>
+#include <ricochet/algebra/box_interior.hpp>
 #include <ricochet/contract/contact_law.hpp>
 #include <vector>
 
 namespace ricochet {
+
+class HeldBand;
 
 /// The two-sided box problem of one lane
 ///
@@ -22,7 +26,9 @@ namespace ricochet {
 /// matters: over 10⁵ pivots for 50 nodes of a cantilever, against about a hundred.)
 ///
 /// Only the columns of sets that were tried are asked for. Cost: O(m) to read the lane, and O(k³ + m·k) for each set of
-/// k points.
+/// k points. A set of more than `many` points is held in the band of its operator (a BandDelassus), p corrected by the
+/// residual of W itself until that is round-off: O(n), n the size of the band, and no columns. A search over such sets
+/// that comes back to one goes on from the set that an interior point shows (see box_interior.hpp) before it descends.
 ///
 /// **Uniqueness.** y is unique. p is computed from scratch from the final set, so the warm start changes it by
 /// round-off only, as long as W is regular on that set. Where it is not (two points at one place, more supports than a
@@ -35,8 +41,11 @@ namespace ricochet {
 /// the bounds in force and of the terms of A p. Signs of p are exact.
 class BoxSolver {
  public:
+  /// Sets of more points are held in the band, where there is one.
+  static constexpr int many = 128;
+
   BoxSolver() = default;
-  /// Reserves for m points; solve() allocates nothing after this.
+  /// Reserves for m points; solve() allocates nothing after this, but for the interior point when it is first needed.
   void prepare(int points);
 
   /// y°, lower, upper, p: m numbers each, `stride` apart. compliance: one number for all points (m/N), 0 for rigid.
@@ -70,9 +79,16 @@ class BoxSolver {
   void factorise(const Operator& A);
   void substitute();
   void evaluate(const Operator& A);
+  void judge();
   Side beyond(int i) const;
   double residual() const;
   double tolerance() const;
+
+  // box_held.cpp
+  HeldBand* band_for(const Operator& A) const;
+  void try_held(const Operator& A, HeldBand& band);
+  void find_null();
+  bool look_inside(const Operator& A, LaneOutcome& outcome);
 
   // box_descent.cpp
   void descend(const Operator& A, LaneOutcome& outcome);
@@ -85,6 +101,7 @@ class BoxSolver {
   bool active(int i) const { return side_[i] == Side::lower || side_[i] == Side::upper; }
   bool pulls(int i) const { return side_[i] == Side::lower ? effort_[i] < 0 : effort_[i] > 0; }
   bool all_right() const;
+  int wrong_points() const;
   void move_all();
   bool seen_before();
 
@@ -101,10 +118,14 @@ class BoxSolver {
   double worst_ = 0, spill_ = 0;  // farthest beyond a bound, and beyond it and round-off
   double best_residual_ = 0;      // of best_
   std::vector<double> free_, lower_, upper_, measure_, effort_, feasible_, best_;  // m
-  std::vector<double> diagonal_, factor_, pivot_, right_, null_;                   // k, k rows of m, k, k, k
-  std::vector<const double*> column_;                                              // k
-  std::vector<int> set_;                                                           // k, increasing
-  std::vector<Side> side_;                                                         // m
+  std::vector<double> diagonal_, pivot_, right_, null_;                            // k; right_ and null_: m
+  std::unique_ptr<double[]> factor_;       // k rows of m: what no set needs is never written
+  HeldBand* held_ = nullptr;               // that holds the last set tried; null: factor_ does
+  std::vector<double> compliance_, step_;  // m, of a held set
+  BoxInterior interior_;
+  std::vector<const double*> column_;  // k
+  std::vector<int> set_;               // k, increasing
+  std::vector<Side> side_;             // m
   std::vector<std::uint64_t> visited_;
 };
 

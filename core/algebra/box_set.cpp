@@ -20,6 +20,8 @@ using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
 
 void BoxSolver::try_set(const Operator& A) {
   for (int j = 0; j < count_; ++j) effort_[set_[j]] = 0;
+  held_ = band_for(A);
+  if (held_) return try_held(A, *held_);
   factorise(A);
   for (int j = 0; j < count_; ++j) right_[j] = bound(set_[j]) - free_[set_[j]];
   substitute();
@@ -48,10 +50,10 @@ void BoxSolver::factorise(const Operator& A) {
       side_[i] = Side::immobile;
       continue;
     }
-    double* row = factor_.data() + count_ * row_length;
+    double* row = factor_.get() + count_ * row_length;
     double d = a;
     for (int j = 0; j < count_; ++j) {
-      const double* earlier = factor_.data() + j * row_length;
+      const double* earlier = factor_.get() + j * row_length;
       double w = A.reach * column[set_[j]];
       if (j < short_row)
         for (int t = 0; t < j; ++t) w -= earlier[t] * row[t];
@@ -83,25 +85,34 @@ void BoxSolver::factorise(const Operator& A) {
 void BoxSolver::substitute() {
   const auto row_length = static_cast<std::size_t>(points_);
   for (int j = 0; j < count_; ++j) {
-    const double* row = factor_.data() + j * row_length;
+    const double* row = factor_.get() + j * row_length;
     for (int t = 0; t < j; ++t) right_[j] -= row[t] * right_[t];
   }
   for (int j = 0; j < count_; ++j) right_[j] /= pivot_[j];
   for (int j = count_ - 1; j > 0; --j) {
-    const double* row = factor_.data() + j * row_length;
+    const double* row = factor_.get() + j * row_length;
     for (int t = 0; t < j; ++t) right_[t] -= row[t] * right_[j];
   }
 }
 
 void BoxSolver::evaluate(const Operator& A) {
-  const ConstArray free(free_.data(), points_), lower(lower_.data(), points_), upper(upper_.data(), points_);
   Array y(measure_.data(), points_);
-  y = free;
-  double largest = 0, work = 0;
+  y = ConstArray(free_.data(), points_);
   for (int j = 0; j < count_; ++j) {
     const double effort = effort_[set_[j]];
     y += (A.reach * effort) * ConstArray(column_[j], points_);
     y[set_[j]] += A.compliance * effort;
+  }
+  judge();
+}
+
+// How far the measures are from their bounds, and what round-off may have to do with it.
+void BoxSolver::judge() {
+  const ConstArray free(free_.data(), points_), lower(lower_.data(), points_), upper(upper_.data(), points_),
+      y(measure_.data(), points_);
+  double largest = 0, work = 0;
+  for (int j = 0; j < count_; ++j) {
+    const double effort = effort_[set_[j]];
     largest = std::max(largest, diagonal_[j]);
     work += diagonal_[j] * effort * effort;
   }

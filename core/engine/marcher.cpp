@@ -89,7 +89,9 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->update_w.push_back(c.w);
   }
   if (!program_.contact || !stage.reads_contact) return state;
-  state->delassus = std::make_unique<StageDelassus>(*stage.op, model.measured(), model.rows());
+  const bool product = model.inertia().inverted() && stage.folded.stiffness == 0;
+  const bool band = (program_.kind == OperatorKind::band || program_.kind == OperatorKind::diagonal) && !product;
+  state->delassus = std::make_unique<StageDelassus>(*stage.op, model, band ? &stage.folded : nullptr);
   if (stage.impulse.op) {
     state->impulse = std::make_unique<StageImpulse>(stage.impulse, *stage.op, model);
     state->w = Block(model.rows(), T);

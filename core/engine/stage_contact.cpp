@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ricochet/algebra/box_problem.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 
@@ -11,6 +12,20 @@ bool finite_in(const Block& block, int lane) {
   for (int i = 0; i < block.rows(); ++i)
     if (!std::isfinite(block.at(i, lane))) return false;
   return true;
+}
+
+// z += S⁻¹Hᵀ p of the lanes with many efforts, each in one solve; which they are.
+std::uint32_t correct_at_once(StageDelassus& delassus, const double* effort, int points, double* z, int rows, int T) {
+  std::uint32_t solved = 0;
+  for (int lane = 0; lane < T; ++lane) {
+    int pushing = 0;
+    for (int j = 0; j < points; ++j) pushing += effort[static_cast<std::ptrdiff_t>(j) * T + lane] != 0;
+    if (pushing <= BoxSolver::many || !delassus.held()) continue;
+    const double* response = delassus.respond(effort + lane, T);
+    for (int i = 0; i < rows; ++i) z[static_cast<std::ptrdiff_t>(i) * T + lane] += response[i];
+    solved |= 1u << lane;
+  }
+  return solved;
 }
 
 }  // namespace
@@ -43,11 +58,18 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   if (state.way.rows() > 0 && state.contact_lanes != 0) measure_way(program, state, z);
 }
 
-// z += S⁻¹Hᵀ p, column by column where some lane has an effort.
+// z += S⁻¹Hᵀ p, column by column where some lane has an effort; a lane that has many, in one solve.
 void Marcher::correct(StageState& state, const double* effort, double* z) {
-  const int rows = program_.model->rows(), T = program_.width;
-  for (int j = 0; j < lower_.rows(); ++j) {
+  const int rows = program_.model->rows(), T = program_.width, points = lower_.rows();
+  const std::uint32_t solved =
+      points > BoxSolver::many ? correct_at_once(*state.delassus, effort, points, z, rows, T) : 0;
+  alignas(64) double others[32];
+  for (int j = 0; j < points; ++j) {
     const double* p = effort + static_cast<std::size_t>(j) * static_cast<std::size_t>(T);
+    if (solved != 0) {
+      for (int lane = 0; lane < T; ++lane) others[lane] = (solved >> lane & 1u) != 0 ? 0.0 : p[lane];
+      p = others;
+    }
     if (std::any_of(p, p + T, [](double x) { return x != 0; }))
       kernels_.add_column(rows, state.delassus->response(j), p, z);
   }

@@ -1,15 +1,35 @@
 #include <algorithm>
 #include <ricochet/engine/stage_delassus.hpp>
+#include <ricochet/engine/stage_system.hpp>
 
 namespace ricochet {
 
-StageDelassus::StageDelassus(StageOperator& op, const RowMatrix& contact, int rows)
-    : op_(op), contact_(contact), rows_(rows), points_(contact.rows()) {
+StageDelassus::StageDelassus(StageOperator& op, const MarchModel& model, const FoldedStage* band)
+    : op_(op), model_(model), band_(band), contact_(model.measured()), rows_(model.rows()), points_(contact_.rows()) {
   const auto points = static_cast<std::size_t>(points_);
   known_.assign(points, false);
   columns_ = std::make_unique_for_overwrite<double[]>(points * points);
-  responses_ = std::make_unique_for_overwrite<double[]>(points * static_cast<std::size_t>(rows));
-  rhs_.assign(static_cast<std::size_t>(rows), 0.0);
+  responses_ = std::make_unique_for_overwrite<double[]>(points * static_cast<std::size_t>(rows_));
+  rhs_.assign(static_cast<std::size_t>(rows_), 0.0);
+  response_.assign(static_cast<std::size_t>(rows_), 0.0);
+}
+
+HeldBand* StageDelassus::held() {
+  if (band_) held_ = HeldBand::make(stage_system(model_, *band_), contact_.view());
+  band_ = nullptr;
+  return held_.get();
+}
+
+const double* StageDelassus::respond(const double* efforts, int stride) {
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(points_); ++j) {
+    const double p = efforts[j * static_cast<std::size_t>(stride)];
+    if (p == 0) continue;
+    for (auto e = static_cast<std::size_t>(contact_.start[j]); e < static_cast<std::size_t>(contact_.start[j + 1]); ++e)
+      rhs_[static_cast<std::size_t>(contact_.index[e])] += contact_.value[e] * p;
+  }
+  op_.solve_column(rhs_.data(), response_.data());
+  return response_.data();
 }
 
 int StageDelassus::computed() const {

@@ -3,29 +3,13 @@
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/engine/stage_operator.hpp>
+#include <ricochet/engine/stage_system.hpp>
 
 namespace ricochet {
 namespace {
 
 bool any(const std::vector<double>& weights) {
   return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
-}
-
-// S as (1) of band_ldlt.hpp: a mass that is not assembled enters through its border, scaled so that both blocks have
-// the same units.
-QuasiDefinite system(const MarchModel& model, const FoldedStage& stage) {
-  QuasiDefinite matrix;
-  matrix.A = stage.stiffness * model.stiffness();
-  const Inertia& inertia = model.inertia();
-  if (inertia.assembled()) {
-    matrix.A += stage.mass * inertia.mass;
-  } else if (stage.mass != 0) {
-    const MassFactors factors = mass_factors(inertia);
-    matrix.G = std::sqrt(stage.mass) * factors.coupling;
-    matrix.Cv = factors.velocity_mass;
-    matrix.border_first = inertia.inverted();
-  }
-  return matrix;
 }
 
 // What band and sparse operators share: the right-hand side by band products, and M x of a mass that is not assembled
@@ -392,7 +376,7 @@ OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, cons
   if (!inertia.assembled() && stage.mass == 0 && stage.uses_mass())
     return Refusal{
         "a stage without inertia multiplies by a mass that is not assembled: use the mass consistent or lumped"};
-  const QuasiDefinite matrix = system(model, stage);
+  const QuasiDefinite matrix = stage_system(model, stage);
   if (kind == OperatorKind::sparse) return factorised(std::make_unique<SparseOperator>(model, stage, lanes), matrix);
   return factorised(std::make_unique<BandOperator>(model, stage, lanes), matrix);
 }

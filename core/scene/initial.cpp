@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/initial.hpp>
+#include <ricochet/scene/massless_part.hpp>
 
 namespace ricochet {
 namespace {
@@ -76,10 +76,8 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
 
 void measure_mass_constraint(SemiDiscrete& problem) {
   if (problem.inertia.kernel_dimension == 0) return;
-  const Eigen::MatrixXd basis = mass_kernel(problem.inertia);
-  const Eigen::VectorXd residual = basis.transpose() * (problem.stiffness * problem.position - load_at_start(problem));
-  const Eigen::LLT<Eigen::MatrixXd> reduced(basis.transpose() * (problem.stiffness * basis));
-  problem.kernel_energy = 0.5 * residual.dot(reduced.solve(residual));
+  const MasslessPart massless(problem.stiffness, problem.inertia);
+  problem.kernel_energy = massless.energy(problem.stiffness * problem.position - load_at_start(problem));
 }
 
 void project_on_mass_constraint(SemiDiscrete& problem) {
@@ -93,10 +91,9 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
     rate = load_rate_at_start(*problem.load, problem.dofs()) -
            support_at_start(problem.support).jerk * problem.support_shape;
 
-  const Eigen::MatrixXd basis = mass_kernel(problem.inertia);
-  const Eigen::LLT<Eigen::MatrixXd> reduced(basis.transpose() * (problem.stiffness * basis));
+  const MasslessPart massless(problem.stiffness, problem.inertia);
   const auto project = [&](Eigen::VectorXd& state, const Eigen::VectorXd& right) {
-    state -= basis * reduced.solve(basis.transpose() * (problem.stiffness * state - right));
+    state -= massless.response(problem.stiffness * state - right);
   };
   const double before = energy(problem);
   project(problem.position, load);

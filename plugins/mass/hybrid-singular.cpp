@@ -1,6 +1,6 @@
 #include <algorithm>
-
-#include "coupling_rank.hpp"
+#include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/semidefinite_rank.hpp>
 
 namespace {
 
@@ -86,7 +86,7 @@ class HybridSingular : public MassStrategy {
     }
     Inertia inertia;
     inertia.coupling = assembled(row, space.dofs, coupling);
-    inertia.kernel_dimension = space.dofs - coupling_rank(inertia.coupling);
+    inertia.kernel_dimension = space.dofs - row_rank(inertia.coupling);
     if (space.basis == FiniteElementSpace::Basis::hermite) {
       inertia.velocity_mass = assembled(row, row, velocity_mass);
       return inertia;

@@ -1,4 +1,5 @@
-#include "coupling_rank.hpp"
+#include <ricochet/contract/plugin.hpp>
+#include <ricochet/contract/semidefinite_rank.hpp>
 
 namespace {
 
@@ -63,7 +64,7 @@ class Singular : public MassStrategy {
     Inertia inertia;
     inertia.coupling = assemble(velocities + points, space.dofs, coupling);
     inertia.velocity_mass = assemble(velocities + points, velocities + points, velocity_mass);
-    inertia.kernel_dimension = space.dofs - coupling_rank(inertia.coupling);
+    inertia.kernel_dimension = space.dofs - row_rank(inertia.coupling);
     return inertia;
   }
 
@@ -93,7 +94,7 @@ class Singular : public MassStrategy {
     }
     Inertia inertia;
     inertia.mass = assemble(space.dofs, space.dofs, mass);
-    inertia.kernel_dimension = space.dofs - coupling_rank(assemble(row, space.dofs, coupling));
+    inertia.kernel_dimension = space.dofs - row_rank(assemble(row, space.dofs, coupling));
     return inertia;
   }
 

@@ -5,6 +5,7 @@
 #include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
+#include <ricochet/scene/massless_part.hpp>
 
 namespace ricochet {
 namespace {
@@ -19,9 +20,15 @@ constexpr double resolved_turn = 0.1;
 std::vector<bool> points_with_mass(const SemiDiscrete& problem) {
   std::vector<bool> massive(static_cast<std::size_t>(problem.points()), true);
   if (problem.inertia.kernel_dimension == 0) return massive;
-  const Eigen::MatrixXd moved = problem.measured() * mass_kernel(problem.inertia);
-  // The kernel's basis has entries of order one.
-  for (int i = 0; i < problem.points(); ++i) massive[static_cast<std::size_t>(i)] = moved.row(i).norm() < 1e-9;
+  const MasslessPart massless(problem.stiffness, problem.inertia);
+  const Eigen::VectorXd stiff = problem.stiffness.diagonal();
+  for (int i = 0; i < problem.points(); ++i) {
+    const Eigen::VectorXd push = problem.measured().row(i).transpose();
+    double held = 0;  // what the push would store in each dof alone
+    for (Eigen::Index j = 0; j < push.size(); ++j)
+      if (push[j] != 0) held += 0.5 * push[j] * push[j] / stiff[j];
+    massive[static_cast<std::size_t>(i)] = massless.energy(push) < 1e-9 * held;
+  }
   return massive;
 }
 

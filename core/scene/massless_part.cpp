@@ -1,0 +1,76 @@
+#include <limits>
+#include <ricochet/scene/massless_part.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <stdexcept>
+
+namespace ricochet {
+namespace {
+
+constexpr Eigen::Index most_dense = 400;
+
+/// diag(M), or what of C_v comes first in it where M stays in factors: B is as wide as an element.
+Eigen::VectorXd mass_diagonal(const Inertia& inertia) {
+  if (inertia.assembled()) return inertia.mass.diagonal();
+  const MassFactors factors = mass_factors(inertia);
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(factors.coupling.cols());
+  for (int j = 0; j < factors.coupling.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(factors.coupling, j); it; ++it)
+      diagonal[j] += it.value() * it.value() / factors.velocity_mass.coeff(it.row(), it.row());
+  return diagonal;
+}
+
+InverseForm shifted_stiffness(const SparseMatrix& stiffness, const Inertia& inertia) {
+  const Eigen::VectorXd mass = mass_diagonal(inertia), stiff = stiffness.diagonal();
+  double fastest = 0;
+  for (Eigen::Index i = 0; i < mass.size(); ++i)
+    if (mass[i] > 0) fastest = std::max(fastest, stiff[i] / mass[i]);
+  const double shift = 1e3 * fastest;
+  QuasiDefinite matrix;
+  matrix.A = stiffness;
+  if (inertia.assembled()) {
+    matrix.A += shift * inertia.mass;
+  } else {
+    const MassFactors factors = mass_factors(inertia);
+    matrix.G = std::sqrt(shift) * factors.coupling;
+    matrix.Cv = factors.velocity_mass;
+    // K alone may let the structure move freely.
+    matrix.border_first = true;
+  }
+  return InverseForm(matrix);
+}
+
+}  // namespace
+
+MasslessPart::MasslessPart(const SparseMatrix& stiffness, const Inertia& inertia) : stiffness_(stiffness) {
+  if (stiffness.rows() <= most_dense) {
+    basis_ = mass_kernel(inertia);
+    reduced_.emplace(basis_.transpose() * (stiffness * basis_));
+  } else {
+    shifted_.emplace(shifted_stiffness(stiffness, inertia));
+  }
+}
+
+Eigen::VectorXd MasslessPart::response(const Eigen::VectorXd& load) const {
+  if (reduced_) return basis_ * reduced_->solve(basis_.transpose() * load);
+  std::optional<Eigen::VectorXd> response = shifted_->solve(load);
+  constexpr int most = 40;
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; response && k < most; ++k) {
+    Eigen::VectorXd next = *shifted_->solve(stiffness_ * *response);
+    // Lengths of K: rotations and displacements do not compare.
+    const Eigen::VectorXd way = next - *response;
+    const double change = way.dot(stiffness_ * way);
+    response = std::move(next);
+    if (!(change < 0.25 * before)) return *response;
+    before = change;
+  }
+  throw std::logic_error("the massless part of the structure has no stiffness of its own");
+}
+
+double MasslessPart::energy(const Eigen::VectorXd& load) const {
+  if (!reduced_) return 0.5 * load.dot(response(load));
+  const Eigen::VectorXd residual = basis_.transpose() * load;
+  return 0.5 * residual.dot(reduced_->solve(residual));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#pragma once
+#include <Eigen/Cholesky>
+#include <optional>
+#include <ricochet/algebra/inverse_form.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
+
+namespace ricochet {
+
+/// The massless part of a structure: Ker M of a singular mass (n × n), with what K makes of it.
+///
+/// Up to 400 dofs by a dense basis Z of Ker M, δ = Z (ZᵀKZ)⁻¹ Zᵀ r. Beyond, in O(n), by what a march of steps ever
+/// shorter does to the rest: with S = K + σM, σ a thousand times the largest K_ii/M_ii,
+///
+///     δ₁ = S⁻¹ r,    δ_{k+1} = S⁻¹ K δ_k                                                                        (1)
+///
+/// keeps what lies in Ker M, where S is K, and takes of a mode of pulsation ω all but ω²/(ω² + σ); until nothing is
+/// left but round-off. (The method of multipliers for: least ½δᵀKδ − rᵀδ where Mδ = 0.) M is not formed.
+class MasslessPart {
+ public:
+  MasslessPart(const SparseMatrix& stiffness, const Inertia& inertia);
+
+  /// The δ in Ker M that answers to a load r (n): zᵀ(Kδ − r) = 0 for every z in Ker M.
+  Eigen::VectorXd response(const Eigen::VectorXd& load) const;
+  /// ½ rᵀδ (J).
+  double energy(const Eigen::VectorXd& load) const;
+
+ private:
+  const SparseMatrix& stiffness_;
+  Eigen::MatrixXd basis_;  // Z, of few dofs
+  std::optional<Eigen::LLT<Eigen::MatrixXd>> reduced_;
+  std::optional<InverseForm> shifted_;  // S, of many
+};
+
+}  // namespace ricochet
