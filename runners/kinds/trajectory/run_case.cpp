@@ -21,14 +21,14 @@
 namespace ricochet {
 namespace {
 
-// The audit of every step costs about this much more than the step alone.
-constexpr double audit_seconds_per_step = 6e-7;
+// The audit costs about this much more than the step alone.
+constexpr double audit_seconds_per_step = 1.5e-7;
 
 /// The two observers of a step, the one behind the other.
 struct Audited {
   EnergyAudit audit;
   ImpactRecorder recorder;
-  explicit Audited(const Marcher& marcher) : audit(marcher), recorder(marcher, &audit) {}
+  explicit Audited(const Marcher& marcher) : audit(marcher, Looks::seldom), recorder(marcher, &audit) {}
 };
 
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
@@ -189,7 +189,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Audited watched(marcher);
   EnergyAudit& audit = watched.audit;
   ImpactRecorder& recorder = watched.recorder;
-  WindowMeans means(study_case.settings, audit, recorder);
+  WindowMeans means(study_case.settings, audit, marcher.law().reads().has_value(), recorder);
   ForceWindow forces(study_case.settings, means);
   const int instants = snapshots_asked(study_case.settings);
   SnapshotTaker snapshots(marcher, prepared.steps, instants, forces);
@@ -209,6 +209,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     // Samples at equal fractions of the run, on whole steps.
     const auto target = static_cast<long long>(
         std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
+    audit.look_after(target);
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
       const double before = thread_seconds();
