@@ -2,6 +2,8 @@
 
 /// Of a function that is compiled for AVX2 and FMA, to be called only where has_avx2().
 #define RICOCHET_AVX2 __attribute__((target("avx2,fma")))
+/// The same without fused operations: what it computes number by number is rounded as elsewhere.
+#define RICOCHET_AVX2_ALONE __attribute__((target("avx2")))
 
 namespace ricochet {
 

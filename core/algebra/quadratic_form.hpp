@@ -17,6 +17,9 @@ class QuadraticForm {
 
   double operator()(const double* x) const;
   double operator()(const double* x, const double* y) const;
+  /// xᵀA x, and hᵀx where h is given, in one pass over x where A is definite and of the width of a bar or a beam: for
+  /// what is added up at every step. Rounded otherwise than the above, as well or better.
+  double swift(const double* x, const double* h = nullptr, double* projected = nullptr) const;
 
  private:
   void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x

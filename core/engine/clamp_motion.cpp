@@ -15,6 +15,8 @@ void ClampMotion::place(int lane, double amplitude, double phase) {
 }
 
 void ClampMotion::set_time(double t) {
+  if (t == time_) return;
+  time_ = t;
   sine_ = std::sin(pulsation_ * t);
   cosine_ = std::cos(pulsation_ * t);
 }

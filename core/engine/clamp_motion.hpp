@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/compile.hpp>
 
@@ -14,8 +15,13 @@ class ClampMotion {
   void place(int lane, double amplitude, double phase);
   void hold_still(int lane) { amplitude_.at(0, lane) = 0; }
 
-  /// When the step begins, s.
+  /// When the step begins, s. Asked for again, it costs nothing.
   void set_time(double t);
+  double time() const { return time_; }
+  /// A sin ωt of a lane, then, where no lane has a phase; else nothing.
+  std::optional<double> plain(double amplitude) const {
+    return phases_ ? std::nullopt : std::optional(amplitude * sine_);
+  }
   /// A sin(ωt + ψ) and A cos(ωt + ψ) of a lane, then.
   void drive(int lane, double& sine, double& cosine) const;
   /// Σ_k w_k A sin(ω(t + c_k h) + ψ), or its rate, per lane; `phase` holds the levels (w_k, c_k).
@@ -24,9 +30,9 @@ class ClampMotion {
   void accelerations(const PhaseWeights& phase, double* out) const;
 
  private:
-  double pulsation_, sine_ = 0, cosine_ = 1;  // ω, sin ωt, cos ωt
-  Block amplitude_, cos_phase_, sin_phase_;   // 1 × T
-  bool phases_ = false;                       // whether some ψ is not zero
+  double pulsation_, time_ = 0, sine_ = 0, cosine_ = 1;  // ω, t, sin ωt, cos ωt
+  Block amplitude_, cos_phase_, sin_phase_;              // 1 × T
+  bool phases_ = false;                                  // whether some ψ is not zero
 };
 
 }  // namespace ricochet

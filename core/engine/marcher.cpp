@@ -37,6 +37,7 @@ Marcher::Marcher(Program program)
   outcome_.resize(static_cast<std::size_t>(T));
   status_.resize(program_.lanes.size());
   touched_.reserve(static_cast<std::size_t>(T));
+  pushed_.reserve(static_cast<std::size_t>(points));
   scratch_.resize(static_cast<std::size_t>(std::max(rows, points)));
   if (program_.contact) {
     lower_ = Block(points, T);
@@ -151,7 +152,11 @@ long long Marcher::march(long long steps, StepObserver* observer) {
       run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer);
     ++step_;
     ++visited_;
-    if (observer) observer->step_done(*this);
+    if (observer) {
+      // Observers ask where the clamp is now; the next step begins here.
+      if (program_.support) clamp_.set_time(time());
+      observer->step_done(*this);
+    }
     if (step_ % check_interval == 0) {
       check_lanes();
       if (!any_running()) return n + 1;
@@ -215,9 +220,20 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   for (; frozen_now_ != 0; frozen_now_ &= frozen_now_ - 1) clear_lane(std::countr_zero(frozen_now_));
 }
 
+// The points with an effort, in any lane.
+void Marcher::find_pushed(const StageState& state) {
+  pushed_.clear();
+  if (state.contact_lanes == 0) return;
+  const Block& effort = state.effort[0];
+  for (int i = 0; i < effort.rows(); ++i) {
+    const double* p = effort.row(i);
+    if (std::any_of(p, p + program_.width, [](double x) { return x != 0; })) pushed_.push_back(i);
+  }
+}
+
 // What the observer sees of a stage that has found z and p.
 void Marcher::show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
-                   StepObserver& observer) const {
+                   StepObserver& observer) {
   StageView view;
   view.stage = index;
   view.plan = &plan;
@@ -237,6 +253,8 @@ void Marcher::show(const StageProgram& program, const Stage& plan, const StageSt
     view.touched_lanes = state.touched_lanes;
     view.free = state.free.data();
     view.contact_lanes = state.contact_lanes;
+    find_pushed(state);
+    view.pushed = pushed_;
   }
   observer.stage_solved(*this, view);
 }

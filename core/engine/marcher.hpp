@@ -72,6 +72,8 @@ class Marcher {
   double support_rate(int lane, double t) const;
   /// Σ weight φ(t + at·h).
   double support_levels(int lane, double t, const Levels& levels) const;
+  /// The same of the levels that `phase` holds, t the beginning of the step under way; no sine is asked for.
+  double support(int lane, const PhaseWeights& phase) const;
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
@@ -99,8 +101,9 @@ class Marcher {
   void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
   void free_step(StageProgram& program, const Stage& plan);
   void combine_for(const StageProgram& program);
+  void find_pushed(const StageState& state);
   void show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
-            StepObserver& observer) const;
+            StepObserver& observer);
 
   // flight_march.cpp: steps in which nothing happens.
   long long fly(long long most, StepObserver* observer);
@@ -155,7 +158,7 @@ class Marcher {
   ClampMotion clamp_;
   Block scale_, offset_, lower_, upper_;
   Block memory_;  // of the law, points × T for each number that it keeps
-  std::vector<int> touched_;
+  std::vector<int> touched_, pushed_;
   std::vector<LaneOutcome> outcome_;
   std::vector<LaneStatus> status_;
   std::uint32_t frozen_now_ = 0;  // lanes that froze since the last update of the slots

@@ -17,6 +17,8 @@ bool Marcher::any_running() const {
 double Marcher::support(int lane, double t) const {
   if (!program_.support) return 0;
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  if (t == clamp_.time())
+    if (const auto known = clamp_.plain(spec.amplitude)) return *known;
   return spec.amplitude * std::sin(program_.problem->support.pulsation * t + spec.phase);
 }
 
@@ -30,6 +32,12 @@ double Marcher::support_levels(int lane, double t, const Levels& levels) const {
   double sum = 0;
   for (const Level& level : levels) sum += level.weight * support(lane, t + level.at * program_.h);
   return sum;
+}
+
+double Marcher::support(int lane, const PhaseWeights& phase) const {
+  double sine = 0, cosine = 0;
+  clamp_.drive(lane, sine, cosine);
+  return phase.along * sine + phase.across * cosine;
 }
 
 const double* Marcher::distributed_load(const Levels& levels, double t) {

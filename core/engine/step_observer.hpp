@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <ricochet/engine/compile.hpp>
+#include <span>
 
 namespace ricochet {
 
@@ -24,6 +25,7 @@ struct StageView {
   std::uint32_t touched_lanes = 0;        ///< lanes that the law looked at
   const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
   std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
+  std::span<const int> pushed;            ///< points with a non-zero effort now, in any of them, ascending
 };
 
 /// Looks at every step of a block; a march without an observer pays nothing for it.

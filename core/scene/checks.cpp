@@ -151,10 +151,12 @@ std::vector<double> touchable(const SceneSpec& scene, int elements) {
 void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    require(lower[row] <= upper[row], "/scene/stops/lower",
-            fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected "
-                        "lower ≤ upper everywhere",
-                        x[i], lower[row], upper[row]));
+    if (lower[row] <= upper[row]) continue;
+    throw InputError(
+        "/scene/stops/lower",
+        fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected "
+                    "lower ≤ upper everywhere",
+                    x[i], lower[row], upper[row]));
   }
 }
 
@@ -211,10 +213,12 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
     const auto row = static_cast<Eigen::Index>(i);
     const bool above = u[row] > upper[row] + 1e-12 * (std::abs(u[row]) + std::abs(upper[row]));
     const bool below = u[row] < lower[row] - 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
-    require(!above && !below, pointer,
-            fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state between the "
-                        "stops",
-                        what, u[row], x[i], above ? "upper" : "lower", above ? upper[row] : lower[row]));
+    if (!above && !below) continue;
+    throw InputError(
+        pointer,
+        fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state between the "
+                    "stops",
+                    what, u[row], x[i], above ? "upper" : "lower", above ? upper[row] : lower[row]));
   }
 }
 

@@ -37,15 +37,14 @@ bool is_case_file(const std::filesystem::path& file, const char* extension) {
 }
 
 void remove_stale_curves(const std::filesystem::path& folder, const StudyResults& results) {
+  std::set<std::string> wanted;
+  for (const CaseRecord& record : results.cases)
+    if (!record.curve.names.empty()) wanted.insert(record.id);
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    const auto has_curve = [&](const CaseRecord& record) {
-      return record.id == entry.path().stem().string() && !record.curve.names.empty();
-    };
-    if (is_case_file(entry.path(), ".csv") && std::none_of(results.cases.begin(), results.cases.end(), has_curve))
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (is_case_file(entry.path(), ".csv") && wanted.count(entry.path().stem().string()) == 0)
       stale.push_back(entry.path());
-  }
   for (const auto& file : stale) std::filesystem::remove(file, ignored);
 }
 

@@ -1,5 +1,6 @@
 #include "runners/run/run_study.hpp"
 
+#include <mutex>
 #include <thread>
 
 #include "runners/kinds/kind.hpp"
@@ -29,8 +30,12 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
                                               registry.file(Role::contact, study_case.contact.name),
                                               registry.file(Role::time, study_case.time.name)};
   };
+  // Each library is read and hashed once in a run; cases of several threads ask.
+  Fingerprints fingerprints(study.kind, program_hash());
+  std::mutex asked;
   const auto key = [&](const StudyCase& study_case) {
-    return Fingerprints(study.kind, program_hash()).of(study_case, runner.libraries(study_case));
+    const std::lock_guard guard(asked);
+    return fingerprints.of(study_case, runner.libraries(study_case));
   };
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   runner.cases = find_kind(study.kind)->start({study, registry, key, options.jobs > 0 ? options.jobs : processors});

@@ -19,9 +19,8 @@ void bind_series(SQLite::Statement& statement, int index, const std::vector<doub
                        static_cast<int>(series.size() * sizeof(double)));
 }
 
-void insert_numbers(SQLite::Database& database, const std::string& case_id, int position, const NumberTable& table) {
+void insert_numbers(SQLite::Statement& add, const std::string& case_id, int position, const NumberTable& table) {
   using Json = nlohmann::ordered_json;
-  SQLite::Statement add(database, "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   for (std::size_t c = 0; c < table.values.size(); ++c) {
     const std::string& column = table.columns.at(c).name;
     add.reset();
@@ -52,7 +51,8 @@ void keep_numbers(const std::filesystem::path& folder, const std::string& case_i
     last.executeStep();
     const int position = last.getColumn(0).getInt() + 1;
     last.reset();
-    insert_numbers(database, case_id, position, table);
+    SQLite::Statement add(database, insert_numbers_sql);
+    insert_numbers(add, case_id, position, table);
     transaction.commit();
   });
 }

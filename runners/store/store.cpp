@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 
 #include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
@@ -42,6 +43,16 @@ void insert(SQLite::Statement& statement, const Values&... values) {
   statement.exec();
 }
 
+/// About, of what may be large.
+std::size_t bytes_of(const CaseRecord& record) {
+  std::size_t numbers = 0;
+  for (const auto& column : record.curve.columns) numbers += column.size();
+  for (const NumberTable& table : record.numbers)
+    for (const auto& column : table.values) numbers += column.size();
+  for (const Table& table : record.tables) numbers += table.rows.size() * table.columns.size();
+  return numbers * sizeof(double);
+}
+
 void remove_curve(const std::filesystem::path& folder, const std::string& id) {
   const std::filesystem::path file = folder / "curves" / (id + ".csv");
   std::error_code error;
@@ -64,11 +75,12 @@ Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "
   guarded(file_, database_.get(), [&] {
     // Rollback journal, not WAL: between two cases the record is one plain file, which can be copied, archived, read
     // from a folder without write permission and kept on a network disk. FULL: with a rollback journal NORMAL may
-    // damage the file at a power cut; the price is a few ms per finished case. A killed process loses nothing that was
-    // committed under either.
+    // damage the file at a power cut; the price is a few ms, which cases that end closely share. A killed process loses
+    // nothing that was committed under either.
     database_->exec("PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;");
   });
   prepare_schema(*database_, file_, true);
+  group_ = std::make_unique<WriteGroup>(*database_, mutex_);
 }
 
 std::set<std::string> Store::begin(const StudyResults& study, const std::vector<ExpectedCase>& expected) {
@@ -78,6 +90,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     expected_[expected[i].id] = {expected[i].fingerprint, static_cast<int>(i)};
   std::set<std::string> kept;
   guarded(file_, database_.get(), [&] {
+    group_->commit();
     SQLite::Transaction transaction(*database_);
     SQLite::Statement name(*database_, "SELECT value FROM study WHERE key = 'name'");
     if (name.executeStep()) {
@@ -101,6 +114,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     insert(state, "axes", text_of(axes));
     insert(state, "expected_cases", text_of(study.expected_cases));
     transaction.commit();
+    rows_ = kept;
   });
   return kept;
 }
@@ -162,24 +176,33 @@ void Store::write_environment(const Environment& environment) {
 void Store::save_environment(const Environment& environment) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
+    group_->commit();
     SQLite::Transaction transaction(*database_);
     write_environment(environment);
     transaction.commit();
   });
 }
 
+void Store::write(std::size_t bytes, const std::function<void()>& rows) {
+  guarded(file_, database_.get(), [&] { group_->write(bytes, rows); });
+}
+
+SQLite::Statement& Store::prepared(const char* sql) {
+  const auto found = prepared_.find(sql);
+  return found != prepared_.end() ? found->second
+                                  : prepared_.emplace(sql, SQLite::Statement(*database_, sql)).first->second;
+}
+
 void Store::note_begin(const std::string& id, Stage stage) {
-  SQLite::Statement add(*database_, "INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)");
-  insert(add, id, std::string(stage == Stage::run ? "run" : "plan"),
+  insert(prepared("INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)"), id,
+         std::string(stage == Stage::run ? "run" : "plan"),
          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
 }
 
 void Store::begins(const std::vector<std::string>& ids, Stage stage) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    SQLite::Transaction transaction(*database_);
+  write(0, [&] {
     for (const std::string& id : ids) note_begin(id, stage);
-    transaction.commit();
   });
 }
 
@@ -205,53 +228,50 @@ std::set<std::string> Store::failed() const {
 
 void Store::nothing_under_way() {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] { database_->exec("DELETE FROM begun"); });
+  guarded(file_, database_.get(), [&] {
+    group_->commit();
+    database_->exec("DELETE FROM begun");
+  });
 }
 
 void Store::save(std::span<const CaseRecord> records, const std::string& next) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    SQLite::Transaction transaction(*database_);
-    SQLite::Statement ended(*database_, "DELETE FROM begun WHERE case_id = ?");
+  const auto size = std::accumulate(records.begin(), records.end(), std::size_t{0},
+                                    [](std::size_t sum, const CaseRecord& record) { return sum + bytes_of(record); });
+  write(size, [&] {
+    SQLite::Statement& ended = prepared("DELETE FROM begun WHERE case_id = ?");
     for (const CaseRecord& record : records) {
       save_one(record, false);
       insert(ended, record.id);
     }
     if (!next.empty()) note_begin(next, Stage::run);
-    transaction.commit();
   });
 }
 
 void Store::save_partial(const CaseRecord& record) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    SQLite::Transaction transaction(*database_);
-    save_one(record, true);
-    transaction.commit();
-  });
+  write(0, [&] { save_one(record, true); });
+  guarded(file_, database_.get(), [&] { group_->commit(); });
 }
 
 void Store::save_one(const CaseRecord& record, bool partial) {
   const auto expected = expected_.find(record.id);
   if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
-  SQLite::Database& database = *database_;
-
   // A case that is saved again (timed after it ran) takes its rows with it.
-  SQLite::Statement remove(database, "DELETE FROM cases WHERE id = ?");
-  insert(remove, record.id);
-  SQLite::Statement add(database, "INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  if (!rows_.insert(record.id).second) insert(prepared("DELETE FROM cases WHERE id = ?"), record.id);
+  SQLite::Statement& add = prepared("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   // No case has the fingerprint "": what is partial is never taken for finished.
   insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason,
          static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name);
 
   int position = 0;
-  SQLite::Statement axis(database, "INSERT INTO axes VALUES(?, ?, ?, ?)");
+  SQLite::Statement& axis = prepared("INSERT INTO axes VALUES(?, ?, ?, ?)");
   for (const auto& [name, value] : record.axes) insert(axis, record.id, position++, name, text_of(value));
 
   std::vector<std::string> notes = record.notes;
   position = 0;
-  SQLite::Statement measure(database, "INSERT INTO measures VALUES(?, ?, ?, ?)");
+  SQLite::Statement& measure = prepared("INSERT INTO measures VALUES(?, ?, ?, ?)");
   for (const auto& [name, value] : record.measures)
     if (std::isfinite(value))
       insert(measure, record.id, position++, name, value);
@@ -259,15 +279,15 @@ void Store::save_one(const CaseRecord& record, bool partial) {
       notes.push_back(fmt::format("{} is not a finite number and is left out", name));
 
   position = 0;
-  SQLite::Statement left_out(database, "INSERT INTO left_out VALUES(?, ?, ?, ?)");
+  SQLite::Statement& left_out = prepared("INSERT INTO left_out VALUES(?, ?, ?, ?)");
   for (const auto& [item, reason] : record.left_out) insert(left_out, record.id, position++, item, reason);
 
   position = 0;
-  SQLite::Statement note(database, "INSERT INTO notes VALUES(?, ?, ?)");
+  SQLite::Statement& note = prepared("INSERT INTO notes VALUES(?, ?, ?)");
   for (const std::string& text : notes) insert(note, record.id, position++, text);
 
   position = 0;
-  SQLite::Statement table(database, "INSERT INTO case_tables VALUES(?, ?, ?, ?)");
+  SQLite::Statement& table = prepared("INSERT INTO case_tables VALUES(?, ?, ?, ?)");
   for (const Table& one : record.tables) {
     Json columns = Json::array(), rows = Json::array();
     for (const Column& column : one.columns) columns.push_back(column.name);
@@ -279,7 +299,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     insert(table, record.id, position++, one.name, text_of(content));
   }
 
-  SQLite::Statement curve(database, "INSERT INTO curves VALUES(?, ?, ?, ?)");
+  SQLite::Statement& curve = prepared("INSERT INTO curves VALUES(?, ?, ?, ?)");
   for (std::size_t i = 0; i < record.curve.columns.size(); ++i) {
     curve.reset();
     curve.bind(1, record.id);
@@ -293,7 +313,7 @@ void Store::save_one(const CaseRecord& record, bool partial) {
 
 void Store::save_numbers(const CaseRecord& record) {
   for (std::size_t t = 0; t < record.numbers.size(); ++t)
-    insert_numbers(*database_, record.id, static_cast<int>(t), record.numbers[t]);
+    insert_numbers(prepared(insert_numbers_sql), record.id, static_cast<int>(t), record.numbers[t]);
 }
 
 std::string Store::motion(const std::string& key) const {
@@ -312,6 +332,7 @@ std::string Store::motion(const std::string& key) const {
 void Store::save_motion(const std::string& key, const std::string& content) {
   const std::lock_guard guard(mutex_);
   guarded(file_, database_.get(), [&] {
+    group_->commit();
     SQLite::Statement change(*database_, content.empty() ? "DELETE FROM motions WHERE key = ?"
                                                          : "INSERT OR REPLACE INTO motions(key, content) VALUES(?, ?)");
     change.bind(1, key);
@@ -322,13 +343,19 @@ void Store::save_motion(const std::string& key, const std::string& content) {
 
 void Store::make_views(const StudyResults& results) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] { ricochet::make_views(*database_, results); });
+  guarded(file_, database_.get(), [&] {
+    group_->commit();
+    ricochet::make_views(*database_, results);
+  });
 }
 
 StudyResults Store::load() const {
   const std::lock_guard guard(mutex_);
   StudyResults results;
-  guarded(file_, database_.get(), [&] { results = read_tables(*database_); });
+  guarded(file_, database_.get(), [&] {
+    group_->commit();
+    results = read_tables(*database_);
+  });
   return results;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 #include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -13,6 +15,7 @@
 
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/record.hpp"
+#include "runners/store/write_group.hpp"
 
 namespace ricochet {
 
@@ -25,9 +28,9 @@ struct ExpectedCase {
 /// results.sqlite of one folder, opened for a run: the record of the study, of its environment and of each finished
 /// case.
 ///
-/// The folder is locked while a Store lives. Each call below is one transaction: a process killed at any moment leaves
-/// the store as it was after the last call that returned. Errors are StoreError, with the path, the cause and what to
-/// do.
+/// The folder is locked while a Store lives. Each call below is all or nothing. A process killed at any moment leaves
+/// the store as it was after some call that returned: the last one, but for what begins() and save() wrote in the last
+/// half second (write_group.hpp). Errors are StoreError, with the path, the cause and what to do.
 class Store {
  public:
   /// Opens or creates FOLDER/results.sqlite; `fresh` forgets what it held. Refuses a store of another version.
@@ -79,6 +82,8 @@ class Store {
  private:
   std::set<std::string> settle_rows();
   void write_environment(const Environment& environment);
+  void write(std::size_t bytes, const std::function<void()>& rows);
+  SQLite::Statement& prepared(const char* sql);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
@@ -88,7 +93,10 @@ class Store {
   std::unique_ptr<SQLite::Database> database_;
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
   int returned_ = 0;
+  std::set<std::string> rows_;                         // ids that have one
+  std::map<std::string, SQLite::Statement> prepared_;  // by their text
   mutable std::mutex mutex_;
+  std::unique_ptr<WriteGroup> group_;  // last: it uses what stands before
 };
 
 /// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. Throws

@@ -75,7 +75,7 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
     return out;
   }
   Marcher marcher(std::move(std::get<Program>(program)));
-  EnergyAudit audit(marcher);
+  EnergyAudit audit(marcher, Looks::seldom);
   ImpactRecorder recorder(marcher, &audit);
   const double start = thread_nanoseconds();
   out.set_up = start - begin;

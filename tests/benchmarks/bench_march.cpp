@@ -2,7 +2,7 @@
 // each mass and operator, and at the tip. Medians of interleaved rounds with their spread, beside the FMA peak of the
 // core in the same run.
 //
-//     bench_march [--rounds N]
+//     bench_march [--rounds N] [--rows TEXT]      those rows alone whose name holds TEXT
 //     bench_march --schemes [--rounds N]   each time scheme on a lumped beam of 10 elements, against the three-level
 //     one bench_march --calibrate      the rates of core/engine/cost_model.cpp: nanoseconds per multiply-add of each
 //     kernel
@@ -180,7 +180,11 @@ int main(int argc, char** argv) {
   const bool schemes = argc > 1 && std::strcmp(argv[1], "--schemes") == 0;
   const int next = schemes ? 2 : 1;
   int rounds = 7;
-  if (argc == next + 2 && std::strcmp(argv[next], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[next + 1]));
+  std::string rows;
+  for (int k = next; k + 1 < argc; k += 2) {
+    if (std::strcmp(argv[k], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[k + 1]));
+    if (std::strcmp(argv[k], "--rows") == 0) rows = argv[k + 1];
+  }
   Catalogue catalogue = Catalogue::standard();
   Registry registry;
   catalogue.open_all(registry);
@@ -197,6 +201,7 @@ int main(int argc, char** argv) {
   }
   const auto add = [&](std::string name, StopsSpec::Place place, std::string mass, std::string velocity,
                        OperatorKind kind, Watch watch = Watch::nothing) {
+    if (name.find(rows) == std::string::npos) return;
     for (const int lanes : {1, 8, 16, 32}) {
       if (watch != Watch::nothing && lanes > 1) continue;
       Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, nullptr, nullptr, 0};
@@ -226,7 +231,7 @@ int main(int argc, char** argv) {
         one.sampler = std::make_unique<MotionSampler>(*one.marcher, grid);
         for (int k = 0; k < 24000 / steps_per_sample; ++k) one.sampler->next();
       } else {
-        if (watch != Watch::nothing) one.audit = std::make_unique<EnergyAudit>(*one.marcher);
+        if (watch != Watch::nothing) one.audit = std::make_unique<EnergyAudit>(*one.marcher, Looks::seldom);
         if (watch == Watch::impacts) one.recorder = std::make_unique<ImpactRecorder>(*one.marcher, one.audit.get());
         one.marcher->start(one.observer());
         one.marcher->march(24000, one.observer());  // into the impacting regime

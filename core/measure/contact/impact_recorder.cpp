@@ -43,11 +43,11 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     const double* efforts = view.effort[0] + lane;
-    for (std::size_t j = 0; j < state.points.size(); ++j) {
-      const double p = efforts[j * static_cast<std::size_t>(T_)];
+    for (const int j : view.pushed) {
+      const double p = efforts[j * T_];
       if (p == 0) continue;
-      state.closed.press(static_cast<int>(j), p);
-      state.points[j].given += program.momentum * std::abs(p);
+      state.closed.press(j, p);
+      state.points[static_cast<std::size_t>(j)].given += program.momentum * std::abs(p);
     }
     busy_ |= 1U << lane;
   }
@@ -125,7 +125,7 @@ void ImpactRecorder::move_to(const Marcher& marcher, const double* positions, do
 }
 
 // Absolute velocity of a point over the last sub-step; of the initial state where there was none.
-double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point) const {
+double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point, double lift) const {
   if (known_ < 2) {
     const LaneSpec& spec = marcher.program().lanes[static_cast<std::size_t>(lane)];
     double speed = marcher.support_rate(lane, 0);
@@ -140,16 +140,21 @@ double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point) con
                     static_cast<std::size_t>(lane);
     way += rows.value[static_cast<std::size_t>(e)] * (latest_[at] - earlier_[at]);
   }
-  if (marcher.program().support) way += marcher.support(lane, latest_time_) - marcher.support(lane, earlier_time_);
-  return way / (latest_time_ - earlier_time_);
+  return (way + lift) / (latest_time_ - earlier_time_);
+}
+
+// What the clamp moved by over the last sub-step.
+double ImpactRecorder::lift(const Marcher& marcher, int lane) const {
+  return known_ < 2 ? 0.0 : marcher.support(lane, latest_time_) - marcher.support(lane, earlier_time_);
 }
 
 // A sub-step is over: the velocities over it.
 void ImpactRecorder::moved(const Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const double lifted = lift(marcher, lane);
   state.closed.each([&](int point) {
     Point& one = state.points[static_cast<std::size_t>(point)];
-    const double now = velocity(marcher, lane, point);
+    const double now = velocity(marcher, lane, point, lifted);
     stop(state, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
     one.velocity = now;
   });
@@ -157,7 +162,7 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
     Point& one = state.points[static_cast<std::size_t>(point)];
     if (one.row < state.impacts.size()) {
       Impact& impact = state.impacts[one.row];
-      const double now = velocity(marcher, lane, point);
+      const double now = velocity(marcher, lane, point, lifted);
       impact.speed_out = impact.side == StopSide::lower ? now : -now;
     }
     return ++one.free == settles_after;
@@ -167,7 +172,7 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
 void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   Point& one = state.points[static_cast<std::size_t>(point)];
-  one.velocity = velocity(marcher, lane, point);
+  one.velocity = velocity(marcher, lane, point, lift(marcher, lane));
   std::erase(state.leaving, point);
   const double towards = side > 0 ? -one.velocity : one.velocity;
   StopTotals& totals = stop(state, point, side);

@@ -114,7 +114,8 @@ class ImpactRecorder final : public StepObserver {
   void open_instant(const Marcher& marcher, const StageView& view);
   void move_to(const Marcher& marcher, const double* positions, double time);
   void moved(const Marcher& marcher, int lane);
-  double velocity(const Marcher& marcher, int lane, int point) const;
+  double velocity(const Marcher& marcher, int lane, int point, double lift) const;
+  double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
   static void press(Lane& lane, int point, double lasts);

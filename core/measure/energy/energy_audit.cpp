@@ -1,29 +1,62 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ricochet/algebra/instruction_set.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
 namespace {
 
+RICOCHET_AVX2_ALONE void add_wide(double w, const double* x, std::size_t rows, double* __restrict out) {
+  for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
+}
+
 // out += w · lane of x; the stride is written out for one lane, where the loop then vectorises.
 void accumulate(double w, const double* x, std::size_t stride, std::size_t lane, std::vector<double>& out) {
   if (w == 0) return;
   const std::size_t rows = out.size();
-  if (stride == 1)
+  if (stride == 1 && has_avx2())
+    add_wide(w, x, rows, out.data());
+  else if (stride == 1)
     for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
   else
     for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i * stride + lane];
 }
 
+// Whether a law that touches nothing has seen every point between its stops where the step ends.
+bool measures_the_end(const Program& program) {
+  if (!program.contact || program.problem->changed_by_law() || program.stages.empty()) return false;
+  const StageProgram& last = program.stages.back();
+  if (!last.reads_contact || last.gate || last.restores > 0) return false;
+  const auto numbers = [](const Combination& c) {
+    std::vector<double> all = c.slots;
+    all.resize(most_slots);
+    all.push_back(c.z);
+    all.push_back(c.w);
+    return all;
+  };
+  double at_end = 0, elsewhere = 0;
+  for (const Level& level : last.measure_levels) (level.at == 1 ? at_end : elsewhere) += std::abs(level.weight);
+  return at_end == 1 && elsewhere == 0 && numbers(last.measure) == numbers(program.plan.stages.back().update[0]);
+}
+
 }  // namespace
 
-EnergyAudit::EnergyAudit(const Marcher& marcher)
+void EnergyTotals::add(const Works& works) {
+  work_of_loads += works.loads;
+  work_of_damping += works.damping;
+  work_of_contact += works.contact;
+  work_of_scheme += works.scheme;
+  work_of_law += works.law;
+}
+
+EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
     : model_(*marcher.program().model),
       mass_(QuadraticForm::of(model_.inertia())),
       stiffness_(model_.stiffness()),
-      damping_(model_.problem().damping),
+      works_(marcher),
+      looks_(looks),
       h_(marcher.program().h),
       T_(marcher.width()),
       compliant_(marcher.law().reads().has_value()),
@@ -39,7 +72,15 @@ EnergyAudit::EnergyAudit(const Marcher& marcher)
     state.has_scheme = !state.energy.own_energy;
     if (state.has_scheme) state.energy.scheme_start = state.now.scheme;
   }
-  for (const Stage& stage : marcher.program().plan.stages) balances_ = balances_ || stage.work.has_value();
+  bool all = true;
+  for (const Stage& stage : marcher.program().plan.stages) {
+    balances_ = balances_ || stage.work.has_value();
+    all = all && stage.work.has_value();
+  }
+  for (Lane& state : lanes_) state.balanced = all && state.energy.own_energy;
+  for (const auto* stages : {&marcher.program().start, &marcher.program().stages})
+    for (const StageProgram& stage : *stages) memory_ = std::max(memory_, static_cast<int>(stage.work_effort.size()));
+  ends_measured_ = measures_the_end(marcher.program());
   first_.resize(rows);
   second_.resize(rows);
 }
@@ -50,11 +91,6 @@ void EnergyAudit::combine(const double* const* slots, const double* z, const Com
   std::fill(out.begin(), out.end(), 0.0);
   if (z) accumulate(c.z, z, T, l, out);
   for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
-}
-
-void EnergyAudit::combine(const StageView& view, const Combination& c, int lane, std::vector<double>& out) const {
-  combine(view.slots, view.z, c, lane, out);
-  if (view.w) accumulate(c.w, view.w, static_cast<std::size_t>(T_), static_cast<std::size_t>(lane), out);
 }
 
 double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
@@ -116,75 +152,47 @@ double EnergyAudit::potential(const Marcher& marcher, const double* place, doubl
   return sum;
 }
 
-void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
+bool EnergyAudit::to_be_seen(const Lane& state, long long step) const {
+  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_ ||
+         step % Marcher::check_interval == 0;
+}
+
+void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane& state) {
+  state.step = {};
+  state.touched = view.starting;
+  state.looking = state.look_next || to_be_seen(state, marcher.step() + 1);
+  state.look_next = false;
+}
+
+// What the position moves by, where the energies after the step are looked at.
+void EnergyAudit::follow_position(const StageView& view, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const StageFacts& facts = view.program->facts;
+  const bool moves = facts.to != facts.from;
+  if (moves) state.duration = (facts.to - facts.from) * h_;
+  if (!state.looking) return;
+  if (moves || view.stage == 0) std::fill(state.increment.begin(), state.increment.end(), 0.0);
+  combine(view.slots, view.z, facts.increment, lane, first_);
+  if (view.w)
+    accumulate(facts.increment.w, view.w, static_cast<std::size_t>(T_), static_cast<std::size_t>(lane), first_);
+  for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
+}
+
+void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
-    if (view.stage == 0) {
-      state.step_loads = state.step_damping = state.step_contact = state.step_scheme = state.step_law = 0;
-    }
+    if (view.stage == 0) begin_step(marcher, view, state);
     const bool balanced = view.plan->work || !view.starting;
     if (!state.has_scheme && balanced) {
       state.energy.scheme_start = scheme_energy(marcher, lane);
       state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
       state.has_scheme = true;
     }
-    const bool moves = facts.to != facts.from;
-    if (moves || view.stage == 0) {
-      std::fill(state.increment.begin(), state.increment.end(), 0.0);
-      if (moves) state.duration = (facts.to - facts.from) * h_;
-    }
-    combine(view, facts.increment, lane, first_);
-    for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
+    follow_position(view, lane);
+    state.quiet = ((view.contact_lanes >> lane) & 1u) ? 0 : state.quiet + 1;
     if (view.effort) count_contact(view, lane);
-    if (view.plan->work) work(marcher, view, lane);
-    for (const LossTerm& term : view.plan->loss) {
-      if (term.coefficient == 0 || !balanced) continue;
-      combine(view, term.value, lane, first_);
-      state.step_scheme +=
-          term.coefficient * (term.matrix == EnergyMatrix::M ? mass_(first_.data()) : stiffness_(first_.data()));
-    }
-  }
-}
-
-// The works of one stage, by its test displacement.
-void EnergyAudit::work(const Marcher& marcher, const StageView& view, int lane) {
-  Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const WorkForm& work = *view.plan->work;
-  const bool loads = marcher.program().support || marcher.program().load;
-  const std::vector<double>& weights = view.program->work_effort;
-  const bool contact = view.effort && (((view.contact_lanes >> lane) & 1u) || weights.size() > 1);
-  const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
-  if (!loads && !contact && !damped) return;
-  std::vector<double>& s = first_;
-  combine(view, work.displacement, lane, s);
-  if (damped) {
-    combine(view, work.rate, lane, second_);
-    if (damping_.stiffness != 0) state.step_damping += damping_.stiffness * stiffness_(s.data(), second_.data());
-    if (damping_.mass != 0) state.step_damping += damping_.mass * mass_(s.data(), second_.data());
-  }
-  if (marcher.program().support) {
-    // −φ'' = ω² φ for the harmonic support.
-    const double omega = model_.problem().support.pulsation;
-    const double push = omega * omega * marcher.support_levels(lane, view.time, work.load);
-    double along = 0;
-    for (std::size_t i = 0; i < s.size(); ++i) along += s[i] * model_.support_shape()[static_cast<Eigen::Index>(i)];
-    state.step_loads += push * along;
-  }
-  if (marcher.program().load) {
-    const double* load = const_cast<Marcher&>(marcher).distributed_load(work.load, view.time);
-    for (std::size_t i = 0; i < s.size(); ++i) state.step_loads += s[i] * load[i];
-  }
-  if (!contact) return;
-  const double lift = marcher.program().support ? marcher.support_levels(lane, view.time, work.support) : 0.0;
-  for (int j = 0; j < model_.problem().points(); ++j) {
-    double effort = 0;
-    for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
-      if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
-    if (effort == 0) continue;
-    state.step_contact += effort * (model_.measured().times(j, s.data()) + lift);
-    state.step_loads -= effort * lift;
+    works_.add(marcher, view, lane, {mass_, stiffness_}, balanced, state.quiet < memory_, state.step);
   }
 }
 
@@ -194,13 +202,14 @@ void EnergyAudit::count_contact(const StageView& view, int lane) {
   if (view.program->opens_instant) state.force = 0;
   const LaneOutcome& outcome = view.outcome[lane];
   if ((view.touched_lanes >> lane) & 1u) {
+    state.touched = true;
     contact.most_iterations = std::max(contact.most_iterations, outcome.iterations);
     // Also where no effort is left: a damped law lets go while its spring is still pressed.
-    state.step_law += view.program->momentum * outcome.dissipation;
+    state.step.law += view.program->momentum * outcome.dissipation;
   }
   if ((view.contact_lanes >> lane) & 1u) {
     const double momentum = view.program->momentum;
-    for (int j = 0; j < model_.problem().points(); ++j) {
+    for (const int j : view.pushed) {
       const double p = view.effort[0][j * T_ + lane];
       if (p == 0) continue;
       state.closed.press(j, p);
@@ -237,35 +246,63 @@ double EnergyAudit::tip_velocity(int lane) const {
   return (state.lift + model_.tip().times(0, state.increment.data())) / state.duration;
 }
 
+double EnergyAudit::lost_at_stops(int lane) const {
+  const Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const EnergyTotals& totals = state.energy;
+  return -(totals.work_of_contact + state.since.contact) - (totals.last.contact - totals.first.contact);
+}
+
 void EnergyAudit::step_done(Marcher& marcher) {
-  const double t = marcher.time();
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
-    EnergySample sample = this->sample(marcher, marcher.slots(), t, lane);
     if (marcher.program().contact) {
-      state.penetration = marcher.penetration(lane);
+      state.penetration = ends_measured_ && !state.touched ? 0 : marcher.penetration(lane);
       state.contact.deepest_penetration = std::max(state.contact.deepest_penetration, state.penetration);
     }
-    state.lift = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
-    const bool declares = !marcher.program().plan.energy.empty();
-    sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();
-    EnergyTotals& totals = state.energy;
-    totals.work_of_loads += state.step_loads;
-    totals.work_of_damping += state.step_damping;
-    totals.work_of_contact += state.step_contact;
-    totals.work_of_scheme += state.step_scheme;
-    totals.work_of_law += state.step_law;
-    if (state.has_scheme)
-      totals.largest_step_gain =
-          std::max(totals.largest_step_gain, sample.scheme - state.now.scheme - state.step_loads);
-    state.now = totals.last = sample;
-    const double energy = sample.common();
-    if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
-      marcher.freeze(lane, {.cause = EndCause::energy_not_finite});
-    else if (marcher.beyond_bound(lane, energy))
-      marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
+    state.since += state.step;
+    state.gain = std::max(state.gain, state.step.gain());
+    ++state.steps;
+    const double worked = std::abs(state.step.loads) + std::abs(state.step.damping) + std::abs(state.step.contact) +
+                          std::abs(state.step.scheme);
+    if (state.looking) look(marcher, lane);
+    state.look_next = !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
   }
+}
+
+void EnergyAudit::look(Marcher& marcher, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const double t = marcher.time();
+  EnergySample sample = this->sample(marcher, marcher.slots(), t, lane);
+  state.lift = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
+  const bool declares = !marcher.program().plan.energy.empty();
+  sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();
+  confirm(state, sample.scheme, false);
+  state.now = state.energy.last = sample;
+  const double energy = sample.common();
+  if (!std::isfinite(energy) || !std::isfinite(sample.scheme))
+    marcher.freeze(lane, {.cause = EndCause::energy_not_finite});
+  else if (marcher.beyond_bound(lane, energy))
+    marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
+}
+
+// The works since the last look enter the totals, and explain what the scheme's energy has become; a single step needs
+// no explanation.
+void EnergyAudit::confirm(Lane& state, double scheme, bool flown) {
+  EnergyTotals& totals = state.energy;
+  totals.add(state.since);
+  if (state.has_scheme) {
+    const double gain = scheme - state.now.scheme - state.since.loads;
+    const double unexplained = gain - state.since.gain();
+    const double most = state.steps > 1 ? state.gain + std::max(0.0, unexplained) : gain;
+    totals.largest_step_gain = std::max(totals.largest_step_gain, flown ? state.gain : most);
+    const double scale = std::max({std::abs(scheme), std::abs(state.now.scheme), totals.brought_in()});
+    if (state.balanced && !(std::abs(unexplained) <= confirmed * scale)) state.balanced = false;
+  }
+  state.now.scheme = scheme;
+  state.since = {};
+  state.gain = 0;
+  state.steps = 0;
 }
 
 long long EnergyAudit::may_skip(const Marcher& marcher) {
@@ -277,11 +314,14 @@ long long EnergyAudit::may_skip(const Marcher& marcher) {
 // Flights march one lane.
 void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
   Lane& state = lanes_.front();
-  EnergyTotals& totals = state.energy;
-  totals.work_of_loads += steps.works.loads;
-  totals.work_of_damping += steps.works.damping;
-  totals.work_of_scheme += steps.works.scheme;
-  state.now.scheme = scheme_energy(marcher, 0);
+  Works flown;
+  flown.loads = steps.works.loads;
+  flown.damping = steps.works.damping;
+  flown.scheme = steps.works.scheme;
+  // The step after them is looked at. None of them gains, so that what round-off makes of many is no step's gain.
+  state.look_next = true;
+  state.since += flown;
+  confirm(state, scheme_energy(marcher, 0), true);
   if (steps.held.empty()) return;
   ContactTotals& contact = state.contact;
   contact.contact_steps += steps.steps;

@@ -3,6 +3,7 @@
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/energy/stage_works.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -31,6 +32,7 @@ struct EnergyTotals {
   double work_of_contact = 0;    ///< Σ p̄ᵀ(H s + Δφ): what the stops, at rest in the laboratory, give (J)
   double work_of_scheme = 0;     ///< Σ of the plan's loss terms: what the scheme itself dissipates (J ≥ 0)
   double work_of_law = 0;        ///< what the contact law itself dissipates, by the power that it reports (J ≥ 0)
+  void add(const Works& works);
   /// E_end − E_start − loads + damping + scheme − contact: round-off × steps where the scheme has an exact balance,
   /// else what is left.
   double balance_residual() const {
@@ -57,11 +59,32 @@ struct ContactTotals {
   int active = 0;                                ///< points active in the last step
 };
 
-/// The energy audit: looks at every step, costs a few band products per lane and step; a march without it pays nothing.
-/// A lane whose common energy passes the marcher's bound is frozen at that very step.
+/// When the energies of an audit are read off the state, which costs more than a step.
+enum class Looks {
+  every_step,
+  /// At every check_interval-th step of the march and where somebody asks (look_after). The works of every step are
+  /// added up between: where the scheme has an energy of its own and every stage a work form, the gain of a step is
+  /// contact − damping − scheme, and a look confirms the sum. One that finds more than a share `confirmed` of the
+  /// energy that it does not explain adds it to the gain, and the energies of that lane are read at every step from
+  /// there on; so are those of a scheme that has no such balance.
+  seldom,
+};
+
+/// The energy audit. It adds up the works of every step, and looks at energies at every step or seldom; a march without
+/// it pays nothing. What energy() and totals() say is that of the last look. A lane whose common energy passes the
+/// marcher's bound is frozen where that is seen.
 class EnergyAudit final : public StepObserver {
  public:
-  explicit EnergyAudit(const Marcher& marcher);
+  static constexpr double confirmed = 1e-10;
+  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one looked at, so
+  /// that a lane that blows up is seen at once where something works in it.
+  static constexpr double alarming = 0.1;
+
+  explicit EnergyAudit(const Marcher& marcher, Looks looks = Looks::every_step);
+
+  /// The energies after this step (counted as Marcher::step) are asked for.
+  void look_after(long long step) { asked_ = step; }
+  void look_at_every_step() { looks_ = Looks::every_step; }
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
@@ -72,6 +95,9 @@ class EnergyAudit final : public StepObserver {
   const EnergySample& energy(int lane) const { return lanes_[static_cast<std::size_t>(lane)].now; }
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }
   const ContactTotals& contact(int lane) const { return lanes_[static_cast<std::size_t>(lane)].contact; }
+  /// What the stops took and do not store until now, J; what they store is that of the last look.
+  double lost_at_stops(int lane) const;
+  /// Largest distance by which a contact point lies beyond its stop, m, after the last step.
   double penetration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].penetration; }
   /// Whether the plan declares a work form: without, the works and the balance are not known.
   bool balances() const { return balances_; }
@@ -84,33 +110,46 @@ class EnergyAudit final : public StepObserver {
     EnergySample now;
     ContactTotals contact;
     explicit Lane(int points) : closed(points) {}
-    std::vector<double> increment;  // of the position, over the stages of the last sub-step
+    std::vector<double> increment;  // of the position, over the stages of the last sub-step; where that is looked at
     double duration = 0;            // of it, s
     ClosedPoints closed;
     double force = 0;  // of the present instant
-    double step_loads = 0, step_damping = 0, step_contact = 0, step_scheme = 0, step_law = 0;
+    Works step;        // of the step under way
+    Works since;       // of the steps since the last look
+    double gain = 0;   // largest of one of them, by their works
+    int steps = 0;     // how many
+    int quiet = 0;     // stages since the last effort
     double penetration = 0;
     double lift = 0;  // of the support over the last sub-step
     bool has_scheme = false;
+    bool balanced = false;   // whether works are believed between looks
+    bool looking = true;     // at the step under way
+    bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
+    bool touched = false;    // whether the law looked at contact where the step ends
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
   EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
-  void work(const Marcher& marcher, const StageView& view, int lane);
   double scheme_energy(const Marcher& marcher, int lane);
+  bool to_be_seen(const Lane& state, long long step) const;
+  void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
+  void follow_position(const StageView& view, int lane);
+  void look(Marcher& marcher, int lane);
+  void confirm(Lane& state, double scheme, bool flown);
   void combine(const double* const* slots, const double* z, const Combination& c, int lane,
                std::vector<double>& out) const;
-  /// Of what a stage has found, w included.
-  void combine(const StageView& view, const Combination& c, int lane, std::vector<double>& out) const;
   void count_contact(const StageView& view, int lane);
   void close_instant(const StageView& view, Lane& state);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;
-  Damping damping_;
+  StageWorks works_;
+  Looks looks_;
+  long long asked_ = -1;
   double h_;
   int T_;
-  bool compliant_, mean_velocity_, balances_ = false;
+  bool compliant_, mean_velocity_, balances_ = false, ends_measured_ = false;
+  int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;
   std::vector<double> first_, second_;
 };

@@ -43,7 +43,9 @@ std::vector<MeasureInfo> trajectory_measures() {
        "1"},
       {"largest_step_gain", "J",
        "Largest increase of the scheme's own energy (the common one where none is declared) over one step, beyond the "
-       "work of the loads.",
+       "work of the loads; where the scheme has an exact balance, by the works of each step, which the energy read "
+       "every "
+       "sixteen steps confirms.",
        Of::motion, false, "energy_brought_in"},
       {"drift_per_impact", "J",
        "Change of energy that damping and loads do not explain, divided by the number of impacts.", Of::motion, true,
@@ -126,7 +128,7 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"steps_visited", "1",
        "Steps that were marched; the others were left out, since contact changed in none of them.", Of::computation},
       {"microseconds_per_step", "µs",
-       "Processor time of the marching, energy audit of every step included, divided by the number of steps.",
+       "Processor time of the marching, the audit of energies and contact included, divided by the number of steps.",
        Of::computation},
   };
 }

@@ -8,22 +8,20 @@
 
 namespace ricochet {
 
-WindowMeans::WindowMeans(const Json& settings, const EnergyAudit& audit, StepObserver& behind)
+WindowMeans::WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind)
     : audit_(audit), behind_(behind) {
   if (!settings.is_object() || !settings.contains("window")) return;
   const Json& window = settings.at("window");
   from_ = window.at("from").get<double>();
   to_ = window.at("to").get<double>();
   if (window.contains("parts") && window["parts"].is_number()) parts_ = window["parts"].get<int>();
+  if (parts_ > 0 && compliant) audit.look_at_every_step();
   for (std::vector<double>& one : series_) one.reserve(static_cast<std::size_t>(parts_));
 }
 
 WindowMeans::Totals WindowMeans::now(const Marcher& marcher) const {
-  const EnergyTotals& energy = audit_.totals(0);
   const ContactTotals& contact = audit_.contact(0);
-  // What the stops hold (a spring's potential) is not lost.
-  return {marcher.time(), -energy.work_of_contact - (energy.last.contact - energy.first.contact), contact.impulse,
-          static_cast<double>(contact.impacts)};
+  return {marcher.time(), audit_.lost_at_stops(0), contact.impulse, static_cast<double>(contact.impacts)};
 }
 
 void WindowMeans::step_done(Marcher& marcher) {

@@ -19,8 +19,9 @@ class WindowMeans final : public StepObserver {
  public:
   static constexpr int fewest_parts = fewest_resampled;
 
-  /// `settings` are those of a trajectory, with or without a window in parts.
-  WindowMeans(const Json& settings, const EnergyAudit& audit, StepObserver& behind);
+  /// `settings` are those of a trajectory, with or without a window in parts. What stops of a compliant law store is
+  /// asked for at every step.
+  WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind);
 
   void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
   long long may_skip(const Marcher& marcher) override { return parts_ > 0 ? 0 : behind_.may_skip(marcher); }

@@ -1,4 +1,5 @@
 // The balance closes; the energies are those of the formulas; impacts are counted once.
+#include <Eigen/Eigenvalues>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 #include "tests/marching.hpp"
@@ -164,4 +165,138 @@ TEST_CASE("what a scene at rest is given is what its loads bring in, at any step
   }
   // A measure of the motion: it does not grow as the step shrinks.
   CHECK(brought_in[0] == Approx(brought_in[1]).epsilon(0.05));
+}
+
+namespace {
+
+/// One march under both ways to look.
+struct BothLooks final : StepObserver {
+  explicit BothLooks(const Marcher& marcher) : every(marcher), seldom(marcher, Looks::seldom) {}
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    every.stage_solved(marcher, view);
+    seldom.stage_solved(marcher, view);
+  }
+  void step_done(Marcher& marcher) override {
+    every.step_done(marcher);
+    seldom.step_done(marcher);
+  }
+  EnergyAudit every, seldom;
+};
+
+void march_both(Marcher& beam, BothLooks& both, long long steps) {
+  beam.start(&both);
+  both.seldom.look_after(steps);
+  beam.march(steps - beam.step(), &both);
+}
+
+}  // namespace
+
+TEST_CASE("an audit that looks seldom adds up the same works, and sees the same energies where it is asked") {
+  const auto time =
+      GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.3}}}, Choice{"newmark-dumont-paoli", {{"restitution", 0.6}}},
+               Choice{"newmark", {{"beta", 0.4}, {"gamma", 0.7}}}, Choice{"moreau-jean", {{"restitution", 0.7}}},
+               Choice{"midpoint"}, Choice{"hht-alpha"}, Choice{"bathe"}, Choice{"kane"}, Choice{"generalised-alpha"},
+               Choice{"nonsmooth-generalised-alpha"}, Choice{"laursen-love"});
+  const auto law =
+      GENERATE(Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e3}, {"evaluation", std::string("averaged")}}});
+  const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
+  CompileOptions options;
+  options.kind = kind;
+  const auto program =
+      compiled(problem_of(busy_scene(), 8, {"consistent"}), {{"consistent"}, law, time}, 1e-4, options);
+  if (std::holds_alternative<Refusal>(program)) return;
+  Marcher beam = marcher(busy_scene(), 8, {{"consistent"}, law, time}, 1e-4, options);
+  BothLooks both(beam);
+  march_both(beam, both, 2003);  // no multiple of what it looks at by itself
+  INFO(time.name << " " << law.name << " " << operator_name(kind));
+  REQUIRE(beam.status(0).running);
+  const EnergyTotals &every = both.every.totals(0), &seldom = both.seldom.totals(0);
+  CHECK(seldom.last.kinetic == every.last.kinetic);
+  CHECK(seldom.last.elastic == every.last.elastic);
+  CHECK(seldom.last.contact == every.last.contact);
+  CHECK(seldom.last.scheme == every.last.scheme);
+  CHECK(seldom.scheme_start == every.scheme_start);
+  CHECK(both.seldom.tip_velocity(0) == both.every.tip_velocity(0));
+  const double scale = every.brought_in() + every.work_of_damping;
+  CHECK(std::abs(seldom.work_of_loads - every.work_of_loads) <= 1e-12 * scale);
+  CHECK(std::abs(seldom.work_of_damping - every.work_of_damping) <= 1e-12 * scale);
+  CHECK(std::abs(seldom.work_of_contact - every.work_of_contact) <= 1e-12 * scale);
+  CHECK(std::abs(seldom.work_of_scheme - every.work_of_scheme) <= 1e-12 * scale);
+  CHECK(std::abs(seldom.work_of_law - every.work_of_law) <= 1e-12 * scale);
+  // What a look may leave unexplained, and no more.
+  CHECK(std::abs(seldom.largest_step_gain - every.largest_step_gain) <= 2 * EnergyAudit::confirmed * scale);
+  CHECK(both.seldom.lost_at_stops(0) == Approx(both.every.lost_at_stops(0)).margin(1e-12 * scale));
+  const ContactTotals &touched = both.every.contact(0), &counted = both.seldom.contact(0);
+  CHECK(counted.impacts > 0);
+  CHECK(counted.impacts == touched.impacts);
+  CHECK(counted.impulse == touched.impulse);
+  CHECK(counted.deepest_penetration == touched.deepest_penetration);
+}
+
+TEST_CASE("a scheme whose balance does not close is looked at at every step once that shows, and its gain is told") {
+  const SceneSpec scene = busy_scene();
+  const auto problem = problem_of(scene, 8, {"consistent"});
+  const auto wrong = [&](double share) {
+    Program program = std::get<Program>(
+        compiled(problem, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-4, CompileOptions{}));
+    program.plan.energy.front().coefficient *= share;
+    return Marcher(std::move(program));
+  };
+  for (const double share : {1.0, 1.01, 1.1}) {
+    Marcher beam = wrong(share);
+    BothLooks both(beam);
+    march_both(beam, both, 2003);
+    const double every = both.every.totals(0).largest_step_gain, seldom = both.seldom.totals(0).largest_step_gain;
+    INFO(share);
+    CHECK(both.seldom.totals(0).balance_residual() ==
+          Approx(both.every.totals(0).balance_residual()).margin(1e-11 * both.every.totals(0).brought_in()));
+    const double least = 1e-9 * both.every.totals(0).brought_in();
+    CHECK((every > least) == (share != 1));
+    CHECK((seldom > least) == (share != 1));
+    // Until it shows, the gain of up to a whole interval counts as that of one step.
+    if (share != 1) {
+      CHECK(seldom >= 0.999 * every);
+      CHECK(seldom <= Marcher::check_interval * every);
+    }
+  }
+}
+
+TEST_CASE("a lane that blows up is stopped where it is next looked at") {
+  const SceneSpec scene = working_set();
+  const Methods methods{{"lumped"}, {"none"}, {"central-difference"}};
+  long long stopped[2] = {};
+  for (const Looks looks : {Looks::every_step, Looks::seldom}) {
+    const auto problem = problem_of(scene, 8, {"lumped"});
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(Eigen::MatrixXd(problem->stiffness),
+                                                                          dense_mass(problem->inertia));
+    const double h = 3 / std::sqrt(modes.eigenvalues().maxCoeff());  // it can take 2
+    Marcher beam = marcher(scene, 8, methods, h);
+    EnergyAudit audit(beam, looks);
+    beam.start(&audit);
+    beam.march(2000, &audit);
+    REQUIRE_FALSE(beam.status(0).running);
+    CHECK(beam.status(0).end.cause == EndCause::energy_beyond);
+    CHECK(audit.energy(0).common() > beam.energy_bound(0));
+    stopped[looks == Looks::seldom] = beam.status(0).step;
+  }
+  CHECK(stopped[1] >= stopped[0]);
+  CHECK(stopped[1] < stopped[0] + Marcher::check_interval);
+}
+
+TEST_CASE("a lane that a spring blows up is stopped at the step at which its energy passes the bound") {
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = 1e-5;
+  const Choice law{"penalty", {{"stiffness", 1e12}, {"evaluation", std::string("explicit")}}};
+  const Methods methods{{"lumped"}, law, {"newmark-dumont-paoli", {{"beta", 0.3}}}};
+  long long stopped[2] = {};
+  for (const Looks looks : {Looks::every_step, Looks::seldom}) {
+    Marcher beam = marcher(scene, 8, methods, 1e-4);
+    EnergyAudit audit(beam, looks);
+    beam.start(&audit);
+    beam.march(20000, &audit);
+    REQUIRE_FALSE(beam.status(0).running);
+    CHECK(beam.status(0).end.cause == EndCause::energy_beyond);
+    stopped[looks == Looks::seldom] = beam.status(0).step;
+  }
+  CHECK(stopped[1] == stopped[0]);
 }

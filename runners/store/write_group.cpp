@@ -1,0 +1,74 @@
+#include "runners/store/write_group.hpp"
+
+#include <SQLiteCpp/Savepoint.h>
+#include <sqlite3.h>
+
+#include <utility>
+
+namespace ricochet {
+
+WriteGroup::WriteGroup(SQLite::Database& database, std::mutex& mutex)
+    : database_(database), mutex_(mutex), pace_([this](std::stop_token stop) { keep_pace(std::move(stop)); }) {}
+
+WriteGroup::~WriteGroup() {
+  pace_.request_stop();
+  pace_.join();
+  const std::lock_guard guard(mutex_);
+  try {
+    commit();
+  } catch (...) {
+    // Whoever wants to know asks for it before.
+  }
+}
+
+void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
+  const bool large = bytes > most_waiting;
+  if (large || failure_) commit();
+  if (!waiting_) database_.exec("BEGIN IMMEDIATE");
+  waiting_ = true;
+  try {
+    SQLite::Savepoint own(database_, "own");
+    rows();
+    own.release();
+  } catch (...) {
+    // An error of the disk takes the whole transaction back.
+    waiting_ = sqlite3_get_autocommit(database_.getHandle()) == 0;
+    throw;
+  }
+  bytes_ += bytes;
+  if (large || bytes_ > most_waiting || Clock::now() >= due_)
+    commit();
+  else
+    changed_.notify_all();
+}
+
+void WriteGroup::commit() {
+  if (const auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
+  if (!waiting_) return;
+  waiting_ = false;
+  bytes_ = 0;
+  try {
+    database_.exec("COMMIT");
+  } catch (...) {
+    // What cannot be written now may not hold the file.
+    if (sqlite3_get_autocommit(database_.getHandle()) == 0) database_.tryExec("ROLLBACK");
+    throw;
+  }
+  due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(longest));
+}
+
+void WriteGroup::keep_pace(std::stop_token stop) {
+  std::unique_lock lock(mutex_);
+  while (changed_.wait(lock, stop, [this] { return waiting_; })) {
+    changed_.wait_until(lock, stop, due_, [this] { return !waiting_; });
+    if (stop.stop_requested()) return;
+    if (!waiting_ || Clock::now() < due_) continue;
+    try {
+      commit();
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,51 @@
+#pragma once
+#include <SQLiteCpp/Database.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace ricochet {
+
+/// Writes that follow each other closely reach the disk together: making one durable takes a few ms, whatever it holds,
+/// and a study may have thousands of cases of less than one. A write is durable when it returns, unless one became so
+/// less than half a second before; then it is at the end of that half second, or when enough waits. Readers of the file
+/// see what is durable.
+///
+/// Every function is called with `mutex` locked, which belongs to whoever uses the database. What a write throws takes
+/// its own rows back. A failure that shows later is thrown by the next call.
+class WriteGroup {
+ public:
+  /// What a killed process may lose of what it has written, s.
+  static constexpr double longest = 0.5;
+  /// Bytes that may wait; a larger write waits for none and with none.
+  static constexpr std::size_t most_waiting = 1 << 20;
+
+  WriteGroup(SQLite::Database& database, std::mutex& mutex);
+  ~WriteGroup();
+  WriteGroup(const WriteGroup&) = delete;
+  WriteGroup& operator=(const WriteGroup&) = delete;
+
+  /// All the rows of one write, or none of them; about so many bytes.
+  void write(std::size_t bytes, const std::function<void()>& rows);
+  /// Makes durable what waits. Before any other transaction.
+  void commit();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void keep_pace(std::stop_token stop);
+
+  SQLite::Database& database_;
+  std::mutex& mutex_;
+  bool waiting_ = false;        // a transaction is open
+  std::size_t bytes_ = 0;       // that wait
+  Clock::time_point due_ = {};  // when what is written next, or waits, is to be durable
+  std::exception_ptr failure_;
+  std::condition_variable_any changed_;
+  std::jthread pace_;  // last: it uses all of the above
+};
+
+}  // namespace ricochet
