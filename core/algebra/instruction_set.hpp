@@ -4,13 +4,30 @@
 #define RICOCHET_AVX2 __attribute__((target("avx2,fma")))
 /// The same without fused operations: what it computes number by number is rounded as elsewhere.
 #define RICOCHET_AVX2_ALONE __attribute__((target("avx2")))
+/// Of one that may use vectors of eight doubles as well, to be called only where has_avx512().
+#define RICOCHET_AVX512 __attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
 
 namespace ricochet {
+
+/// What kernels over lanes are compiled for.
+enum class InstructionSet { baseline, avx2, avx512 };
 
 /// Whether this processor has AVX2 and FMA: asked for once.
 inline bool has_avx2() {
   static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   return has;
+}
+
+/// Whether it has AVX-512 as well, and the parts of it that vectors of doubles need.
+inline bool has_avx512() {
+  static const bool has = has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                          __builtin_cpu_supports("avx512dq");
+  return has;
+}
+
+/// The best that this processor has.
+inline InstructionSet best_instruction_set() {
+  return has_avx512() ? InstructionSet::avx512 : has_avx2() ? InstructionSet::avx2 : InstructionSet::baseline;
 }
 
 }  // namespace ricochet

@@ -144,7 +144,7 @@ RICOCHET_INLINE void band_step_body(const BandStep& step) {
   if (step.K)
     product_any<T, false>(step.rows, step.product_width, step.K, step.k, step.b);
   else
-    for (long i = 0; i < static_cast<long>(step.rows) * T; ++i) step.b[i] = 0;
+    for (long i = 0; i < static_cast<long>(step.rows) * Row<T>::lanes; ++i) step.b[i] = 0;
   if (step.M) product_any<T, true>(step.rows, step.product_width, step.M, step.m, step.b);
   if (step.shape) add_column_body<T>(step.rows, step.shape, step.scale, step.b);
   if (step.load)

@@ -66,8 +66,9 @@ using namespace lane_bodies;
 
 RICOCHET_KERNEL_SET(Baseline, )
 RICOCHET_KERNEL_SET(Avx2, RICOCHET_AVX2)
+RICOCHET_KERNEL_SET(Avx512, RICOCHET_AVX512)
 
-template <template <int> class Set>
+template <template <int> class Set, int wide = 0>
 const LaneKernels& select(int lanes) {
   switch (lanes) {
     case 1:
@@ -77,11 +78,11 @@ const LaneKernels& select(int lanes) {
     case 4:
       return Set<4>::table;
     case 8:
-      return Set<8>::table;
+      return Set<8 + wide>::table;
     case 16:
-      return Set<16>::table;
+      return Set<16 + wide>::table;
     case 32:
-      return Set<32>::table;
+      return Set<32 + wide>::table;
     default:
       throw std::logic_error("a block has 1, 2, 4, 8, 16 or 32 lanes");
   }
@@ -89,8 +90,15 @@ const LaneKernels& select(int lanes) {
 
 }  // namespace
 
-const LaneKernels& lane_kernels(int lanes, bool baseline) {
-  return has_avx2() && !baseline ? select<Avx2>(lanes) : select<Baseline>(lanes);
+const LaneKernels& lane_kernels(int lanes, InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return select<Avx512, wide_rows>(lanes);
+    case InstructionSet::avx2:
+      return select<Avx2>(lanes);
+    default:
+      return select<Baseline>(lanes);
+  }
 }
 
 int lane_width(int lanes) {
@@ -100,7 +108,8 @@ int lane_width(int lanes) {
 }
 
 const char* lane_instruction_set() {
-  return has_avx2() ? "AVX2 + FMA" : "baseline";
+  static constexpr const char* names[] = {"baseline", "AVX2 + FMA", "AVX-512"};
+  return names[static_cast<int>(best_instruction_set())];
 }
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <ricochet/algebra/instruction_set.hpp>
 
 /// \file
 /// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
@@ -67,13 +68,14 @@ struct LaneKernels {
   double (*triple_product)(long size, const double* a, const double* x, const double* y);
 };
 
-/// Kernels for T lanes on this processor; `baseline` asks for those of the plain x86-64 instruction set (for tests).
-const LaneKernels& lane_kernels(int lanes, bool baseline = false);
+/// Kernels for T lanes: of the best instruction set of this processor, or of another one that it has. AVX2 and AVX-512
+/// do the same operations on each lane in the same order: their results have the same bits.
+const LaneKernels& lane_kernels(int lanes, InstructionSet set = best_instruction_set());
 
 /// The smallest T that holds `lanes` (1 … 32).
 int lane_width(int lanes);
 
-/// "AVX2 + FMA" or "baseline": what lane_kernels() chose.
+/// "AVX-512", "AVX2 + FMA" or "baseline": what lane_kernels() chose.
 const char* lane_instruction_set();
 
 }  // namespace ricochet

@@ -116,9 +116,9 @@ RICOCHET_INLINE std::uint32_t outside_body(int rows, const double* y, const doub
         const V<T> value = row<T>(y, i)[k];
         inside[k] &= (value >= row<T>(lower, i)[k]) & (value <= row<T>(upper, i)[k]);
       }
-    constexpr int per = T / Row<T>::count;
+    constexpr int lanes = Row<T>::lanes, per = lanes / Row<T>::count;
     std::uint32_t mask = 0;
-    for (int l = 0; l < T; ++l) mask |= static_cast<std::uint32_t>(inside[l / per][l % per] == 0) << l;
+    for (int l = 0; l < lanes; ++l) mask |= static_cast<std::uint32_t>(inside[l / per][l % per] == 0) << l;
     return mask;
   }
 }

@@ -14,20 +14,34 @@ namespace ricochet::lane_bodies {
 
 typedef double Vector2 __attribute__((vector_size(16), may_alias));
 typedef double Vector4 __attribute__((vector_size(32), may_alias));
+typedef double Vector8 __attribute__((vector_size(64), may_alias));
 typedef double Scalar __attribute__((may_alias));
 
+/// A row is T lanes in vectors of four; T = wide_rows + lanes means vectors of eight.
+constexpr int wide_rows = 64;
+template <bool wide>
+struct RowVector {
+  typedef Vector4 V;
+};
+template <>
+struct RowVector<true> {
+  typedef Vector8 V;
+};
 template <int T>
 struct Row {
-  using V = Vector4;
-  static constexpr int count = T / 4;
+  static constexpr int lanes = T % wide_rows;
+  using V = typename RowVector<(T > wide_rows)>::V;
+  static constexpr int count = lanes / (T > wide_rows ? 8 : 4);
 };
 template <>
 struct Row<2> {
+  static constexpr int lanes = 2;
   using V = Vector2;
   static constexpr int count = 1;
 };
 template <>
 struct Row<1> {
+  static constexpr int lanes = 1;
   using V = Scalar;
   static constexpr int count = 1;
 };
@@ -37,11 +51,11 @@ using V = typename Row<T>::V;
 
 template <int T>
 RICOCHET_INLINE const V<T>* row(const double* block, long i) {
-  return reinterpret_cast<const V<T>*>(block + i * T);
+  return reinterpret_cast<const V<T>*>(block + i * Row<T>::lanes);
 }
 template <int T>
 RICOCHET_INLINE V<T>* row(double* block, long i) {
-  return reinterpret_cast<V<T>*>(block + i * T);
+  return reinterpret_cast<V<T>*>(block + i * Row<T>::lanes);
 }
 
 // Blocks start on 64 bytes, but a row of T = 1 need not start on 32.

@@ -177,7 +177,6 @@ Refusal refuse_flight(const std::string& cause) {
 // Why a march cannot leave out steps, by what is known before anything is worked out; empty: nothing speaks against it.
 std::string why_grounded(const Program& program, const CompileOptions& options) {
   if (program.lanes.size() > 1) return "several lanes march as one block";
-  if (program.tangents > 0) return "tangents are asked for";
   if (program.load && !program.load_constant) return "the load depends on time";
   if (!kind_applies(OperatorKind::modal, *program.problem))
     return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";

@@ -25,8 +25,39 @@ bool Marcher::contact_set() {
   return true;
 }
 
+// The state of the lane and of its tangents, column by column.
+void Marcher::gather_columns() {
+  const auto count = static_cast<std::size_t>(1 + program_.tangents), width = static_cast<std::size_t>(program_.width);
+  if (width == 1) {
+    column_slots_.assign(1, slots_.data());
+    return;
+  }
+  const auto rows = static_cast<std::size_t>(program_.model->rows()), slots = slots_.size();
+  columns_.resize(count * slots * rows);
+  column_pointers_.resize(count * slots);
+  column_slots_.resize(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t j = 0; j < slots; ++j) {
+      double* const to = column_pointers_[c * slots + j] = columns_.data() + (c * slots + j) * rows;
+      for (std::size_t i = 0; i < rows; ++i) to[i] = slots_[j][i * width + c];
+    }
+    column_slots_[c] = column_pointers_.data() + c * slots;
+  }
+}
+
+void Marcher::scatter_columns() {
+  const auto width = static_cast<std::size_t>(program_.width);
+  if (width == 1) return;
+  const auto rows = static_cast<std::size_t>(program_.model->rows());
+  for (std::size_t c = 0; c < column_slots_.size(); ++c)
+    for (std::size_t j = 0; j < slots_.size(); ++j)
+      for (std::size_t i = 0; i < rows; ++i) slots_[j][i * width + c] = column_slots_[c][j][i];
+}
+
 // Leaves out steps in which contact stays what it is, before the next one; returns how many.
 long long Marcher::fly(long long most, StepObserver* observer) {
+  // Tangents that wait through the first steps of an impact count them.
+  if (held_steps_ > 0) return 0;
   if (!contact_set() || most < Flight::least || !status_.front().running) return 0;
   if (observer) most = std::min(most, observer->may_skip(*this));
   if (most < Flight::least) return 0;
@@ -39,12 +70,14 @@ long long Marcher::fly(long long most, StepObserver* observer) {
     e[0] = 1;
   }
   Flight& flight = *program_.flight;
-  const long long k = flight.look(program_, slot_pointers_.data(), e, held_, most);
+  gather_columns();
+  const long long k = flight.look(program_, column_slots_, e, held_, most);
   if (k == 0) return 0;
   SkippedSteps skipped;
   skipped.steps = k;
   skipped.from = time();
-  skipped.works = flight.fly(k, slots_.data(), observer != nullptr);
+  skipped.works = flight.fly(k, column_slots_, observer != nullptr);
+  scatter_columns();
   step_ += k;
   skipped.to = time();
   skipped.held = held_;

@@ -147,7 +147,7 @@ Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents
   options.kind = one.kind;
   options.moving_support = one.scene.problem->support.pulsation != 0;
   options.tangents = tangents;
-  if (one.flies && lanes.size() == 1 && tangents == 0) {
+  if (one.flies && lanes.size() == 1) {
     options.march = MarchWay::flights;
     options.expected_steps = long_march;
   }

@@ -107,6 +107,8 @@ class Marcher {
 
   // flight_march.cpp: steps in which nothing happens.
   long long fly(long long most, StepObserver* observer);
+  void gather_columns();
+  void scatter_columns();
   bool contact_set();
 
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
@@ -172,6 +174,10 @@ class Marcher {
   long long step_ = 0, visited_ = 0;
   int quiet_ = 0, quiet_after_ = 0;  // steps without contact, and how many until nothing of it acts any more
   std::vector<HeldPoint> held_;      // closed points, where flights ask for them
+  // Slots by column, where a flight takes tangents along: numbers, and pointers to them for each column.
+  std::vector<double> columns_;
+  std::vector<double*> column_pointers_;
+  std::vector<double* const*> column_slots_;
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

@@ -129,11 +129,20 @@ struct Slots {
   }
 };
 
+/// Those that this processor has.
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512})
+    if (set <= best_instruction_set()) sets.push_back(set);
+  return sets;
+}
+
 }  // namespace
 
 TEST_CASE("a band step solves S z = K k + M m + shape·scale + load") {
   const int T = GENERATE(1, 2, 4, 8, 16, 32), width = GENERATE(0, 1, 2, 3, 5);
-  const bool baseline = GENERATE(false, true), full = GENERATE(false, true);
+  const InstructionSet set = GENERATE(from_range(instruction_sets()));
+  const bool full = GENERATE(false, true);
   const int n = 23;
   const SparseMatrix K = random_band(n, width, false), M = random_band(n, width, false);
   QuasiDefinite S;
@@ -164,7 +173,7 @@ TEST_CASE("a band step solves S z = K k + M m + shape·scale + load") {
   step.factor = ldlt.factor();
   step.b = b.data();
   step.z = z.data();
-  lane_kernels(T, baseline).band_step(step);
+  lane_kernels(T, set).band_step(step);
   const Eigen::MatrixXd dense_K = K, dense_M = M, dense_S = S.A;
   for (int l = 0; l < T; ++l) {
     Eigen::VectorXd a(n), c(n), rhs(n), found(n);
@@ -181,7 +190,7 @@ TEST_CASE("a band step solves S z = K k + M m + shape·scale + load") {
   }
 }
 
-TEST_CASE("the two instruction sets agree to round-off, and updates follow their weights") {
+TEST_CASE("the instruction sets agree to round-off, and updates follow their weights") {
   const int T = GENERATE(1, 4, 32), n = 9;
   for (const bool increments : {false, true}) {
     // The second set of weights is the one that the kernels recognise: q ← q + d + z, d ← d + z.
@@ -189,11 +198,11 @@ TEST_CASE("the two instruction sets agree to round-off, and updates follow their
         increments ? std::vector<double>{1, 1, 1, 0, 1, 1} : std::vector<double>{0.5, 1, 2, 0.1, -1, 3};
     const std::vector<double> next = {0.3, -0.7};
     const Block q = random_block(n, T, 0, 5), d = random_block(n, T, 0, 6), z = random_block(n, T, 0, 7);
-    for (const bool baseline : {false, true}) {
+    for (const InstructionSet set : instruction_sets()) {
       Block x = q, y = d, combined(n, T);
       double* slots[] = {x.data(), y.data()};
-      lane_kernels(T, baseline)
-          .update(static_cast<long>(x.size()), 2, slots, z.data(), weights.data(), next.data(), combined.data());
+      lane_kernels(T, set).update(static_cast<long>(x.size()), 2, slots, z.data(), weights.data(), next.data(),
+                                  combined.data());
       for (std::size_t e = 0; e < x.size(); ++e) {
         const double new_q = weights[0] * q.data()[e] + weights[1] * d.data()[e] + weights[2] * z.data()[e];
         const double new_d = weights[3] * q.data()[e] + weights[4] * d.data()[e] + weights[5] * z.data()[e];
@@ -207,9 +216,9 @@ TEST_CASE("the two instruction sets agree to round-off, and updates follow their
 
 TEST_CASE("one to eight slots are combined, updated, stepped and measured by their weights") {
   const int count = GENERATE(range(1, most_lane_slots + 1)), T = GENERATE(1, 2, 4, 8, 16, 32);
-  const bool baseline = GENERATE(false, true);
+  const InstructionSet set = GENERATE(from_range(instruction_sets()));
   const Slots slots(count, T, count + 1);
-  const auto found = slots.outcome(lane_kernels(T, baseline));
+  const auto found = slots.outcome(lane_kernels(T, set));
   for (int l = 0; l < T; ++l) {
     const auto expected = slots.expected(l);
     REQUIRE(expected.size() == found.size());
@@ -224,9 +233,9 @@ TEST_CASE("one to eight slots are combined, updated, stepped and measured by the
 
 TEST_CASE("a lane's bits do not depend on its company, whatever the number of slots") {
   const int count = GENERATE(range(1, most_lane_slots + 1)), T = GENERATE(2, 4, 8, 16, 32);
-  const bool baseline = GENERATE(false, true);
-  const auto alone = Slots(count, 1, count + 1).outcome(lane_kernels(1, baseline));
-  const auto together = Slots(count, T, count + 1).outcome(lane_kernels(T, baseline));
+  const InstructionSet set = GENERATE(from_range(instruction_sets()));
+  const auto alone = Slots(count, 1, count + 1).outcome(lane_kernels(1, set));
+  const auto together = Slots(count, T, count + 1).outcome(lane_kernels(T, set));
   for (std::size_t k = 0; k < alone.size(); ++k)
     for (int i = 0; i < alone[k].rows(); ++i) {
       INFO(count << " slots, " << T << " lanes: outcome " << k << ", row " << i);
@@ -234,10 +243,58 @@ TEST_CASE("a lane's bits do not depend on its company, whatever the number of sl
     }
 }
 
+TEST_CASE("a lane's bits are those of AVX2 where vectors are twice as long") {
+  if (best_instruction_set() != InstructionSet::avx512) {
+    WARN("skipped: this processor has no AVX-512");
+    return;
+  }
+  const int T = GENERATE(1, 2, 4, 8, 16, 32);
+  const LaneKernels &narrow = lane_kernels(T, InstructionSet::avx2), &wide = lane_kernels(T, InstructionSet::avx512);
+  for (int count = 1; count <= most_lane_slots; ++count) {
+    const Slots slots(count, T, count + 1);
+    const auto expected = slots.outcome(narrow), found = slots.outcome(wide);
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      for (int i = 0; i < expected[k].rows(); ++i)
+        for (int l = 0; l < T; ++l) REQUIRE(found[k].at(i, l) == expected[k].at(i, l));
+  }
+  for (const int width : {0, 1, 2, 3, 5, 7})
+    for (const bool own_product : {false, true}) {
+      const int n = 23;
+      QuasiDefinite S;
+      S.A = random_band(n, width, true);
+      BandLdlt ldlt;
+      REQUIRE_FALSE(ldlt.factorise(S));
+      const auto bands = band_storage(random_band(n, width, false), width, T == 1);
+      const Block k = random_block(n, T, width, 1), m = random_block(n, T, width, 2), scale = random_block(1, T, 0, 3);
+      const std::vector<double> shape(n, 0.3);
+      Block z[2] = {{n, T, ldlt.half_width()}, {n, T, ldlt.half_width()}}, b(n, T);
+      for (const bool is_wide : {false, true}) {
+        BandStep step;
+        step.rows = step.solve_rows = n;
+        step.product_width = width;
+        step.solve_width = ldlt.half_width();
+        step.K = bands.data();
+        step.k = k.data();
+        if (own_product) {
+          step.M = bands.data();
+          step.m = m.data();
+        }
+        step.shape = shape.data();
+        step.scale = scale.data();
+        step.factor = ldlt.factor();
+        step.b = b.data();
+        step.z = z[is_wide].data();
+        (is_wide ? wide : narrow).band_step(step);
+      }
+      for (int i = 0; i < n; ++i)
+        for (int l = 0; l < T; ++l) REQUIRE(z[1].at(i, l) == z[0].at(i, l));
+    }
+}
+
 TEST_CASE("a slot without weight changes no bit, also where the loop takes over from what is written out") {
   const int count = GENERATE(range(1, most_lane_slots)), T = GENERATE(1, 2, 4, 8, 16, 32);
-  const bool baseline = GENERATE(false, true);
-  const LaneKernels& kernels = lane_kernels(T, baseline);
+  const InstructionSet set = GENERATE(from_range(instruction_sets()));
+  const LaneKernels& kernels = lane_kernels(T, set);
   const Slots few(count, T, count + 1);
   Slots more(count + 1, T, count + 2);
   const auto n = static_cast<std::size_t>(count);
@@ -261,8 +318,8 @@ TEST_CASE("a slot without weight changes no bit, also where the loop takes over 
 
 TEST_CASE("a number of slots that no kernel takes is an error and writes nothing") {
   const int T = GENERATE(1, 4, 32);
-  const bool baseline = GENERATE(false, true);
-  const LaneKernels& kernels = lane_kernels(T, baseline);
+  const InstructionSet set = GENERATE(from_range(instruction_sets()));
+  const LaneKernels& kernels = lane_kernels(T, set);
   for (const int count : {-1, 0, most_lane_slots + 1, most_lane_slots + 4}) {
     Slots slots(most_lane_slots, T, most_lane_slots + 4);
     std::vector<double*> written;
@@ -291,11 +348,11 @@ TEST_CASE("a number of slots that no kernel takes is an error and writes nothing
 TEST_CASE("a lane is outside when any of its points is, or is no number") {
   const int T = GENERATE(1, 2, 8, 32);
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const bool baseline : {false, true}) {
+  for (const InstructionSet set : instruction_sets()) {
     Block y(3, T), lower(3, T), upper(3, T);
     lower.fill(-1);
     upper.fill(infinity);
-    const auto& kernels = lane_kernels(T, baseline);
+    const auto& kernels = lane_kernels(T, set);
     CHECK(kernels.outside(3, y.data(), lower.data(), upper.data()) == 0);
     y.at(2, T - 1) = -1;
     CHECK(kernels.outside(3, y.data(), lower.data(), upper.data()) == 0);

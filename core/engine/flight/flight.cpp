@@ -66,8 +66,8 @@ Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   return one;
 }
 
-long long Flight::look(const Program& program, const double* const* slots, const double* e,
-                       std::span<const HeldPoint> held, long long most) {
+long long Flight::look(const Program& program, Columns columns, const double* e, std::span<const HeldPoint> held,
+                       long long most) {
   Pace* pace = &pace_;
   FlightSet* set = free_.get();
   if (!held.empty()) {
@@ -93,7 +93,10 @@ long long Flight::look(const Program& program, const double* const* slots, const
     return 0LL;
   };
   std::copy_n(e, 3, start_.e);
-  if (!set->enter(slots, e, start_.x)) return fails();
+  if (!set->enter(columns[0], e, start_.x)) return fails();
+  tangents_.resize(columns.size() - 1);
+  for (std::size_t k = 0; k < tangents_.size(); ++k)
+    if (!set->enter(columns[k + 1], tangents_[k].e, tangents_[k].x)) return fails();
   FlightBound& bound = set->bound();
   bound.look(start_.x.data(), e);
   long long k = std::min(pace->next, most);
@@ -110,7 +113,7 @@ long long Flight::look(const Program& program, const double* const* slots, const
   return k;
 }
 
-FlightSums Flight::fly(long long k, double* const* slots, bool works) {
+FlightSums Flight::fly(long long k, Columns columns, bool works) {
   FlightSums sums;
   last_ = start_;
   for (int power = 0; k >> power != 0; ++power) {
@@ -118,7 +121,11 @@ FlightSums Flight::fly(long long k, double* const* slots, bool works) {
     if (works) set_->works().add(power, last_.x.data(), last_.e, sums);
     set_->motion().leap(power, last_.x.data(), last_.e);
   }
-  set_->leave(last_.x, last_.e, slots);
+  set_->leave(last_.x, last_.e, columns[0]);
+  for (std::size_t i = 0; i < tangents_.size(); ++i) {
+    advance(k, tangents_[i]);
+    set_->leave(tangents_[i].x, tangents_[i].e, columns[i + 1]);
+  }
   flown_ = k;
   efforts_from_ = -1;
   return sums;

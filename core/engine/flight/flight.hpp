@@ -39,12 +39,15 @@ class Flight {
   /// Forgets what it has learnt of the steps so far, so that those to come depend on the state alone.
   void forget();
 
+  /// The slots of the lane, and behind them those of its tangent columns, rows each.
+  using Columns = std::span<double* const* const>;
+
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
-  /// march. `slots`, `e`: the lane's state; `held`: its closed points.
-  long long look(const Program& program, const double* const* slots, const double* e, std::span<const HeldPoint> held,
+  /// march. `columns`, `e`: the lane's state; `held`: its closed points.
+  long long look(const Program& program, Columns columns, const double* e, std::span<const HeldPoint> held,
                  long long most);
-  /// Leaves them out: the slots k steps later. Right after look().
-  FlightSums fly(long long k, double* const* slots, bool works);
+  /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
+  FlightSums fly(long long k, Columns columns, bool works);
 
   /// Widens [low, high] by the tip's displacement, absolute, after each of the steps last left out.
   void tip_extremes(double& low, double& high);
@@ -98,6 +101,7 @@ class Flight {
   // Of the last flight:
   FlightSet* set_ = nullptr;
   Leg start_, last_;
+  std::vector<Leg> tangents_;  // where they start
   long long flown_ = 0;
   // Efforts of up to effort_block steps from one of them on (−1: of none yet), and the state that they lead to.
   std::vector<double> efforts_;

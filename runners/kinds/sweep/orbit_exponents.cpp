@@ -49,7 +49,8 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   // One column more than asked for: it may belong to the last one as a complex pair.
   const int columns =
       task.groups.empty() ? count : std::min({count + 1, 31, 2 * scenes.problem(task.groups.front()).dofs()});
-  const auto most = static_cast<std::size_t>(std::max(1, block_width / (1 + columns)));
+  // What leaves out steps marches alone.
+  const auto most = static_cast<std::size_t>(scenes.flies() ? 1 : std::max(1, block_width / (1 + columns)));
   for (const auto& [group, members] : by_group)
     for (std::size_t first = 0; first < members.size(); first += most)
       batches.push_back({group,

@@ -2,12 +2,12 @@
 {
   const names = [
     ["structure.damping.stiffness", "α"], ["structure.damping.mass", "η"], ["support.amplitude", "A₀"], ["support.pulsation", "ω"],
-    ["contact.stiffness", "κ"], ["contact.restitution", "e"], ["time.restitution", "e"], ["stiffness", "κ"], ["restitution", "e"], ["elements", "N"], ["step", "h"],
+    ["contact.stiffness", "κ"], ["contact.restitution", "e"], ["time.restitution", "e"], ["stiffness", "κ"], ["restitution", "e"], ["elements", "N"], ["steps_per_period", "steps/T"], ["step", "h"],
     ["time.beta", "β"], ["time.gamma", "γ"], ["time.theta", "θ"], ["beta", "β"], ["gamma", "γ"], ["theta", "θ"],
   ];
   const meanings = {
     "α": "structure.damping.stiffness (C = αK + ηM)", "η": "structure.damping.mass (C = αK + ηM)", "A₀": "support.amplitude", "ω": "support.pulsation",
-    "κ": "stiffness of the contact", e: "restitution", N: "elements", h: "step", "β": "beta", "γ": "gamma", "θ": "theta",
+    "steps/T": "steps_per_period", "κ": "stiffness of the contact", e: "restitution", N: "elements", h: "step", "β": "beta", "γ": "gamma", "θ": "theta",
   };
   // A word of everyday language is a name where a value or another choice follows it, and no article stands before it.
   const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| \\([^)]{1,6}\\)| [\\d−])" : "");

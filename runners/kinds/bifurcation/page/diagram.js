@@ -101,7 +101,7 @@
       const { orbits } = this, withBand = lanes.length <= mostLanes, grid = [], x = [], y = [ricochet.valueAxis(tip, frame.range, true), ricochet.gutterAxis()];
       let top = 10;
       const place = (height, gap) => { const index = grid.push({ left: 74, right: 14, top, height }) - 1; top += height + gap; return index; };
-      place(panel.byMethod || this.cases.length === 1 ? 380 : 270, 8);
+      place(panel.byMethod || this.cases.length === 1 ? 380 : 270, 16);
       const growth = this.exponents ? place(110, 8) : -1;
       const band = withBand ? place(Math.max(10, lanes.length * (lanes.length > 6 ? 8 : 12)), 6) : -1;
       const verdict = this.verdicts.length ? place(12, 6) : -1;
