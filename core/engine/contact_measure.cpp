@@ -12,7 +12,7 @@ namespace ricochet {
 // they have in common is summed once.
 void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                            const double* offset, double* out) {
-  if (!program_.flight) {
+  if (!program_.flight || program_.width > 1) {
     kernels_.measure(rows.view(), terms, x, weights, offset, out);
     return;
   }

@@ -77,7 +77,7 @@ double Marcher::penetration(int lane) const {
   double deepest = 0;
   for (int j = 0; j < rows.rows(); ++j) {
     double sum = 0;
-    if (program_.flight) {
+    if (program_.flight && program_.width == 1) {
       const int n = program_.model->rows();
       const double relative =
           flight_kernels().dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(j) * n, blocks_[0].data());
