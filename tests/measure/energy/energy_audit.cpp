@@ -283,7 +283,7 @@ TEST_CASE("a lane that blows up is stopped where it is next looked at") {
   CHECK(stopped[1] < stopped[0] + Marcher::check_interval);
 }
 
-TEST_CASE("a lane that a spring blows up is stopped at the step at which its energy passes the bound") {
+TEST_CASE("a lane that a spring blows up is stopped at the step at which its energy passes the bound, or the next") {
   SceneSpec scene = working_set();
   beam_of(scene).damping.stiffness = 1e-5;
   const Choice law{"penalty", {{"stiffness", 1e12}, {"evaluation", std::string("explicit")}}};
@@ -298,5 +298,6 @@ TEST_CASE("a lane that a spring blows up is stopped at the step at which its ene
     CHECK(beam.status(0).end.cause == EndCause::energy_beyond);
     stopped[looks == Looks::seldom] = beam.status(0).step;
   }
-  CHECK(stopped[1] == stopped[0]);
+  CHECK(stopped[1] >= stopped[0]);
+  CHECK(stopped[1] <= stopped[0] + 1);
 }
