@@ -54,7 +54,7 @@ using namespace lane_bodies;
     }                                                                                                                  \
     TARGET static void add_column(int n, const double* s, const double* a, double* y) { add_column_body<T>(n, s, a, y); } \
     TARGET static std::uint32_t outside(int n, const double* y, const double* l, const double* u) {                    \
-      return outside_body<T>(n, y, l, u);                                                                              \
+      return outside_body<Row<T>::lanes>(n, y, l, u);                                                                              \
     }                                                                                                                  \
     TARGET static double triple_product(long n, const double* a, const double* x, const double* y) {                   \
       return triple_product_body(n, a, x, y);                                                                          \

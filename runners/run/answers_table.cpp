@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
@@ -232,7 +232,7 @@ std::string sentence_of(const std::vector<const Said*>& same) {
 /// How far the finished cases spread in a measure, over what its differences are shares of.
 double spread_of(const StudyResults& results, const std::string& name) {
   const MeasureScale scale(name);
-  double low = infinity, high = -infinity, unit = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low, unit = 0;
   for (const CaseRecord& record : results.cases) {
     const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
     if (!value) continue;
