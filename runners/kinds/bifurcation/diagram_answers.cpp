@@ -12,6 +12,7 @@
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/html.hpp"
+#include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
 
@@ -217,7 +218,10 @@ void say_attractors(const StudyResults& results, Table& answers) {
   if (labels.size() == 1 && labels.front().first == "not compared") return;
   std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> said;
-  for (const auto& [label, count] : labels) said.push_back(fmt::format("{} ({})", label, count));
+  const std::string depends = "depends on ";
+  for (const auto& [label, count] : labels)
+    said.push_back(fmt::format(
+        "{} ({})", label.starts_with(depends) ? depends + spoken_choice(label.substr(depends.size())) : label, count));
   add(answers, "attractors", static_cast<double>(rows.size()),
       fmt::format("{} met over all values; as to who shows them: {}.",
                   report::count_text(rows.size(), "attractor was", "attractors were"), list_text(said)));
