@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/plain_text.hpp"
@@ -26,9 +30,7 @@ std::string error_words(const std::string& error) {
 /// "singular · newmark at h = 5e-5 s (0.7 ms)".
 std::string how(const report::CaseView& view, const CaseRecord& record, double seconds) {
   std::vector<std::string> methods;
-  for (const std::string& column : view.varying())
-    if (const std::string role = report::role_of(column); role == "mass" || role == "contact" || role == "time")
-      methods.push_back(column);
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(methods), is_method);
   std::string at;
   if (view.varies("step")) at = fmt::format(" at h = {} s", report::CaseView::text(record, "step"));
   if (view.varies("elements")) at += fmt::format(" on {} elements", report::CaseView::text(record, "elements"));
@@ -42,7 +44,8 @@ void say_precision(const StudyResults& results, Table& answers) {
   if (!targets || targets->rows.empty()) return;
   const TableReader rows(*targets);
   const report::CaseView view(results);
-  const std::vector<std::string> scene = view.varying_without({"mass", "contact", "time", "step", "elements"});
+  std::vector<std::string> scene;
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(scene), is_scene);
   const std::string error = rows.text(0, "error");
   constexpr std::size_t most = 6;
   std::size_t said = 0;

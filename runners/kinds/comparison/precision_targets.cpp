@@ -19,16 +19,6 @@ struct TimedError {
   double seconds = 0, low = 0, high = 0;  ///< run time: median, fastest, slowest
 };
 
-bool is_method(const std::string& column) {
-  const std::string role = axis_role(column);
-  return role == "mass" || role == "contact" || role == "time";
-}
-
-// Neither method, nor mesh, nor step: another value makes another scene of it.
-bool is_scene(const std::string& column) {
-  return !is_method(column) && column != "elements" && column != "step";
-}
-
 template <class Wanted>
 std::vector<std::string> columns_that(const StudyResults& results, Wanted wanted) {
   std::vector<std::string> out;
@@ -64,6 +54,15 @@ std::vector<TimedError> fastest(const std::vector<TimedError>& points, double to
 }
 
 }  // namespace
+
+bool is_method(const std::string& column) {
+  const std::string role = axis_role(column);
+  return role == "mass" || role == "contact" || role == "time" || role == "march";
+}
+
+bool is_scene(const std::string& column) {
+  return !is_method(column) && column != "elements" && column != "step";
+}
 
 Table precision_targets_table(const StudyResults& results) {
   const std::vector<std::string> scene = columns_that(results, is_scene), method = columns_that(results, is_method);

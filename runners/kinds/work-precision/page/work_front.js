@@ -11,8 +11,8 @@
   ricochet.figure("work-front", (data) => {
     const { view } = data, known = data.rows("work_points").filter((row) => row.none === "" && row.value > 0 && row.seconds > 0 && data.byId.has(row.case)), error = telling(known);
     if (!error) return [];
-    const scene = view.varyingWithout(["mass", "contact", "time", "elements", "step"]), scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
-    const methods = view.varying.filter((column) => ricochet.roles.includes(ricochet.roleOf(column)) && !scene.includes(column)), label = (one) => ricochet.shorten(view.label(one, methods) || "the one method");
+    const scene = view.varyingWithout(["mass", "contact", "time", "march", "elements", "step"]), scenes = view.group(known.map((row) => data.byId.get(row.case)), scene), [first] = scenes;
+    const methods = view.varying.filter((column) => column !== "elements" && column !== "step" && !scene.includes(column)), label = (one) => ricochet.shorten(view.label(one, methods) || "the one method");
     const text = ricochet.format.text, rows = known.filter((row) => row.error === error && first.cases.includes(data.byId.get(row.case))).map((row) => {
       const one = data.byId.get(row.case), name = label(one);
       return { value: row.value, seconds: row.seconds, name, shown: row.on_front ? name : beaten, text: view.label(one) + ": " + text(row.value, 3) + ", " + text(row.seconds, 3) + " s" };

@@ -1,7 +1,10 @@
 #include "runners/kinds/work-precision/page/work_precision.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+
+#include "runners/kinds/comparison/precision_targets.hpp"
 
 namespace ricochet::report {
 
@@ -9,7 +12,9 @@ WorkPrecision::WorkPrecision(const CaseView& view)
     : rows_(view.results(), "work_precision", {"error"}), errors_(view.results(), "errors", {"error"}) {}
 
 std::vector<std::string> scene_columns(const CaseView& view) {
-  return view.varying_without({"mass", "contact", "time", "elements", "step"});
+  std::vector<std::string> scene;
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(scene), is_scene);
+  return scene;
 }
 
 std::optional<WorkPoint> WorkPrecision::point(const CaseRecord& record, const std::string& error) const {

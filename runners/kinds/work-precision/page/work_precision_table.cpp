@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
 #include "runners/kinds/work-precision/page/work_precision.hpp"
 #include "runners/report/axis_rows.hpp"
@@ -20,8 +24,7 @@ void case_cells(HtmlTable& table, const CaseView& view, const TableReader& targe
     return;
   }
   std::vector<std::string> methods;
-  for (const std::string& axis : view.varying())
-    if (role_of(axis) == "mass" || role_of(axis) == "contact" || role_of(axis) == "time") methods.push_back(axis);
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(methods), is_method);
   std::string how = exact_text(CaseView::number(*record, "step").value_or(0)) + " s";
   if (view.varies("elements")) how += ", " + CaseView::text(*record, "elements") + " elements";
   const auto seconds = [&](const char* name, int digits) {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "runners/kinds/comparison/comparison_keys.hpp"
+#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
@@ -69,6 +70,34 @@ TEST_CASE("an error against a reference of the mesh is said to be that of the sc
     Table answers = answers_head();
     say_precision(results, answers);
     CHECK((sentences(answers).find("the same mesh and mass exact in time") != std::string::npos) == of_the_mesh);
+  }
+}
+
+TEST_CASE("a way of marching is part of the method: both ways of one scene stand against each other") {
+  CHECK(is_method("march"));
+  CHECK(is_method("mass.velocity"));
+  CHECK_FALSE(is_method("structure.damping.stiffness"));
+  CHECK(is_scene("structure.damping.stiffness"));
+  for (const char* column : {"march", "step", "elements", "time.beta"}) CHECK_FALSE(is_scene(column));
+  StudyResults results = two_schemes();
+  results.columns = {"mass", "contact", "time", "march", "step"};
+  const double seconds[] = {3e-3, 2e-4};
+  for (std::size_t k = 0; k < 2; ++k) {
+    CaseRecord& record = results.cases[k];
+    record.axes = {{"mass", "full"},
+                   {"contact", "rigid"},
+                   {"time", "one"},
+                   {"march", k ? "flights" : "every-step"},
+                   {"step", 1e-3}};
+    record.measures = {
+        {"error.tip-linf", 1e-5}, {"size.tip-linf", 1e-2}, {"timed_seconds", seconds[k]}, {"steps_visited", 1}};
+  }
+  const Table targets = precision_targets_table(results);
+  REQUIRE_FALSE(targets.rows.empty());
+  const TableReader rows(targets);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    CHECK(rows.text(row, "case") == "other");
+    CHECK(rows.text(row, "other_case") == "one");
   }
 }
 
