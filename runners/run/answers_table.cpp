@@ -266,7 +266,8 @@ void say_shares(const report::CaseView& view, const std::vector<std::string>& ob
 /// its own.
 std::string why(const Table& reasons, const std::string& status, std::size_t cases) {
   constexpr std::size_t most = 3;
-  constexpr double few = 0.05;
+  constexpr std::size_t one_by_one = 3;  // cases
+  constexpr double few = 0.1;
   std::vector<std::pair<double, std::string>> found;
   const TableReader rows(reasons);
   for (std::size_t row = 0; row < rows.size(); ++row)
@@ -275,7 +276,8 @@ std::string why(const Table& reasons, const std::string& status, std::size_t cas
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::string out;
   std::size_t said = 0;
-  for (; said < std::min(most, found.size()) && found[said].first > few * static_cast<double>(cases); ++said)
+  const double least = cases <= one_by_one ? 1 : std::max(2.0, few * static_cast<double>(cases));
+  for (; said < std::min(most, found.size()) && found[said].first >= least; ++said)
     out += fmt::format("{} {} ({:.0f})", said == 0 ? " Why:" : ";", found[said].second, found[said].first);
   if (said == 0) return "";
   if (said < found.size()) out += "; " + report::count_text(found.size() - said, "other reason", "other reasons");
@@ -341,7 +343,6 @@ Table choices_said(const StudyResults& results) {
                                    .sentence = line}
                              .row());
   }
-  say_ends(view, table);
   return table;
 }
 
@@ -362,7 +363,9 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
 
 Table answers_table(const StudyResults& results) {
   const Kind* kind = find_kind(results.kind);
-  return kind && kind->answers ? kind->answers(results) : choices_said(results);
+  Table table = kind && kind->answers ? kind->answers(results) : choices_said(results);
+  say_ends(report::CaseView(results), table);
+  return table;
 }
 
 }  // namespace ricochet

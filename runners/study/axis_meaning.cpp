@@ -97,6 +97,12 @@ Column parameter_meaning(const std::string& column, const std::string& role, con
 }  // namespace
 
 std::string spoken_choice(const std::string& column) {
+  static const std::string times = " × ";
+  if (const std::size_t at = column.find(times); at != std::string::npos) {
+    const std::string one = column.substr(0, at), other = column.substr(at + times.size());
+    return axis_role(one) == axis_role(other) ? spoken_choice(axis_role(one)) + " with its parameters"
+                                              : spoken_choice(one) + " together with " + spoken_choice(other);
+  }
   if (column == "mass") return "the mass matrix";
   if (column == "contact") return "the contact law";
   if (column == "time") return "the time scheme";
