@@ -41,6 +41,13 @@ class BandLdlt {
   int rows() const { return rows_; }
   int half_width() const { return width_; }
   const double* factor() const { return factor_.data(); }
+  /// Lets a step end with the substitution through this factor; z as in BandStep.
+  void substitute_in(BandStep& step, double* z) const {
+    step.solve_rows = rows_;
+    step.solve_width = width_;
+    step.factor = factor_.data();
+    step.z = z;
+  }
   /// Row of (b; g) for each row of the factor.
   const std::vector<int>& order() const { return order_; }
   /// Whether order() is the identity.

@@ -170,11 +170,8 @@ void HeldBand::multiply(const double* p, double* out) {
     for (int e = start_[j]; p[j] != 0 && e < start_[j + 1]; ++e)
       right[entry_[static_cast<std::size_t>(e)].in_S] += entry_[static_cast<std::size_t>(e)].value * p[j];
   BandStep step;
-  step.solve_rows = ldlt_.rows();
-  step.solve_width = ldlt_.half_width();
-  step.factor = ldlt_.factor();
+  ldlt_.substitute_in(step, solution_.data());
   step.b = right;
-  step.z = solution_.data();
   lane_kernels(1).band_step(step);
   for (std::size_t j = 0; j < multiplier_.size(); ++j) {
     out[j] = 0;

@@ -16,10 +16,7 @@ Eigen::VectorXd InverseForm::in_factor_order(const Eigen::VectorXd& b) const {
 Block InverseForm::substitute(Eigen::VectorXd right) const {
   Block z(ldlt_.rows(), 1, ldlt_.half_width());
   BandStep step;
-  step.solve_rows = ldlt_.rows();
-  step.solve_width = ldlt_.half_width();
-  step.factor = ldlt_.factor();
-  step.z = z.data();
+  ldlt_.substitute_in(step, z.data());
   step.b = right.data();
   lane_kernels(1).band_step(step);
   return z;

@@ -60,7 +60,8 @@ long long Marcher::fly(long long most, StepObserver* observer) {
   if (held_steps_ > 0) return 0;
   if (!contact_set() || most < Flight::least || !status_.front().running) return 0;
   if (observer) most = std::min(most, observer->may_skip(*this));
-  if (most < Flight::least) return 0;
+  Flight& flight = *program_.flight;
+  if (most < Flight::least || !flight.due(program_, held_)) return 0;
   double e[3] = {0, 0, 0};
   if (program_.support) {
     clamp_.set_time(time());
@@ -69,9 +70,8 @@ long long Marcher::fly(long long most, StepObserver* observer) {
   } else {
     e[0] = 1;
   }
-  Flight& flight = *program_.flight;
   gather_columns();
-  const long long k = flight.look(program_, column_slots_, e, held_, most);
+  const long long k = flight.look(column_slots_, e, most);
   if (k == 0) return 0;
   SkippedSteps skipped;
   skipped.steps = k;

@@ -47,6 +47,14 @@ std::shared_ptr<const SemiDiscrete> with_own_load(const std::shared_ptr<const Se
   return own;
 }
 
+double steps_of_period(const LaneCandidate& candidate) {
+  return 2 * std::numbers::pi / (candidate.problem->support.pulsation * candidate.h);
+}
+
+StepWork work_of(const LaneCandidate& candidate) {
+  return {static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()), false};
+}
+
 }  // namespace
 
 struct LaneGroups::Group {
@@ -60,14 +68,6 @@ struct LaneGroups::Group {
 LaneGroups::LaneGroups(MarchWay way) : way_(way) {}
 LaneGroups::~LaneGroups() = default;
 
-namespace {
-
-double steps_of_period(const LaneCandidate& candidate) {
-  return 2 * std::numbers::pi / (candidate.problem->support.pulsation * candidate.h);
-}
-
-}  // namespace
-
 // A program of one lane that leaves out steps, where one is wanted and expected to cost less than a lane among eight.
 bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const {
   CompileOptions options;
@@ -80,10 +80,9 @@ bool LaneGroups::try_flights(const LaneCandidate& candidate, Group& group) const
     if (way_ == MarchWay::flights) throw *refusal;
     return false;
   }
-  const StepWork work{static_cast<int>(candidate.plan.slots.size()), static_cast<int>(candidate.plan.stages.size()),
-                      false};
   if (way_ == MarchWay::automatic) {
     const double steps = steps_of_period(candidate);
+    const StepWork work = work_of(candidate);
     const OperatorKind kind = cheapest_kind(*candidate.problem, work, full_block, long_march);
     const double lane = predict_cost(kind, *candidate.problem, work, full_block).step_seconds / full_block;
     if (2 * predict_visits(*candidate.problem, work, steps) >= steps * lane) return false;
@@ -147,13 +146,9 @@ const std::vector<LeftOut>& LaneGroups::left_out(int group) const {
 
 double LaneGroups::predicted_step_seconds(int group, int lanes) const {
   const Group& one = *groups_[static_cast<std::size_t>(group)];
-  if (const double steps = steps_of_period(one.scene); one.flies && std::isfinite(steps)) {
-    const StepWork work{static_cast<int>(one.scene.plan.slots.size()), static_cast<int>(one.scene.plan.stages.size()),
-                        false};
-    return lanes * predict_visits(*one.scene.problem, work, steps) / steps;
-  }
-  const LaneSpec& lane = groups_[static_cast<std::size_t>(group)]->scene.lane;
-  return program(group, std::vector<LaneSpec>(static_cast<std::size_t>(lanes), lane)).predicted_step_seconds;
+  if (const double steps = steps_of_period(one.scene); one.flies && std::isfinite(steps))
+    return lanes * predict_visits(*one.scene.problem, work_of(one.scene), steps) / steps;
+  return program(group, std::vector<LaneSpec>(static_cast<std::size_t>(lanes), one.scene.lane)).predicted_step_seconds;
 }
 
 Program LaneGroups::program(int group, std::vector<LaneSpec> lanes, int tangents) const {

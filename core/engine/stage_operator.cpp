@@ -2,8 +2,8 @@
 #include <cmath>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/algebra/weighted_system.hpp>
 #include <ricochet/engine/stage_operator.hpp>
-#include <ricochet/engine/stage_system.hpp>
 
 namespace ricochet {
 namespace {
@@ -106,7 +106,8 @@ class BandOperator final : public StageOperator {
 
   void free_step(const FreeStepInput& input) override {
     BandStep step = assembly_.describe(input);
-    use_factor(step, solution_.data());
+    step.from = ldlt_.natural() ? nullptr : from_.data();
+    ldlt_.substitute_in(step, solution_.data());
     kernels_.band_step(step);
     if (ldlt_.natural()) return;
     const auto lanes = static_cast<std::size_t>(lanes_);
@@ -118,7 +119,7 @@ class BandOperator final : public StageOperator {
 
   void solve_column(const double* rhs, double* x) override {
     BandStep step;
-    use_factor(step, column_.data());
+    ldlt_.substitute_in(step, column_.data());
     step.from = column_from_.data();
     // The right-hand side is given: no product, no shape; b is read only.
     step.rows = 0;
@@ -128,14 +129,6 @@ class BandOperator final : public StageOperator {
   }
 
  private:
-  void use_factor(BandStep& step, double* z) const {
-    step.solve_rows = ldlt_.rows();
-    step.solve_width = ldlt_.half_width();
-    step.factor = ldlt_.factor();
-    step.from = ldlt_.natural() ? nullptr : from_.data();
-    step.z = z;
-  }
-
   Assembly assembly_;
   const LaneKernels& kernels_;
   int lanes_, rows_;
@@ -376,7 +369,7 @@ OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, cons
   if (!inertia.assembled() && stage.mass == 0 && stage.uses_mass())
     return Refusal{
         "a stage without inertia multiplies by a mass that is not assembled: use the mass consistent or lumped"};
-  const QuasiDefinite matrix = stage_system(model, stage);
+  const QuasiDefinite matrix = weighted_system(stage.stiffness, model.stiffness(), stage.mass, inertia);
   if (kind == OperatorKind::sparse) return factorised(std::make_unique<SparseOperator>(model, stage, lanes), matrix);
   return factorised(std::make_unique<BandOperator>(model, stage, lanes), matrix);
 }

@@ -1,4 +1,5 @@
 #include <limits>
+#include <ricochet/algebra/weighted_system.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <stdexcept>
@@ -25,17 +26,9 @@ InverseForm shifted_stiffness(const SparseMatrix& stiffness, const Inertia& iner
   for (Eigen::Index i = 0; i < mass.size(); ++i)
     if (mass[i] > 0) fastest = std::max(fastest, stiff[i] / mass[i]);
   const double shift = 1e3 * fastest;
-  QuasiDefinite matrix;
-  matrix.A = stiffness;
-  if (inertia.assembled()) {
-    matrix.A += shift * inertia.mass;
-  } else {
-    const MassFactors factors = mass_factors(inertia);
-    matrix.G = std::sqrt(shift) * factors.coupling;
-    matrix.Cv = factors.velocity_mass;
-    // K alone may let the structure move freely.
-    matrix.border_first = true;
-  }
+  QuasiDefinite matrix = weighted_system(1, stiffness, shift, inertia);
+  // K alone may let the structure move freely.
+  matrix.border_first = true;
   return InverseForm(matrix);
 }
 

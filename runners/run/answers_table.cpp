@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <ricochet/measure/statistics/choices.hpp>
 #include <ricochet/measure/statistics/quantiles.hpp>
@@ -229,18 +228,10 @@ std::string sentence_of(const std::vector<const Said*>& same) {
   return as_sentence(out);
 }
 
-/// How far the finished cases spread in a measure, over what its differences are shares of.
-double spread_of(const StudyResults& results, const std::string& name) {
-  const MeasureScale scale(name);
-  double low = std::numeric_limits<double>::infinity(), high = -low, unit = 0;
-  for (const CaseRecord& record : results.cases) {
-    const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
-    if (!value) continue;
-    low = std::min(low, *value);
-    high = std::max(high, *value);
-    unit = std::max(unit, scale.of(record).value_or(0));
-  }
-  return unit > 0 ? (high - low) / unit : 0;
+/// Whether the finished cases spread in a measure by more than an answer overlooks.
+bool spreads(const StudyResults& results, const std::string& name) {
+  const MeasureSpread spread = spread_of(results, name);
+  return spread.scale > 0 && spread.width / spread.scale > answer_threshold;
 }
 
 /// What each choice explains of the spread of what is observed, where that is one and effects.csv tells most of it.
@@ -256,7 +247,7 @@ void say_shares(const report::CaseView& view, const std::vector<std::string>& ob
   const TableReader rows(shares);
   for (std::size_t row = 0; row < rows.size(); ++row)
     if (const std::string name = rows.text(row, "measure");
-        told[name] >= most && spread_of(view.results(), name) > answer_threshold &&
+        told[name] >= most && spreads(view.results(), name) &&
         std::find(observed.begin(), observed.end(), name) != observed.end())
       table.rows.push_back(
           AnswerRow{.measure = name, .verdict = "shares", .sentence = rows.text(row, "sentence")}.row());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ricochet/measure/statistics/effects.hpp>
 #include <set>
 
@@ -36,16 +35,8 @@ bool absent_by_level(const StudyResults& results, const std::vector<Factor>& fac
 
 /// Whether what the finished cases differ by is more than round-off makes of the measure: 2⁻⁵² × steps of its scale.
 bool beyond_round_off(const StudyResults& results, const std::string& name) {
-  const MeasureScale scale(name);
-  double low = std::numeric_limits<double>::infinity(), high = -low, floor = 0;
-  for (const CaseRecord& record : results.cases) {
-    const auto value = record.status == "done" ? measure(record, name) : std::nullopt;
-    if (!value) continue;
-    low = std::min(low, *value);
-    high = std::max(high, *value);
-    floor = std::max(floor, round_off(record) * scale.of(record).value_or(0));
-  }
-  return high - low > floor;
+  const MeasureSpread spread = spread_of(results, name);
+  return spread.width > spread.floor;
 }
 
 /// Two levels have a difference, and no share that another choice of levels would not change: a factor needs three.

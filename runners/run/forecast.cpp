@@ -22,7 +22,8 @@ constexpr double preparations = 2;  // that measuring a case takes
 constexpr double each_run = 0.1, each_case = 1.5e-3;
 
 std::string group_of(const StudyCase& one) {
-  return content_of(one.contact).dump() + "/" + std::to_string(one.elements) + "/" + one.mass.name + "/" + one.time.name;
+  return content_of(one.contact).dump() + "/" + std::to_string(one.elements) + "/" + one.mass.name + "/" +
+         one.time.name;
 }
 
 /// Seconds of a step by the model, of which the measured ones are a multiple.

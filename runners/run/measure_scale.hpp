@@ -22,6 +22,14 @@ class MeasureScale {
   std::string measure_, scale_;
 };
 
+/// How far the finished cases of a study spread in a measure.
+struct MeasureSpread {
+  double width = 0;  ///< largest less smallest value
+  double scale = 0;  ///< largest of what differences are shares of
+  double floor = 0;  ///< what round-off of the longest runs may make of it
+};
+MeasureSpread spread_of(const StudyResults& results, const std::string& measure);
+
 /// What round-off of a run may make of a value, over its scale: 2⁻⁵² × steps.
 double round_off(const CaseRecord& record);
 

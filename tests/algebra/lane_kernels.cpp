@@ -129,6 +129,57 @@ struct Slots {
   }
 };
 
+/// A step of a band: K and M of one width, S of another, diagonally dominant.
+struct BandCase {
+  static constexpr int n = 23;
+  SparseMatrix K, M, S;
+  int T, width;
+  bool full;  ///< with M and a load that all lanes have
+  BandLdlt ldlt;
+  Block k, m, scale;
+  std::vector<double> shape, load, bands, masses;
+
+  BandCase(int lanes, int half_width, bool everything)
+      : K(random_band(n, half_width, false)),
+        M(random_band(n, half_width, false)),
+        S(random_band(n, half_width, true)),
+        T(lanes),
+        width(half_width),
+        full(everything),
+        k(random_block(n, T, width, 1)),
+        m(random_block(n, T, width, 2)),
+        scale(random_block(1, T, 0, 3)),
+        bands(band_storage(K, width, T == 1)),
+        masses(band_storage(M, width, T == 1)) {
+    QuasiDefinite matrix;
+    matrix.A = S;
+    REQUIRE_FALSE(ldlt.factorise(matrix));
+    for (int i = 0; i < n; ++i) {
+      shape.push_back(std::cos(i));
+      load.push_back(std::sin(2 * i));
+    }
+  }
+  Block outcome(const LaneKernels& kernels) const {
+    Block b(n, T), z(n, T, ldlt.half_width());
+    BandStep step;
+    step.rows = n;
+    step.product_width = width;
+    step.K = bands.data();
+    step.k = k.data();
+    step.shape = shape.data();
+    step.scale = scale.data();
+    if (full) {
+      step.M = masses.data();
+      step.m = m.data();
+      step.load = load.data();
+    }
+    step.b = b.data();
+    ldlt.substitute_in(step, z.data());
+    kernels.band_step(step);
+    return z;
+  }
+};
+
 /// Those that this processor has.
 std::vector<InstructionSet> instruction_sets() {
   std::vector<InstructionSet> sets;
@@ -143,45 +194,18 @@ TEST_CASE("a band step solves S z = K k + M m + shape·scale + load") {
   const int T = GENERATE(1, 2, 4, 8, 16, 32), width = GENERATE(0, 1, 2, 3, 5);
   const InstructionSet set = GENERATE(from_range(instruction_sets()));
   const bool full = GENERATE(false, true);
-  const int n = 23;
-  const SparseMatrix K = random_band(n, width, false), M = random_band(n, width, false);
-  QuasiDefinite S;
-  S.A = random_band(n, width, true);
-  BandLdlt ldlt;
-  REQUIRE_FALSE(ldlt.factorise(S));
-  const Block k = random_block(n, T, width, 1), m = random_block(n, T, width, 2), scale = random_block(1, T, 0, 3);
-  std::vector<double> shape(n), load(n);
-  for (int i = 0; i < n; ++i) {
-    shape[static_cast<std::size_t>(i)] = std::cos(i);
-    load[static_cast<std::size_t>(i)] = std::sin(2 * i);
-  }
-  const auto bands = band_storage(K, width, T == 1), masses = band_storage(M, width, T == 1);
-  Block b(n, T), z(n, T, ldlt.half_width());
-  BandStep step;
-  step.rows = step.solve_rows = n;
-  step.product_width = width;
-  step.solve_width = ldlt.half_width();
-  step.K = bands.data();
-  step.k = k.data();
-  step.shape = shape.data();
-  step.scale = scale.data();
-  if (full) {
-    step.M = masses.data();
-    step.m = m.data();
-    step.load = load.data();
-  }
-  step.factor = ldlt.factor();
-  step.b = b.data();
-  step.z = z.data();
-  lane_kernels(T, set).band_step(step);
-  const Eigen::MatrixXd dense_K = K, dense_M = M, dense_S = S.A;
+  const BandCase band(T, width, full);
+  const Block z = band.outcome(lane_kernels(T, set));
+  const int n = BandCase::n;
+  const Eigen::MatrixXd dense_K = band.K, dense_M = band.M, dense_S = band.S;
   for (int l = 0; l < T; ++l) {
     Eigen::VectorXd a(n), c(n), rhs(n), found(n);
     for (int i = 0; i < n; ++i) {
-      a[i] = k.at(i, l);
-      c[i] = m.at(i, l);
+      const auto row = static_cast<std::size_t>(i);
+      a[i] = band.k.at(i, l);
+      c[i] = band.m.at(i, l);
       found[i] = z.at(i, l);
-      rhs[i] = shape[static_cast<std::size_t>(i)] * scale.at(0, l) + (full ? load[static_cast<std::size_t>(i)] : 0);
+      rhs[i] = band.shape[row] * band.scale.at(0, l) + (full ? band.load[row] : 0);
     }
     rhs += dense_K * a;
     if (full) rhs += dense_M * c;
@@ -258,36 +282,11 @@ TEST_CASE("a lane's bits are those of AVX2 where vectors are twice as long") {
         for (int l = 0; l < T; ++l) REQUIRE(found[k].at(i, l) == expected[k].at(i, l));
   }
   for (const int width : {0, 1, 2, 3, 5, 7})
-    for (const bool own_product : {false, true}) {
-      const int n = 23;
-      QuasiDefinite S;
-      S.A = random_band(n, width, true);
-      BandLdlt ldlt;
-      REQUIRE_FALSE(ldlt.factorise(S));
-      const auto bands = band_storage(random_band(n, width, false), width, T == 1);
-      const Block k = random_block(n, T, width, 1), m = random_block(n, T, width, 2), scale = random_block(1, T, 0, 3);
-      const std::vector<double> shape(n, 0.3);
-      Block z[2] = {{n, T, ldlt.half_width()}, {n, T, ldlt.half_width()}}, b(n, T);
-      for (const bool is_wide : {false, true}) {
-        BandStep step;
-        step.rows = step.solve_rows = n;
-        step.product_width = width;
-        step.solve_width = ldlt.half_width();
-        step.K = bands.data();
-        step.k = k.data();
-        if (own_product) {
-          step.M = bands.data();
-          step.m = m.data();
-        }
-        step.shape = shape.data();
-        step.scale = scale.data();
-        step.factor = ldlt.factor();
-        step.b = b.data();
-        step.z = z[is_wide].data();
-        (is_wide ? wide : narrow).band_step(step);
-      }
-      for (int i = 0; i < n; ++i)
-        for (int l = 0; l < T; ++l) REQUIRE(z[1].at(i, l) == z[0].at(i, l));
+    for (const bool full : {false, true}) {
+      const BandCase band(T, width, full);
+      const Block expected = band.outcome(narrow), found = band.outcome(wide);
+      for (int i = 0; i < BandCase::n; ++i)
+        for (int l = 0; l < T; ++l) REQUIRE(found.at(i, l) == expected.at(i, l));
     }
 }
 
@@ -386,12 +385,9 @@ TEST_CASE("a quasi-definite system equals its Schur complement, and a singular o
   Block z(ldlt.rows(), 1, ldlt.half_width());
   Eigen::VectorXd rhs = b;
   BandStep step;
-  step.solve_rows = ldlt.rows();
-  step.solve_width = ldlt.half_width();
-  step.factor = ldlt.factor();
+  ldlt.substitute_in(step, z.data());
   step.from = from.data();
   step.b = rhs.data();
-  step.z = z.data();
   lane_kernels(1).band_step(step);
   for (int r = 0; r < ldlt.rows(); ++r)
     if (ldlt.order()[static_cast<std::size_t>(r)] < n)

@@ -66,25 +66,28 @@ Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   return one;
 }
 
-long long Flight::look(const Program& program, Columns columns, const double* e, std::span<const HeldPoint> held,
-                       long long most) {
-  Pace* pace = &pace_;
-  FlightSet* set = free_.get();
+bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
+  set_ = free_.get();
+  set_pace_ = &pace_;
   if (!held.empty()) {
-    if (!held_cause_.empty()) return 0;
+    if (!held_cause_.empty()) return false;
     Kept& one = kept(held);
     // Its modes cost about as much as so many steps with all the dofs.
     const long long rows = program.model->rows();
-    if (++one.seen < std::max(8LL, rows * rows / 20)) return 0;
+    if (++one.seen < std::max(8LL, rows * rows / 20)) return false;
     if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_);
-    if (!one.set->cause().empty()) return 0;
-    pace = &one.pace;
-    set = one.set.get();
+    if (!one.set->cause().empty()) return false;
+    set_pace_ = &one.pace;
+    set_ = one.set.get();
   }
-  if (pace->wait > 0) {
-    --pace->wait;
-    return 0;
-  }
+  if (set_pace_->wait == 0) return true;
+  --set_pace_->wait;
+  return false;
+}
+
+long long Flight::look(Columns columns, const double* e, long long most) {
+  FlightSet* const set = set_;
+  Pace* const pace = set_pace_;
   most = std::min(most, set->motion().longest());
   const auto fails = [&] {
     pace->wait = pace->penalty;
@@ -109,7 +112,6 @@ long long Flight::look(const Program& program, Columns columns, const double* e,
   if (k < least) return fails();
   pace->penalty = least;
   pace->next = k;
-  set_ = set;
   return k;
 }
 

@@ -42,10 +42,11 @@ class Flight {
   /// The slots of the lane, and behind them those of its tangent columns, rows each.
   using Columns = std::span<double* const* const>;
 
+  /// Whether a look may find something in a lane with these closed points; to be asked once a step.
+  bool due(const Program& program, std::span<const HeldPoint> held);
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
-  /// march. `columns`, `e`: the lane's state; `held`: its closed points.
-  long long look(const Program& program, Columns columns, const double* e, std::span<const HeldPoint> held,
-                 long long most);
+  /// march. `columns`, `e`: the lane's state. Where a look is due.
+  long long look(Columns columns, const double* e, long long most);
   /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
   FlightSums fly(long long k, Columns columns, bool works);
 
@@ -98,8 +99,9 @@ class Flight {
   Pace pace_;
   std::string held_cause_;
   std::vector<std::unique_ptr<Kept>> sets_;
-  // Of the last flight:
+  // Of the look that is due and the flight after it:
   FlightSet* set_ = nullptr;
+  Pace* set_pace_ = nullptr;
   Leg start_, last_;
   std::vector<Leg> tangents_;  // where they start
   long long flown_ = 0;

@@ -305,6 +305,7 @@ TEST_CASE("store: a case that begins is there before it ends, and gone once its 
     store.save({results.cases.data(), 1}, second);
     CHECK(store.left_under_way() == Ids{second});
   }
+  CHECK(count(folder.path(), "begun") == 1);
   Store store(folder.path(), false);
   CHECK(store.begin(results, kExpected) == std::set<std::string>{first});
   CHECK(store.left_under_way() == Ids{second});
