@@ -24,6 +24,8 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
+    options.isolate = arguments.isolate;
+    options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });
 }
