@@ -1,10 +1,10 @@
 #include "runners/run/run_study.hpp"
 
 #include <mutex>
-#include <thread>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/store/fingerprint.hpp"
@@ -37,8 +37,8 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
     const std::lock_guard guard(asked);
     return fingerprints.of(study_case, runner.libraries(study_case));
   };
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  runner.cases = find_kind(study.kind)->start({study, registry, key, options.jobs > 0 ? options.jobs : processors});
+  const int jobs = options.jobs > 0 ? options.jobs : allowed_processors().count;
+  runner.cases = find_kind(study.kind)->start({study, registry, key, jobs});
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
   return run_study_with(runner, study, options);
