@@ -23,7 +23,7 @@ po::options_description described(const Subcommand& command) {
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
-    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
+    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors that it may use)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
   if (has("cases")) add("cases", "also print a line for every case");

@@ -1,11 +1,11 @@
 #include "runners/run/run_study.hpp"
 
 #include <optional>
-#include <thread>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
@@ -27,9 +27,8 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   StudyRunner runner;
   runner.libraries = [&](const StudyCase& study_case) { return libraries_of(study_case, registry); };
   StudyIdentity identity(study, registry);
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const RunContext context{study, registry, [&](const StudyCase& one) { return identity.of(one); },
-                           options.jobs > 0 ? options.jobs : processors};
+                           options.jobs > 0 ? options.jobs : allowed_processors().count};
   std::optional<IsolatedCases> isolated;
   if (options.isolate) {
     isolated.emplace(context, IsolationOptions{options.plugins});

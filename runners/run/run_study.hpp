@@ -12,7 +12,7 @@ namespace ricochet {
 
 struct RunOptions {
   std::filesystem::path out;                        ///< results folder; empty: results/NAME
-  int jobs = 0;                                     ///< 0: all processors
+  int jobs = 0;                                     ///< 0: all processors that it may use
   bool fresh = false;                               ///< forget what the folder holds
   bool table = false;                               ///< print a line for every case
   bool isolate = false;                             ///< cases run in worker processes
