@@ -7,6 +7,8 @@ namespace {
 
 constexpr long long longest_wait = 64;  // steps between two looks that found nothing
 constexpr int most_powers = 40;
+// Steps after which the tip is read sooner than searched for: at all, and where its ends do not tell.
+constexpr long long at_once = 32, soon_read = 256;
 constexpr long long brief = 8;  // steps in contact that are marched before any is left out
 
 }  // namespace
@@ -184,12 +186,13 @@ long long Flight::find_efforts(long long first) {
 
 void Flight::tip_extremes(double& low, double& high) {
   if (steps_) {
-    each_tip([&](double tip) {
+    for (const double tip : steps_->tips()) {
       low = std::min(low, tip);
       high = std::max(high, tip);
-    });
+    }
     return;
   }
+  if (flown_ <= at_once) return read_all(start_, flown_, low, high);
   // The last first: most of what comes before it is then known to be no extreme.
   legs_[1] = start_;
   advance(flown_ - 1, legs_[1]);
@@ -231,10 +234,21 @@ bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int str
   return true;
 }
 
+// The tip after each of some steps from a leg on.
+void Flight::read_all(const Leg& leg, long long steps, double& low, double& high) {
+  last_ = leg;
+  set_->readings().each(set_->motion(), steps, last_.x.data(), last_.e, [&](double tip) {
+    low = std::min(low, tip);
+    high = std::max(high, tip);
+  });
+}
+
 // Of k readings from a leg on, `stride` steps apart: by halves, as far as they may tell something.
 void Flight::search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high) {
   const Leg& leg = legs_[depth];
   if (told_by_ends(tip, leg, k, stride, low, high)) return;
+  // Halves of few steps cost more than their readings.
+  if ((k - 1) * stride < soon_read) return read_all(leg, (k - 1) * stride + 1, low, high);
   Leg& next = legs_[depth + 1];
   next = leg;
   advance(k / 2 * stride, next);

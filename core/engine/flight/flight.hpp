@@ -113,6 +113,7 @@ class Flight {
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
   long long find_efforts(long long first);
   bool told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high);
+  void read_all(const Leg& leg, long long steps, double& low, double& high);
   void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
 
   double layer_;
