@@ -8,7 +8,7 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/command/subcommand.hpp"
-#include "runners/process/worker_service.hpp"
+#include "runners/run/worker_service.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/store/store_error.hpp"
 

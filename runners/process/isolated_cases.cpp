@@ -13,7 +13,7 @@
 #include "runners/process/key_claims.hpp"
 #include "runners/process/worker_messages.hpp"
 #include "runners/process/worker_process.hpp"
-#include "runners/run/study_identity.hpp"
+#include "runners/march/study_identity.hpp"
 
 namespace ricochet {
 namespace {

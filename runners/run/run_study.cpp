@@ -7,7 +7,7 @@
 #include "runners/report/report.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/run/study_identity.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
 
 namespace ricochet {

@@ -1,4 +1,4 @@
-#include "runners/process/worker_service.hpp"
+#include "runners/run/worker_service.hpp"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -24,7 +24,7 @@
 #include "runners/process/worker_messages.hpp"
 #include "runners/process/worker_process.hpp"
 #include "runners/run/run_study.hpp"
-#include "runners/run/study_identity.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/study/stated_plan.hpp"

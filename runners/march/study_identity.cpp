@@ -1,4 +1,4 @@
-#include "runners/run/study_identity.hpp"
+#include "runners/march/study_identity.hpp"
 
 namespace ricochet {
 
