@@ -3,6 +3,7 @@
 #include <mutex>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
@@ -39,6 +40,7 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   };
   const int jobs = options.jobs > 0 ? options.jobs : allowed_processors().count;
   runner.cases = find_kind(study.kind)->start({study, registry, key, jobs});
+  runner.arithmetic = arithmetic_digest();
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
   return run_study_with(runner, study, options);
