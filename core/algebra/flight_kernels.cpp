@@ -115,6 +115,10 @@ RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
       n, [&](int j) { return load(h + j) * load(x + j); }, [&](int j) { return h[j] * x[j]; });
 }
 
+RICOCHET_BODY void add_body(int n, double a, const double* x, double* __restrict out) {
+  for (int j = 0; j < n; ++j) out[j] += a * x[j];
+}
+
 RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* form, const double* x,
                                     const double* e) {
   double sum = 0;
@@ -153,10 +157,11 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
                             double* p) { cone_body(n, k, v, c, a, b, p); }                                             \
     TARGET static void reach(int n, const double* h, const double* p, double* o) { reach_body(n, h, p, o); }           \
     TARGET static double dot(int n, const double* h, const double* x) { return dot_body(n, h, x); }                    \
+    TARGET static void add(int n, double a, const double* x, double* o) { add_body(n, a, x, o); }                      \
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, quadratic};                           \
+    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, add, quadratic};                      \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

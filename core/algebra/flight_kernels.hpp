@@ -21,6 +21,8 @@ struct FlightKernels {
   void (*reach)(int n, const double* h, const double* places, double* out);
   /// Σ_j h_j x_j.
   double (*dot)(int n, const double* h, const double* x);
+  /// out += a x.
+  void (*add)(int n, double a, const double* x, double* out);
   /// Σ_j x_jᵀ Q_j x_j, Q_j symmetric over (x, e), its upper half by rows: w(w+1)/2 arrays.
   double (*quadratic)(int n, int slots, int drives, const double* form, const double* x, const double* e);
 };

@@ -98,6 +98,10 @@ class ContactLaw {
   /// Of a compliant law whose force is κ times the depth, whatever the depth: κ (N/m), for spectra and references.
   /// None: rigid, or not linear.
   virtual std::optional<double> constant_stiffness(int /*lane*/) const { return std::nullopt; }
+  /// Of a compliant law that is linear as long as a point pushes: its slopes then, the same at every depth δ > 0 beyond
+  /// the stop (and depth before δ⁻ > 0, where that has a slope), with p = stiffness δ + viscosity δ̇ + before δ⁻ and the
+  /// dissipation viscosity δ̇². None: not linear, or not told.
+  virtual std::optional<ContactSlopes> linear_slopes(int /*lane*/) const { return std::nullopt; }
   /// Whether slopes() are known: tangents use them; without, exponents of a compliant law are those of twins.
   virtual bool offers_slopes() const { return false; }
   /// Slopes at the last solve of a point in contact.

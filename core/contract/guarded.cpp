@@ -118,6 +118,7 @@ class GuardedLaw final : public Guard<ContactLaw> {
   void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
   double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }
   std::optional<double> constant_stiffness(int lane) const override { RICOCHET_FORWARD(constant_stiffness, lane); }
+  std::optional<ContactSlopes> linear_slopes(int lane) const override { RICOCHET_FORWARD(linear_slopes, lane); }
   bool offers_slopes() const override { RICOCHET_FORWARD(offers_slopes); }
   ContactSlopes slopes(int point, int lane) const override { RICOCHET_FORWARD(slopes, point, lane); }
   double layer(int lane) const override {

@@ -18,11 +18,35 @@ bool Marcher::contact_set() {
     const double* memory = memory_.data();
     return std::all_of(memory, memory + memory_.size(), [](double kept) { return kept == 0; });
   }
-  if (!program_.flight->held_cause().empty()) return false;
-  const Block& effort = stage_states_.front()->effort[0];
-  for (int i = 0; i < effort.rows(); ++i)
-    if (const double p = effort.at(i, 0); p != 0) held_.push_back({i, p > 0});
+  if (!program_.flight->held_cause().empty() && !program_.flight->steps_cause().empty()) return false;
+  // The same ones in every stage.
+  bool first = true;
+  for (const auto& stage : stage_states_) {
+    if (stage->effort.empty()) continue;
+    const Block& effort = stage->effort[0];
+    std::size_t next = 0;
+    for (int i = 0; i < effort.rows(); ++i) {
+      const double p = effort.at(i, 0);
+      if (p == 0) continue;
+      const HeldPoint point{i, p > 0};
+      if (first)
+        held_.push_back(point);
+      else if (next == held_.size() || !(held_[next++] == point))
+        return false;
+    }
+    if (!first && next != held_.size()) return false;
+    first = false;
+  }
   return true;
+}
+
+// Where the efforts of the stages stand.
+void Marcher::find_past() {
+  if (!past_.empty()) return;
+  for (const auto& stage : stage_states_) {
+    std::vector<double*>& efforts = past_.emplace_back();
+    for (Block& effort : stage->effort) efforts.push_back(effort.data());
+  }
 }
 
 // The state of the lane and of its tangents, column by column.
@@ -71,16 +95,19 @@ long long Marcher::fly(long long most, StepObserver* observer) {
     e[0] = 1;
   }
   gather_columns();
-  const long long k = flight.look(column_slots_, e, most);
+  find_past();
+  const long long k = flight.look(column_slots_, e, past_, most);
   if (k == 0) return 0;
   SkippedSteps skipped;
   skipped.steps = k;
   skipped.from = time();
-  skipped.works = flight.fly(k, column_slots_, observer != nullptr);
+  skipped.works = flight.fly(k, column_slots_, past_, observer != nullptr);
   scatter_columns();
   step_ += k;
   skipped.to = time();
   skipped.held = held_;
+  for (const StageProgram& stage : program_.stages) skipped.instants += stage.closes_instant ? 1 : 0;
+  skipped.penetration = held_.empty() ? 0 : flight.penetration();
   skipped.flight = &flight;
   combined_for_ = nullptr;
   check_lanes();

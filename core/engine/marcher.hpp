@@ -110,6 +110,7 @@ class Marcher {
   void gather_columns();
   void scatter_columns();
   bool contact_set();
+  void find_past();
 
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
   void contact(StageProgram& program, StageState& state, double* z);
@@ -172,8 +173,9 @@ class Marcher {
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
   long long step_ = 0, visited_ = 0;
-  int quiet_ = 0, quiet_after_ = 0;  // steps without contact, and how many until nothing of it acts any more
-  std::vector<HeldPoint> held_;      // closed points, where flights ask for them
+  int quiet_ = 0, quiet_after_ = 0;         // steps without contact, and how many until nothing of it acts any more
+  std::vector<HeldPoint> held_;             // closed points, where flights ask for them
+  std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before
   // Slots by column, where a flight takes tangents along: numbers, and pointers to them for each column.
   std::vector<double> columns_;
   std::vector<double*> column_pointers_;

@@ -14,8 +14,16 @@ using namespace ricochet;
 /// of its speed, and leaves where the force is zero, before the depth is.
 class KelvinVoigt final : public PointwiseContact {
  public:
-  using PointwiseContact::PointwiseContact;
+  explicit KelvinVoigt(const ForceEvaluation& evaluation)
+      : PointwiseContact(evaluation), means_(evaluation.force != StepForce::at_measure) {}
   bool reads_rate() const override { return true; }
+  // Beyond the stop at both ends of the step, all means over it are the mean of the ends.
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
+    const double stiffness = laws_[static_cast<std::size_t>(lane)].stiffness;
+    return ContactSlopes{.stiffness = means_ ? stiffness / 2 : stiffness,
+                         .viscosity = dampers_[static_cast<std::size_t>(lane)],
+                         .before = means_ ? stiffness / 2 : 0.0};
+  }
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override {
@@ -57,6 +65,7 @@ class KelvinVoigt final : public PointwiseContact {
   }
   double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
 
+  bool means_;
   std::vector<PowerLaw> laws_;
   std::vector<double> dampers_;
 };

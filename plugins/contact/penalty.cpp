@@ -28,6 +28,7 @@ class Penalty final : public ContactLaw {
 
   double potential(double depth, int lane) const override { return 0.5 * stiffness(lane) * depth * depth; }
   std::optional<double> constant_stiffness(int lane) const override { return stiffness(lane); }
+  std::optional<ContactSlopes> linear_slopes(int lane) const override { return slopes(0, lane); }
   bool offers_slopes() const override { return true; }
   ContactSlopes slopes(int, int lane) const override { return {.stiffness = stiffness(lane)}; }
   bool closed_form(int points) const override { return points == 1; }
@@ -46,6 +47,9 @@ class MeanPenalty final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
   std::optional<double> constant_stiffness(int lane) const override { return law(lane).stiffness; }
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
+    return ContactSlopes{.stiffness = law(lane).stiffness / 2, .before = law(lane).stiffness / 2};
+  }
 
  private:
   void set_lanes(std::span<const Parameters> lanes) override {

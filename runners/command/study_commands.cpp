@@ -26,6 +26,8 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
+    options.isolate = arguments.isolate;
+    options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });
 }

@@ -30,6 +30,7 @@ struct Arguments {
   bool fresh = false;                            ///< --fresh
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
+  bool isolate = false;                          ///< --isolate
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given

@@ -11,7 +11,6 @@ namespace {
 
 // Without the first ones, which meet cold caches.
 constexpr long long few_steps = 400, first_steps = 16, chunk = 32;
-constexpr double long_enough = 0.01;  // s
 // A step that sees less of the support's motion meets other contacts.
 constexpr double steps_per_period = 200;
 // Contacts of a coarse step take a larger share of the steps: where there is time for so many times as many, they are
@@ -33,10 +32,11 @@ struct Part {
 
 class Pace {
  public:
-  Pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe)
+  Pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe, double seconds)
       : case_(study_case),
         registry_(registry),
         observe_(observe),
+        long_enough_(seconds),
         steps_(std::llround(std::min(study_case.duration / study_case.step, 1e15))) {}
 
   std::optional<double> found() {
@@ -45,8 +45,8 @@ class Pace {
     if (coarse > case_.step && (!part || !part->standing)) part = march(case_.step);
     if (!part) return std::nullopt;
     double growth = most_growth;
-    for (int made = 1; made < most_parts && part->of < steps_ && part->seconds < long_enough; ++made) {
-      const double finer = part->flies ? refinement : long_enough / part->seconds;
+    for (int made = 1; made < most_parts && part->of < steps_ && part->seconds < long_enough_; ++made) {
+      const double finer = part->flies ? refinement : long_enough_ / part->seconds;
       if (finer < worth_refining) break;
       const auto next = march(std::max(case_.step, case_.duration / (finer * static_cast<double>(part->of))));
       if (!next || !next->standing) break;
@@ -87,7 +87,7 @@ class Pace {
     const long long before = marcher.step();
     const double start = thread_seconds();
     double now = start;
-    while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough) {
+    while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough_) {
       marcher.march(std::min(few, prepared.steps - marcher.step()), observer.get());
       now = thread_seconds();
     }
@@ -101,13 +101,15 @@ class Pace {
   const StudyCase& case_;
   const Registry& registry_;
   const MakeObserver& observe_;
+  const double long_enough_;  // s
   const long long steps_;
 };
 
 }  // namespace
 
-std::optional<double> march_pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe) {
-  return Pace(study_case, registry, observe).found();
+std::optional<double> march_pace(const StudyCase& study_case, const Registry& registry, const MakeObserver& observe,
+                                 double seconds) {
+  return Pace(study_case, registry, observe, seconds).found();
 }
 
 }  // namespace ricochet

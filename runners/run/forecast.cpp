@@ -16,7 +16,9 @@ namespace {
 
 constexpr double enough_measuring = 1.5;  // s for all parts together
 constexpr int most_measured = 64;
-constexpr double preparations = 2;  // that measuring a case takes
+// A case is marched for so long at least; a costly one for its share of what all parts together may take.
+constexpr double least_part = 0.01, shared_measuring = 1;  // s
+constexpr double preparations = 2;                         // that measuring a case takes
 // Processor time of a run that is no case's: the program and its plugins opened, the report written; and of each case:
 // its fingerprint, its row in the store, its curve, its share of tables and page.
 constexpr double each_run = 0.1, each_case = 1.5e-3;
@@ -32,12 +34,13 @@ double modelled_step(const CasePlan& plan) {
 }
 
 /// How many times what the model says a case costs, measured; 0 where it cannot be told.
-double measured_ratio(const PlannedCase& one, const Kind& kind, const CasePlanner& planner, const Registry& registry) {
+double measured_ratio(const PlannedCase& one, double seconds, const Kind& kind, const CasePlanner& planner,
+                      const Registry& registry) {
   const StudyCase& study_case = *one.study_case;
   const std::string text = planner.ask(study_case, [&]() -> std::string {
-    return fmt::format("{}", kind.rehearse
-                                 ? kind.rehearse(study_case, registry)
-                                 : march_pace(study_case, registry, kind.watch).value_or(0) / modelled_step(one.plan));
+    return fmt::format("{}", kind.rehearse ? kind.rehearse(study_case, registry)
+                                           : march_pace(study_case, registry, kind.watch, seconds).value_or(0) /
+                                                 modelled_step(one.plan));
   });
   return text.empty() ? 0 : std::strtod(text.c_str(), nullptr);
 }
@@ -100,13 +103,16 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
   Forecast found;
   Ratios ratios;
   if (kind.watch || kind.rehearse) {
+    double modelled = 0;
+    for (const PlannedCase& one : cases) modelled += one.plan.predicted_seconds;
     const double begin = thread_seconds();
     for (const PlannedCase* one : by_group(cases)) {
       const double left = enough_measuring - (thread_seconds() - begin);
       if (found.measured == most_measured || left < 0) break;
       // Setting up again what took that long to plan leaves no time for others: the model is believed.
       if (preparations * one->plan_seconds > left) continue;
-      const double ratio = measured_ratio(*one, kind, planner, registry);
+      const double part = std::max(least_part, shared_measuring * one->plan.predicted_seconds / modelled);
+      const double ratio = measured_ratio(*one, part, kind, planner, registry);
       if (ratio <= 0) continue;
       ++found.measured;
       ratios.add(*one, ratio);

@@ -30,6 +30,7 @@ struct Scene {
   std::string mass = "singular", velocity = "P1";
   double h = 1e-5, duration = 0.5;
   double beta = 0.5;
+  double stiffness = 0;    // of springs behind the stops, N/m; 0: rigid
   bool every_step = true;  // whether the march of every step can be waited for
 };
 
@@ -60,16 +61,19 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
   const auto strategy = mass->make(defaults(mass->manual, words));
   auto made = discretise(scene.scene, scene.elements, *strategy);
   const auto problem = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(made)));
-  const auto* law = registry.contact("signorini");
+  const auto* law = registry.contact(scene.stiffness > 0 ? "penalty" : "signorini");
+  std::map<std::string, ParameterValue> springs;
+  if (scene.stiffness > 0) springs["stiffness"] = scene.stiffness;
+  const Parameters parameters = defaults(law->manual, springs);
   const auto* time = registry.time("newmark-dumont-paoli");
-  auto contact = law->make(defaults(law->manual));
+  auto contact = law->make(parameters);
   const auto scheme = time->make(defaults(time->manual, {{"beta", scene.beta}, {"start", std::string("first-order")}}));
   auto plan = scheme->plan(scene.h, problem_facts(*problem, *contact));
   CompileOptions options;
   options.march = way;
   options.expected_steps = std::llround(scene.duration / scene.h);
   auto program = compile(problem, std::get<StepPlan>(plan), scene.h, std::move(contact),
-                         {scene_lane(*problem, defaults(law->manual))}, options);
+                         {scene_lane(*problem, parameters)}, options);
   if (const auto* refusal = std::get_if<Refusal>(&program)) {
     out.refusal = refusal->sentence;
     return out;
@@ -116,6 +120,22 @@ std::vector<Scene> scenes() {
     forced.h = 2 * M_PI / 10 / steps;
     forced.duration = 6 * 2 * M_PI / 10;
     list.push_back(forced);
+  }
+  for (const double h : {1e-5, 1e-6, 1e-7}) {
+    Scene springs{fmt::format("penalty consistent {:g}", h), free_swing(0)};
+    springs.mass = "consistent";
+    springs.h = h;
+    springs.stiffness = 1e5;
+    list.push_back(springs);
+    springs.name = fmt::format("penalty tip consistent {:g}", h);
+    springs.scene.stops.place = StopsSpec::Place::tip;
+    list.push_back(springs);
+    // Pressed onto a spring at its tip, where it comes to rest.
+    springs.name = fmt::format("pressed consistent {:g}", h);
+    springs.scene = free_swing(1e-4);
+    springs.scene.stops.place = StopsSpec::Place::tip;
+    springs.scene.load = Formula("20*x", "/scene/load");
+    list.push_back(springs);
   }
   return list;
 }

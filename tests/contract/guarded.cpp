@@ -42,6 +42,9 @@ struct Law : ContactLaw {
   void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
   double potential(double depth, int lane) const override { return (act(), depth + lane); }
   std::optional<double> constant_stiffness(int lane) const override { return (act(), lane); }
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
+    return (act(), ContactSlopes{.viscosity = static_cast<double>(lane)});
+  }
 };
 
 PluginManual manual() {
@@ -124,7 +127,8 @@ TEST_CASE("every function of a law is guarded and forwarded") {
       {"prepare", [&] { return (law->prepare(1, {}), true); }},
       {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
       {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
-      {"constant_stiffness", [&] { return law->constant_stiffness(3) == 3; }}};
+      {"constant_stiffness", [&] { return law->constant_stiffness(3) == 3; }},
+      {"linear_slopes", [&] { return law->linear_slopes(3)->viscosity == 3; }}};
   for (const auto& [function, call] : calls) {
     INFO(function);
     act = [&, name = function] {

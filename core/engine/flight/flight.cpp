@@ -7,6 +7,9 @@ namespace {
 
 constexpr long long longest_wait = 64;  // steps between two looks that found nothing
 constexpr int most_powers = 40;
+// Steps after which the tip is read sooner than searched for: at all, and where its ends do not tell.
+constexpr long long at_once = 32, soon_read = 256;
+constexpr long long brief = 8;  // steps in contact that are marched before any is left out
 
 }  // namespace
 
@@ -19,6 +22,7 @@ Flight::Flight(const Program& program, double layer, long long steps)
   free_ = std::make_unique<FlightSet>(program, layer, std::vector<HeldPoint>{}, powers_);
   set_ = free_.get();
   held_cause_ = why_not_held(program);
+  steps_cause_ = HeldSteps::why_not(program);
   legs_.resize(static_cast<std::size_t>(powers_) + 2);
 }
 
@@ -68,13 +72,22 @@ Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
 
 bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
   set_ = free_.get();
+  steps_ = nullptr;
   set_pace_ = &pace_;
-  if (!held.empty()) {
-    if (!held_cause_.empty()) return false;
+  if (!held.empty() && !held_cause_.empty()) {
+    if (!steps_cause_.empty()) return false;
+    Kept& one = kept(held);
+    // Their numbers cost about as much as so many steps.
+    const long long points = static_cast<long long>(held.size());
+    if (++one.seen < std::max(brief, program.model->rows() * points / 2)) return false;
+    if (!one.steps) one.steps = std::make_unique<HeldSteps>(program, *free_, one.held);
+    steps_ = one.steps.get();
+    set_pace_ = &one.pace;
+  } else if (!held.empty()) {
     Kept& one = kept(held);
     // Its modes cost about as much as so many steps with all the dofs.
     const long long rows = program.model->rows();
-    if (++one.seen < std::max(8LL, rows * rows / 20)) return false;
+    if (++one.seen < std::max(brief, rows * rows / 20)) return false;
     if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_);
     if (!one.set->cause().empty()) return false;
     set_pace_ = &one.pace;
@@ -85,7 +98,22 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
   return false;
 }
 
-long long Flight::look(Columns columns, const double* e, long long most) {
+// A run of steps ends where contact changes, or where another point might close.
+long long Flight::step_held(Columns columns, const double* e, HeldSteps::Past past, long long most) {
+  const long long asked = std::min(most, set_pace_->next), k = steps_->march(columns[0], e, past, asked);
+  if (k < least) {
+    set_pace_->wait = set_pace_->penalty;
+    set_pace_->penalty = std::min(2 * set_pace_->penalty, longest_wait);
+    set_pace_->next = 2 * least;
+    return 0;
+  }
+  set_pace_->penalty = least;
+  set_pace_->next = std::min(2 * k, HeldSteps::longest);
+  return k;
+}
+
+long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, long long most) {
+  if (steps_) return step_held(columns, e, past, most);
   FlightSet* const set = set_;
   Pace* const pace = set_pace_;
   most = std::min(most, set->motion().longest());
@@ -115,8 +143,12 @@ long long Flight::look(Columns columns, const double* e, long long most) {
   return k;
 }
 
-FlightSums Flight::fly(long long k, Columns columns, bool works) {
+FlightSums Flight::fly(long long k, Columns columns, HeldSteps::Past past, bool works) {
   FlightSums sums;
+  if (steps_) {
+    steps_->leave(columns[0], past);
+    return steps_->sums();
+  }
   last_ = start_;
   for (int power = 0; k >> power != 0; ++power) {
     if (((k >> power) & 1) == 0) continue;
@@ -153,6 +185,14 @@ long long Flight::find_efforts(long long first) {
 }
 
 void Flight::tip_extremes(double& low, double& high) {
+  if (steps_) {
+    for (const double tip : steps_->tips()) {
+      low = std::min(low, tip);
+      high = std::max(high, tip);
+    }
+    return;
+  }
+  if (flown_ <= at_once) return read_all(start_, flown_, low, high);
   // The last first: most of what comes before it is then known to be no extreme.
   legs_[1] = start_;
   advance(flown_ - 1, legs_[1]);
@@ -194,10 +234,21 @@ bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int str
   return true;
 }
 
+// The tip after each of some steps from a leg on.
+void Flight::read_all(const Leg& leg, long long steps, double& low, double& high) {
+  last_ = leg;
+  set_->readings().each(set_->motion(), steps, last_.x.data(), last_.e, [&](double tip) {
+    low = std::min(low, tip);
+    high = std::max(high, tip);
+  });
+}
+
 // Of k readings from a leg on, `stride` steps apart: by halves, as far as they may tell something.
 void Flight::search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high) {
   const Leg& leg = legs_[depth];
   if (told_by_ends(tip, leg, k, stride, low, high)) return;
+  // Halves of few steps cost more than their readings.
+  if ((k - 1) * stride < soon_read) return read_all(leg, (k - 1) * stride + 1, low, high);
   Leg& next = legs_[depth + 1];
   next = leg;
   advance(k / 2 * stride, next);

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/held_steps.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ struct SkippedSteps {
   double from = 0, to = 0;          ///< s
   FlightSums works;                 ///< over these steps, where the plan has work forms
   std::span<const HeldPoint> held;  ///< points that stayed closed; none: nothing was touched
+  int instants = 0;                 ///< looks at contact in a step where they did
+  double penetration = 0;           ///< largest after any of these steps, m
   Flight* flight = nullptr;         ///< what else may be asked of them
 };
 
@@ -30,8 +33,10 @@ class Flight {
 
   /// Why it cannot fly at all; empty where it can.
   const std::string& cause() const { return free_->cause(); }
-  /// Whether closed contact flies too, and if not, why.
+  /// Whether closed contact is composed too, and if not, why.
   const std::string& held_cause() const { return held_cause_; }
+  /// Whether steps of closed contact are left to HeldSteps where they are not composed, and if not, why.
+  const std::string& steps_cause() const { return steps_cause_; }
 
   /// Another lane: its stops, and the layer from which the law acts.
   void place(const LaneSpec& lane, double layer);
@@ -45,21 +50,37 @@ class Flight {
   /// Whether a look may find something in a lane with these closed points; to be asked once a step.
   bool due(const Program& program, std::span<const HeldPoint> held);
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
-  /// march. `columns`, `e`: the lane's state. Where a look is due.
-  long long look(Columns columns, const double* e, long long most);
+  /// march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
+  long long look(Columns columns, const double* e, HeldSteps::Past past, long long most);
   /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
-  FlightSums fly(long long k, Columns columns, bool works);
+  FlightSums fly(long long k, Columns columns, HeldSteps::Past past, bool works);
+  /// Largest penetration after any of them, m.
+  double penetration() const { return steps_ ? steps_->penetration() : 0.0; }
 
   /// Widens [low, high] by the tip's displacement, absolute, after each of the steps last left out.
   void tip_extremes(double& low, double& high);
-  /// The efforts of the held points in each of them, in their order: `see`(efforts), N. Found once for all who ask.
+  /// The same after each of them, in turn: `see`(displacement, m).
   template <class See>
-  void each_effort(See&& see) {
+  void each_tip(See&& see) {
+    if (steps_) {
+      for (const double tip : steps_->tips()) see(tip);
+      return;
+    }
+    last_ = start_;
+    set_->readings().each(set_->motion(), flown_, last_.x.data(), last_.e, see);
+  }
+  /// Each stage of each of them: `see`(stage, efforts of the held points in their order, N, and their absolute places
+  /// before the stage, m; none where they rest). A stage that reads no contact has no efforts. Found once for all who
+  /// ask.
+  template <class See>
+  void each_stage(See&& see) {
+    if (steps_) return steps_->each_stage(see);
     const std::size_t points = set_->held().size();
     for (long long first = 0; first < flown_; first += effort_block) {
       const long long count = find_efforts(first);
       for (long long k = 0; k < count; ++k)
-        see(std::span<const double>(efforts_.data() + static_cast<std::size_t>(k) * points, points));
+        see(0, std::span<const double>(efforts_.data() + static_cast<std::size_t>(k) * points, points),
+            std::span<const double>{});
     }
   }
   /// Whether no step without contact can gain energy beyond what loads bring, whatever the state.
@@ -76,6 +97,7 @@ class Flight {
     std::vector<HeldPoint> held;
     long long seen = 0;  // steps that began with these points closed
     std::unique_ptr<FlightSet> set;
+    std::unique_ptr<HeldSteps> steps;
     Pace pace;
   };
   /// A state in the modes of set_.
@@ -84,12 +106,14 @@ class Flight {
     double e[3] = {};
   };
   static std::string why_not_held(const Program& program);
+  long long step_held(Columns columns, const double* e, HeldSteps::Past past, long long most);
   Kept& kept(std::span<const HeldPoint> held);
   /// `leg` moved on by k steps.
   void advance(long long k, Leg& leg) const { set_->motion().advance(k, leg.x.data(), leg.e); }
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
   long long find_efforts(long long first);
   bool told_by_ends(FlightBound& tip, const Leg& leg, long long k, int stride, double& low, double& high);
+  void read_all(const Leg& leg, long long steps, double& low, double& high);
   void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
 
   double layer_;
@@ -97,10 +121,11 @@ class Flight {
   std::size_t most_sets_;  // of held points that are remembered: as many as a quarter of a gigabyte holds, 64 at most
   std::unique_ptr<FlightSet> free_;
   Pace pace_;
-  std::string held_cause_;
+  std::string held_cause_, steps_cause_;
   std::vector<std::unique_ptr<Kept>> sets_;
   // Of the look that is due and the flight after it:
   FlightSet* set_ = nullptr;
+  HeldSteps* steps_ = nullptr;  // null: composed
   Pace* set_pace_ = nullptr;
   Leg start_, last_;
   std::vector<Leg> tangents_;  // where they start

@@ -45,6 +45,8 @@ class FlightBound {
 
   /// Looks at a state; `x`: slots × modes, `e`: drives.
   void look(const double* x, const double* e);
+  /// Steps over which (3) and (4) are known to hold.
+  long long longest() const { return longest_; }
   /// Whether every measure stays strictly between its bounds at this step and the k that follow it.
   bool holds(long long k);
 

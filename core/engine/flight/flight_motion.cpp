@@ -37,9 +37,13 @@ FlightMotion::FlightMotion(const StepRows& rows, int powers)
 }
 
 void FlightMotion::leap(int power, double* x, double* e) const {
-  const auto at = static_cast<std::size_t>(power);
-  flight_kernels().leap(modes_, slots_, drive_.count(), tables_[at].data(), x, e, next_.data());
+  leap_to(power, x, e, next_.data());
   std::copy(next_.begin(), next_.end(), x);
+}
+
+void FlightMotion::leap_to(int power, const double* x, double* e, double* next) const {
+  const auto at = static_cast<std::size_t>(power);
+  flight_kernels().leap(modes_, slots_, drive_.count(), tables_[at].data(), x, e, next);
   double turned[3] = {};
   const int drives = drive_.count();
   for (int i = 0; i < drives; ++i) {

@@ -20,12 +20,16 @@ class FlightMotion {
   int slots() const { return slots_; }
   const FlightDrive& drive() const { return drive_; }
   long long longest() const { return (1LL << tables_.size()) - 1; }
+  /// One step from x to `next`, which is another place; e with it.
+  void step(const double* x, double* e, double* next) const { leap_to(0, x, e, next); }
   /// x of all modes and e, 2^power steps later. `x`: slots × r numbers, slot by slot.
   void leap(int power, double* x, double* e) const;
   /// The same for k steps, k ≤ longest().
   void advance(long long k, double* x, double* e) const;
 
  private:
+  void leap_to(int power, const double* x, double* e, double* next) const;
+
   int modes_, slots_, width_;
   FlightDrive drive_;
   std::vector<std::vector<double>> tables_;     // of a power: slots × width × modes

@@ -173,7 +173,8 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     inertia = own_mass_.asDiagonal() * weighed;
     stage.force = project(stage.force - inertia);
   }
-  const StepRows rows(stages, slots_, mass, drive_);
+  step_rows_ = std::make_unique<const StepRows>(stages, slots_, mass, drive_);
+  const StepRows& rows = *step_rows_;
 
   const LaneSpec& lane = program.lanes.front();
   const MatrixXd measured = dense(program.model->measured(), rows_), contact = dense(program.model->contact(), rows_);
@@ -329,6 +330,14 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
     slot.noalias() = basis_ * Eigen::Map<const VectorXd>(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
     slot.noalias() += lift_[static_cast<std::size_t>(j)] * drive;
   }
+}
+
+const TipReadings& FlightSet::readings() {
+  if (!readings_) {
+    const FlightWatch& tip = tip_->watch(0);
+    readings_ = std::make_unique<TipReadings>(*step_rows_, tip.rows.row(0), tip.drive.row(0));
+  }
+  return *readings_;
 }
 
 void FlightSet::efforts(const double* x, const double* e, double* out) {

@@ -4,6 +4,7 @@
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_works.hpp>
+#include <ricochet/engine/flight/tip_readings.hpp>
 #include <ricochet/engine/held_point.hpp>
 
 /// \file
@@ -41,9 +42,13 @@ class FlightSet {
   FlightBound& tip() { return *tip_; }
   /// The same of every fourth step; null where no mode alternates.
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
+  /// The tip after each step; made when first asked for.
+  const TipReadings& readings();
   /// Efforts of the held points in the step that begins at (x, e), N.
   void efforts(const double* x, const double* e, double* out);
   int modes() const { return modes_; }
+  /// Of one step.
+  const StepRows& step_rows() const { return *step_rows_; }
 
  private:
   /// Loads and the like in these modes, and rows of points.
@@ -71,9 +76,11 @@ class FlightSet {
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
   Eigen::MatrixXd held_rows_;                     // H_I
+  std::unique_ptr<const StepRows> step_rows_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
   std::unique_ptr<FlightMotion> motion_;
   std::unique_ptr<FlightWorks> works_;
+  std::unique_ptr<TipReadings> readings_;
   int effort_watch_ = -1;
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
@@ -7,6 +8,16 @@ namespace ricochet {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+FlightSums& FlightSums::operator+=(const FlightSums& other) {
+  damping += other.damping;
+  loads += other.loads;
+  scheme += other.scheme;
+  contact += other.contact;
+  law += other.law;
+  gain = std::max(gain, other.gain);
+  return *this;
+}
 
 FlightWorks::FlightWorks(const StepRows& rows, const Forms& forms, int powers)
     : modes_(rows.modes()),

@@ -3,11 +3,16 @@
 
 namespace ricochet {
 
-/// Works over many steps, J. Points that rest on their stops do none there.
+/// Works over many steps, J.
 struct FlightSums {
   double damping = 0;  ///< Σ sᵀC r
   double loads = 0;    ///< Σ sᵀF̄, and the support's work through the stops
   double scheme = 0;   ///< Σ of the plan's loss terms
+  double contact = 0;  ///< Σ p̄ᵀ(H s + Δφ); points that rest on rigid stops do none
+  double law = 0;      ///< what the law dissipates of it
+  double gain = 0;     ///< contact − damping − scheme of the step where that is largest, not below 0
+
+  FlightSums& operator+=(const FlightSums& other);
 };
 
 /// Σ over k steps of quantities that are quadratic in the state of each mode, y = (x, e):

@@ -40,6 +40,7 @@ class StepRows {
 
   int modes() const { return static_cast<int>(maps_.size()); }
   int slots() const { return slots_; }
+  int stages() const { return static_cast<int>(maps_.front().size()) - 1; }
   int width() const { return slots_ + drive_.count(); }
   const FlightDrive& drive() const { return drive_; }
 

@@ -70,15 +70,45 @@ void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
   if (behind_) behind_->skipped(marcher, steps);
   if (steps.held.empty()) return;
   Lane& lane = lanes_.front();
-  const double lasts = marcher.program().stages.front().momentum;
-  steps.flight->each_effort([&](std::span<const double> efforts) {
-    lane.force = 0;
-    for (std::size_t i = 0; i < efforts.size(); ++i) {
-      Point& one = lane.points[static_cast<std::size_t>(steps.held[i].point)];
-      one.given = lasts * std::abs(efforts[i]);
-      press(lane, steps.held[i].point, lasts);
+  const std::vector<StageProgram>& stages = marcher.program().stages;
+  double begins = steps.from, lasts = 0;
+  const double lifted = marcher.support(0, latest_time_);
+  for (const HeldPoint& held : steps.held)
+    lane.points[static_cast<std::size_t>(held.point)].place =
+        model_.contact().times(held.point, latest_.data()) + lifted;
+  left_at_ = latest_time_;
+  steps.flight->each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
+    const StageProgram& stage = stages[static_cast<std::size_t>(at)];
+    if (!efforts.empty() && stage.opens_instant) {
+      const double time = begins + stage.facts.from * h_;
+      lasts = 0;
+      // Without places they rest.
+      for (std::size_t i = 0; i < steps.held.size(); ++i) {
+        const int point = steps.held[i].point;
+        move(lane, point, places.empty() ? lane.points[static_cast<std::size_t>(point)].place : places[i],
+             time - left_at_);
+      }
+      left_at_ = time;
     }
+    if (!efforts.empty()) lasts = std::max(lasts, stage.momentum);
+    for (std::size_t i = 0; i < efforts.size(); ++i)
+      lane.points[static_cast<std::size_t>(steps.held[i].point)].given += stage.momentum * std::abs(efforts[i]);
+    if (stage.closes_instant) {
+      lane.force = 0;
+      for (const HeldPoint& held : steps.held) press(lane, held.point, lasts);
+    }
+    if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
+  left_ = true;
+}
+
+// A closed point over a sub-step at whose end it stands at `place`.
+void ImpactRecorder::move(Lane& lane, int point, double place, double lasts) {
+  Point& one = lane.points[static_cast<std::size_t>(point)];
+  const double now = (place - one.place) / lasts;
+  stop(lane, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
+  one.velocity = now;
+  one.place = place;
 }
 
 // One more instant of a closed point.
@@ -122,6 +152,7 @@ void ImpactRecorder::move_to(const Marcher& marcher, const double* positions, do
   if (!moves) return;
   for (std::uint32_t mask = busy_; mask != 0; mask &= mask - 1)
     if (const int lane = std::countr_zero(mask); marcher.status(lane).running) moved(marcher, lane);
+  left_ = false;
 }
 
 // Absolute velocity of a point over the last sub-step; of the initial state where there was none.
@@ -154,6 +185,10 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
   const double lifted = lift(marcher, lane);
   state.closed.each([&](int point) {
     Point& one = state.points[static_cast<std::size_t>(point)];
+    if (left_) {
+      const double place = model_.contact().times(point, latest_.data()) + marcher.support(lane, latest_time_);
+      return move(state, point, place, latest_time_ - left_at_);
+    }
     const double now = velocity(marcher, lane, point, lifted);
     stop(state, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
     one.velocity = now;

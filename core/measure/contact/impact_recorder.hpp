@@ -92,6 +92,7 @@ class ImpactRecorder final : public StepObserver {
   struct Point {
     double given = 0;     // I of the instant under way
     double velocity = 0;  // over the sub-step before the last instant; of closed points
+    double place = 0;     // absolute, before the last instant of steps that were left out
     double pushed = 0;    // I of the last instant
     int side = 0;         // at the last instant: −1 upper, 0 open, 1 lower
     int free = 0;         // sub-steps without an effort since it opened, while its speed out is open
@@ -118,6 +119,7 @@ class ImpactRecorder final : public StepObserver {
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
+  static void move(Lane& lane, int point, double place, double lasts);
   static void press(Lane& lane, int point, double lasts);
 
   const MarchModel& model_;
@@ -130,6 +132,8 @@ class ImpactRecorder final : public StepObserver {
   double earlier_time_ = 0, latest_time_ = 0;
   int known_ = 0;           // how many of these there are
   std::uint32_t busy_ = 0;  // lanes with a point that is closed or whose speed out is open
+  bool left_ = false;       // whether steps in which closed points moved were left out since
+  double left_at_ = 0;      // the time before the last instant of them
   double lasts_ = 0;        // Ω of the instant under way
 };
 

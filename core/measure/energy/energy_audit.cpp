@@ -307,7 +307,10 @@ void EnergyAudit::confirm(Lane& state, double scheme, bool flown) {
 
 long long EnergyAudit::may_skip(const Marcher& marcher) {
   const Lane& state = lanes_.front();
-  const bool told = state.energy.own_energy && state.has_scheme && marcher.program().flight->free_never_gains();
+  const Flight& flight = *marcher.program().flight;
+  bool told = state.energy.own_energy && state.has_scheme && flight.free_never_gains();
+  // What springs give in a step only its works tell.
+  if (state.contact.active > 0 && !flight.held_cause().empty()) told = told && state.balanced;
   return told ? std::numeric_limits<long long>::max() : 0;
 }
 
@@ -318,15 +321,21 @@ void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
   flown.loads = steps.works.loads;
   flown.damping = steps.works.damping;
   flown.scheme = steps.works.scheme;
-  // The step after them is looked at. None of them gains, so that what round-off makes of many is no step's gain.
+  flown.contact = steps.works.contact;
+  flown.law = steps.works.law;
+  // The step after them is looked at. None without contact gains, so that what round-off makes of many is no step's
+  // gain.
   state.look_next = true;
+  state.gain = std::max(state.gain, steps.works.gain);
   state.since += flown;
   confirm(state, scheme_energy(marcher, 0), true);
   if (steps.held.empty()) return;
   ContactTotals& contact = state.contact;
-  contact.contact_steps += steps.steps;
-  const double momentum = marcher.program().stages.front().momentum;
-  steps.flight->each_effort([&](std::span<const double> efforts) {
+  contact.contact_steps += steps.instants * steps.steps;
+  contact.deepest_penetration = std::max(contact.deepest_penetration, steps.penetration);
+  const std::vector<StageProgram>& stages = marcher.program().stages;
+  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+    const double momentum = stages[static_cast<std::size_t>(stage)].momentum;
     for (const double p : efforts) contact.impulse += momentum * std::abs(p);
   });
 }

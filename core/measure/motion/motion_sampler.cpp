@@ -147,13 +147,15 @@ long long ContactLog::may_skip(const Marcher& marcher) {
 void ContactLog::skipped(Marcher& marcher, const SkippedSteps& steps) {
   if (behind_) behind_->skipped(marcher, steps);
   if (steps.held.empty()) return;
-  const bool pushes = marcher.program().stages.front().momentum != 0;
-  steps.flight->each_effort([&](std::span<const double> efforts) {
+  const std::vector<StageProgram>& stages = marcher.program().stages;
+  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+    const auto at = static_cast<std::size_t>(stage);
     double force = 0;
     for (const double p : efforts) force += p;
-    momentum_.stage(false, 0, force);
-    momentum_.step_done();
-    if (pushes) force_ = force;
+    momentum_.stage(false, at, force);
+    if (at + 1 == stages.size()) momentum_.step_done();
+    if (stages[at].opens_instant) force_ = 0;
+    if (stages[at].momentum != 0) force_ += force;
   });
 }
 

@@ -52,31 +52,23 @@ class SectionMarch::Watch final : public StepObserver {
       look(marcher, view, std::countr_zero(mask));
   }
 
-  // Contact alone is read of most steps, and flights keep it.
-  long long may_skip(const Marcher&) override {
-    return plan_.section == SectionKind::extremum ? 0 : std::numeric_limits<long long>::max();
-  }
+  // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
+  long long may_skip(const Marcher&) override { return std::numeric_limits<long long>::max(); }
   void skipped(Marcher&, const SkippedSteps& steps) override {
-    if ((keeping_ & 1U) == 0 || steps.held.empty()) return;
+    if ((keeping_ & 1U) == 0) return;
+    if (plan_.section == SectionKind::extremum) steps.flight->each_tip([&](double tip) { see_tip(0, tip); });
+    if (steps.held.empty()) return;
     Orbit& orbit = *orbits_.front();
-    orbit.contact_steps += steps.steps;
+    orbit.contact_steps += steps.instants * steps.steps;
     for (BriefContact& contact : orbit.brief)
-      if (contact.point >= 0) contact.steps += steps.steps;
+      if (contact.point >= 0) contact.steps += steps.instants * steps.steps;
   }
 
   void step_done(Marcher& marcher) override {
     if (plan_.section != SectionKind::extremum) return;
     for (std::uint32_t mask = keeping_; mask != 0; mask &= mask - 1) {
       const int lane = std::countr_zero(mask);
-      auto& [before, at, known] = tips_[static_cast<std::size_t>(lane)];
-      const double after = marcher.tip(lane);
-      if (known >= 2 && (at - before) * (after - at) <= 0 && at != before)
-        orbits_[static_cast<std::size_t>(lane)]->points.push_back({at, (after - before) / (2 * h_),
-                                                                   std::numeric_limits<double>::quiet_NaN(),
-                                                                   std::numeric_limits<double>::quiet_NaN()});
-      before = at;
-      at = after;
-      ++known;
+      see_tip(static_cast<std::size_t>(lane), marcher.tip(lane));
     }
   }
 
@@ -85,6 +77,17 @@ class SectionMarch::Watch final : public StepObserver {
     double before = 0, at = 0;
     int known = 0;
   };
+
+  // Where it stands after one more step.
+  void see_tip(std::size_t lane, double after) {
+    auto& [before, at, known] = tips_[lane];
+    if (known >= 2 && (at - before) * (after - at) <= 0 && at != before)
+      orbits_[lane]->points.push_back({at, (after - before) / (2 * h_), std::numeric_limits<double>::quiet_NaN(),
+                                       std::numeric_limits<double>::quiet_NaN()});
+    before = at;
+    at = after;
+    ++known;
+  }
 
   void look(const Marcher& marcher, const StageView& view, int lane) {
     Orbit& orbit = *orbits_[static_cast<std::size_t>(lane)];

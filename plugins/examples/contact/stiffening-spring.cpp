@@ -59,8 +59,8 @@ class Law final : public ContactLaw {
     return {.stiffness = slopes_[static_cast<std::size_t>(point) * springs_.size() + static_cast<std::size_t>(lane)]};
   }
   std::string how_solved() const override { return "Newton's method point by point, Gauss–Seidel over the points"; }
-  // Not overridden here: constant_stiffness(), κ of a law that is linear; reads_rate(), for a law that damps;
-  // layer(), for one that acts before the stop; memory_per_point(), for one that remembers; closed_form().
+  // Not overridden here: constant_stiffness() and linear_slopes(), of a law that is linear; reads_rate(), for a law
+  // that damps; layer(), for one that acts before the stop; memory_per_point(), for one that remembers; closed_form().
 
  private:
   const Spring& spring(int lane) const { return springs_[static_cast<std::size_t>(lane)]; }

@@ -47,7 +47,7 @@ void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
   if (to_ < from_ || !(lasts > 0) || !program.reads_contact) return;
   if (!steps.held.empty()) {
     long long step = 0;
-    steps.flight->each_effort([&](std::span<const double> efforts) {
+    steps.flight->each_stage([&](int, std::span<const double> efforts, std::span<const double>) {
       const double t = first + static_cast<double>(step++) * h;
       double force = 0;
       for (const double p : efforts) force += p;

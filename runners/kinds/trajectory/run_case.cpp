@@ -44,10 +44,11 @@ class Sampler final : public StepObserver {
     deepest_ = std::max(deepest_, audit_.penetration(0));
   }
   long long may_skip(const Marcher& marcher) override { return behind_.may_skip(marcher); }
-  // Nothing passes a stop in steps that are left out; where the tip went is searched for.
+  // Where the tip went is searched for.
   void skipped(Marcher& marcher, const SkippedSteps& steps) override {
     behind_.skipped(marcher, steps);
     if (!marcher.status(0).running) return;
+    deepest_ = std::max(deepest_, steps.penetration);
     steps.flight->tip_extremes(low_, high_);
     largest_tip_ = std::max({largest_tip_, std::abs(low_), std::abs(high_)});
   }

@@ -83,12 +83,13 @@ long long SnapshotTaker::may_skip(const Marcher& marcher) {
 void SnapshotTaker::skipped(Marcher& marcher, const SkippedSteps& steps) {
   behind_.skipped(marcher, steps);
   if (steps.held.empty() || given_.empty()) return;
-  const double weight = marcher.program().stages.front().momentum;
-  steps.flight->each_effort([&](std::span<const double> efforts) {
+  const std::vector<StageProgram>& stages = marcher.program().stages;
+  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+    const double weight = stages[static_cast<std::size_t>(stage)].momentum;
     for (std::size_t i = 0; i < efforts.size(); ++i)
       given_[static_cast<std::size_t>(steps.held[i].point)] += weight * efforts[i];
+    any_given_ = any_given_ || weight != 0;
   });
-  any_given_ = any_given_ || weight != 0;
 }
 
 void SnapshotTaker::take(const Eigen::VectorXd& position, double support, double time) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ricochet/engine/flight/flight.hpp>
 
 #include "runners/store/record_values.hpp"
 
@@ -24,19 +26,45 @@ WindowMeans::Totals WindowMeans::now(const Marcher& marcher) const {
   return {marcher.time(), audit_.lost_at_stops(0), contact.impulse, static_cast<double>(contact.impacts)};
 }
 
+// Whether no step of the window is made.
+bool WindowMeans::before_window(const Marcher& marcher) const {
+  return series_[tip].empty() && steps_ == 0 && marcher.time() < from_ + marcher.program().h / 2;
+}
+
+// Of the part under way, s.
+double WindowMeans::part_end() const {
+  return from_ + (to_ - from_) * static_cast<double>(series_[tip].size() + 1) / parts_;
+}
+
+long long WindowMeans::may_skip(const Marcher& marcher) {
+  const long long most = behind_.may_skip(marcher);
+  if (series_[tip].size() >= static_cast<std::size_t>(parts_)) return most;
+  // The last step before the window is shown, and the one that ends a part; two steps for the rounding of times.
+  const double h = marcher.program().h, step = static_cast<double>(marcher.step());
+  const double begins = std::floor(from_ / h) - 2 - step, ends = std::floor(part_end() / h) - 3 - step;
+  const double left = before_window(marcher) && begins > 0 ? begins : before_window(marcher) ? 0 : ends;
+  return left > 0 ? std::min(most, static_cast<long long>(std::min(left, 1e18))) : 0;
+}
+
+void WindowMeans::skipped(Marcher& marcher, const SkippedSteps& steps) {
+  behind_.skipped(marcher, steps);
+  if (series_[tip].size() >= static_cast<std::size_t>(parts_) || before_window(marcher)) return;
+  steps.flight->each_tip([&](double displacement) { squares_ += displacement * displacement; });
+  steps_ += steps.steps;
+}
+
 void WindowMeans::step_done(Marcher& marcher) {
   behind_.step_done(marcher);
-  const std::size_t part = series_[tip].size();
-  if (part >= static_cast<std::size_t>(parts_) || !marcher.status(0).running) return;
+  if (series_[tip].size() >= static_cast<std::size_t>(parts_) || !marcher.status(0).running) return;
   const double half_step = marcher.program().h / 2, t = marcher.time();
-  if (t < from_ + half_step && part == 0 && steps_ == 0) {
+  if (before_window(marcher)) {
     begin_ = now(marcher);
     return;
   }
   const double displacement = marcher.tip(0);
   squares_ += displacement * displacement;
   ++steps_;
-  if (t + half_step < from_ + (to_ - from_) * static_cast<double>(part + 1) / parts_) return;
+  if (t + half_step < part_end()) return;
   const Totals end = now(marcher);
   const double length = end.t - begin_.t;
   series_[power].push_back((end.lost - begin_.lost) / length);

@@ -24,8 +24,9 @@ class WindowMeans final : public StepObserver {
   WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind);
 
   void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
-  long long may_skip(const Marcher& marcher) override { return parts_ > 0 ? 0 : behind_.may_skip(marcher); }
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override { behind_.skipped(marcher, steps); }
+  /// Up to the step before one at which a part begins or ends.
+  long long may_skip(const Marcher& marcher) override;
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
   void step_done(Marcher& marcher) override;
 
   /// Puts each mean, and half the width of its interval as confidence.NAME; a note where the run ended before the
@@ -37,6 +38,8 @@ class WindowMeans final : public StepObserver {
   struct Totals {
     double t = 0, lost = 0, impulse = 0, impacts = 0;
   };
+  bool before_window(const Marcher& marcher) const;
+  double part_end() const;
   Totals now(const Marcher& marcher) const;
 
   const EnergyAudit& audit_;

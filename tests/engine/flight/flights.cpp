@@ -97,6 +97,46 @@ TEST_CASE("the extremes of the tip are those of every step, also of those that a
   CHECK(flown.low == Approx(marched.low).epsilon(1e-9));
 }
 
+TEST_CASE("the tip is told after each step that is left out, with contact and without") {
+  class Teller final : public StepObserver {
+   public:
+    bool flies = false;
+    long long skipped_steps = 0;
+    std::vector<double> tips;
+    void stage_solved(const Marcher&, const StageView&) override {}
+    void step_done(Marcher& marcher) override { tips.push_back(marcher.tip(0)); }
+    long long may_skip(const Marcher&) override { return flies ? 1 << 30 : 0; }
+    void skipped(Marcher&, const SkippedSteps& steps) override {
+      skipped_steps += steps.steps;
+      steps.flight->each_tip([&](double tip) { tips.push_back(tip); });
+    }
+  };
+  SceneSpec scene = swinging(1e-4, 0.02);
+  scene.load = Formula("10*x", "/scene/load");
+  scene.stops.lower = Formula(-0.05);
+  scene.stops.upper = Formula(0.05);
+  scene.initial.displacement = Formula("0.01*x^2", "/scene/initial/displacement", "x");
+  const Methods methods{{"singular"},
+                        GENERATE(Choice{"signorini"}, Choice{"penalty", {{"stiffness", 1e4}}}),
+                        {"newmark-dumont-paoli", {{"beta", 0.5}}}};
+  CompileOptions every = flights();
+  every.march = MarchWay::every_step;
+  every.kind = OperatorKind::modal;
+  Marcher slow = marcher(scene, 6, methods, 2e-5, every), fast = marcher(scene, 6, methods, 2e-5, flights());
+  Teller marched, flown;
+  flown.flies = true;
+  slow.start(&marched);
+  slow.march(15000, &marched);
+  fast.start(&flown);
+  fast.march(15000, &flown);
+  REQUIRE(flown.tips.size() == marched.tips.size());
+  CHECK(flown.skipped_steps > 10000);
+  double apart = 0;
+  for (std::size_t i = 0; i < flown.tips.size(); ++i)
+    apart = std::max(apart, std::abs(flown.tips[i] - marched.tips[i]));
+  CHECK(apart < 1e-9);
+}
+
 TEST_CASE("a march by flights keeps its bits when it stops in between, and goes on from a state") {
   // Flights end where somebody reads: where they end must not matter beyond round-off.
   const SceneSpec scene = swinging(1e-4, 0.02);

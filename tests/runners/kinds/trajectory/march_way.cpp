@@ -102,3 +102,19 @@ TEST_CASE("a march by flights that cannot fly is refused with the reason, and on
   text["march"] = 3;
   CHECK_THAT(error_of(shaken, text), Catch::Contains("/march"));
 }
+
+TEST_CASE("means over the parts of a window are those of every step, rigid stops and springs alike") {
+  Json text = shaken_study();
+  text["window"]["parts"] = 12;
+  text["methods"]["contact"] = GENERATE(Json("signorini"), Json{{"name", "penalty"}, {"stiffness", 1e5}});
+  text["methods"]["mass"] = "consistent";
+  const std::vector<CaseRecord> records = CaseRuns().of(text);
+  REQUIRE(records.size() == 2);
+  CHECK(measure(records[1], "steps_visited").value() < 25000);
+  for (const char* name : {"window_power", "window_force", "window_impact_rate", "window_tip_rms"})
+    for (const std::string prefix : {"", "confidence."}) {
+      INFO(prefix << name);
+      const double every = measure(records[0], prefix + name).value();
+      CHECK(measure(records[1], prefix + name).value() == Approx(every).epsilon(1e-6).margin(1e-12));
+    }
+}

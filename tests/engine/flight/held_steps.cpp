@@ -1,0 +1,92 @@
+// Contact that lasts: the same march of every step, whatever the linear law, the scheme, the mass and the load.
+#include "tests/engine/flight/compare_marches.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+// Pressed onto a stop, thrown off it, and at rest there in the end.
+SceneSpec pressed(StopsSpec::Place place, double viscosity) {
+  SceneSpec scene = working_set();
+  beam_of(scene).damping.stiffness = viscosity;
+  scene.stops.place = place;
+  scene.stops.lower = Formula(-0.02);
+  scene.stops.upper = Formula(0.02);
+  scene.support = {0.004, 20, 0.3};
+  scene.load = Formula("6*x", "/scene/load");
+  scene.initial.displacement = Formula("0.005*x^2", "/scene/initial/displacement", "x");
+  scene.initial.velocity = Formula("0.5*x", "/scene/initial/velocity", "x");
+  return scene;
+}
+
+std::vector<Choice> linear_laws() {
+  std::vector<Choice> laws;
+  for (const char* evaluation : {"implicit", "averaged", "midpoint", "conserving", "hybrid"}) {
+    laws.push_back({"penalty", {{"stiffness", 2e4}, {"evaluation", std::string(evaluation)}}});
+    laws.push_back({"kelvin-voigt", {{"stiffness", 2e4}, {"viscosity", 3.0}, {"evaluation", std::string(evaluation)}}});
+  }
+  laws.push_back({"penalty", {{"stiffness", 2e2}, {"evaluation", std::string("explicit")}}});
+  return laws;
+}
+
+}  // namespace
+
+TEST_CASE("while springs push, steps without a search are those of every step") {
+  int flew = 0, left_out = 0;
+  for (const Choice& law : linear_laws())
+    for (const char* time : {"newmark-dumont-paoli", "midpoint", "newmark", "hht-alpha", "generalised-alpha",
+                             "contact-stabilised-newmark", "bathe", "noh-bathe", "sdirk", "wbz-alpha", "kane"})
+      for (const char* mass : {"consistent", "lumped", "singular"}) {
+        // A massless point slides along the edge of a dashpot, on either side of it by round-off.
+        if (law.name == "kelvin-voigt" && mass[0] == 's') continue;
+        const Methods methods{{mass}, law, with_values(registry().time(time)->manual)};
+        const auto place = mass[0] == 'l' ? StopsSpec::Place::tip : StopsSpec::Place::nodes;
+        Compared result;
+        try {
+          result = compare(pressed(place, mass[0] == 'c' ? 0 : 1e-4), 4, methods, 4e-5, 8000);
+        } catch (const std::exception& error) {
+          result.cause = error.what();
+        }
+        INFO(law.name << " " << std::get<std::string>(law.values.at("evaluation")) << " × " << time << " × " << mass
+                      << ": " << result.apart);
+        CHECK(result.alike);
+        flew += result.flew;
+        left_out += result.flew && 3 * result.visited < result.contact_steps;
+      }
+  CHECK(flew > 120);
+  CHECK(left_out > flew / 3);
+}
+
+TEST_CASE("while stops hold, by one stage or several, steps without a search are those of every step") {
+  int left_out = 0;
+  for (const char* time : {"newmark-dumont-paoli", "bathe", "noh-bathe", "sdirk", "newmark", "hht-alpha", "wbz-alpha",
+                           "generalised-alpha", "contact-stabilised-newmark", "laursen-chawla"})
+    for (const char* law : {"signorini", "augmented-lagrangian"})
+      for (const char* mass : {"singular", "consistent"}) {
+        Choice choice{law, {}};
+        if (law[0] == 'a') choice.values = {{"augmentation", 1e9}};
+        const Methods methods{{mass}, choice, with_values(registry().time(time)->manual)};
+        Compared result;
+        try {
+          result = compare(pressed(StopsSpec::Place::nodes, 1e-3), 4, methods, 4e-5, 12000);
+        } catch (const std::exception& error) {
+          result.cause = error.what();
+        }
+        INFO(time << " × " << law << " × " << mass << ": " << result.apart << result.cause);
+        CHECK(result.alike);
+        left_out += result.flew && 3 * result.visited < result.contact_steps;
+      }
+  CHECK(left_out > 10);
+}
+
+TEST_CASE("a point that closes beside those that are held is not missed") {
+  // All nodes, soft springs: the beam lays itself down point by point.
+  const Methods methods{{"consistent"}, {"penalty", {{"stiffness", 2e3}}}, {"newmark-dumont-paoli"}};
+  const SceneSpec scene = pressed(StopsSpec::Place::nodes, 1e-4);
+  const Compared right = compare(scene, 6, methods, 2e-5, 8000);
+  INFO(right.apart);
+  CHECK(right.alike);
+  CHECK(3 * right.visited < right.contact_steps);
+  CHECK_FALSE(compare(scene, 6, methods, 2e-5, 8000, 0.02).alike);
+}
