@@ -8,6 +8,7 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/single_study.hpp"
 #include "runners/kinds/stored_study.hpp"
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/number_rows.hpp"
@@ -93,7 +94,7 @@ CaseRecord run_again(const OpenCase& open, const StoredStudy& stored, const Stud
   const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }, 1};
   const CaseRunner runner = open.kind->start(context);
   MotionShelf shelf;
-  shelf.find = [&](const std::string& key) { return read_motion(open.folder, key); };
+  shelf.find = [&](const std::string& key) { return read_motion(open.folder, key, arithmetic_digest()); };
   if (runner.open) runner.open(shelf, stop);
   return runner.run(study_case, stop);
 }

@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <oneapi/tbb/version.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
@@ -17,8 +18,10 @@
 #include <suitesparse/cholmod.h>
 #endif
 
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/build_facts.hpp"
+#include "runners/store/arithmetics.hpp"
 #include "runners/store/fingerprint.hpp"
 
 namespace ricochet {
@@ -71,6 +74,7 @@ std::string libraries() {
       fmt::format("oneTBB {}", TBB_runtime_version()),
       fmt::format("SQLite {}", sqlite3_libversion()),
       fmt::format("SQLiteCpp {}", SQLITECPP_VERSION),
+      fmt::format("glibc {}", ::gnu_get_libc_version()),
 #ifdef CHOLMOD_MAIN_VERSION
       fmt::format("CHOLMOD {}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION),
 #endif
@@ -92,6 +96,7 @@ Environment describe_environment(const std::vector<std::filesystem::path>& plugi
       {"processor", processor()},
       {"cores", allowed_processors().text()},
       {"instruction sets", instruction_sets()},
+      {kArithmetic, arithmetic_digest()},
       {"kernel", kernel()},
       {"libraries", libraries()},
   };

@@ -6,8 +6,8 @@
 
 namespace ricochet {
 
-/// Program, commit, compiler, flags, processor, cores, instruction sets, kernel, libraries, plugin libraries (with a
-/// hash of their bytes), time started (UTC).
+/// Program, commit, compiler, flags, processor, cores that may be used, instruction sets, digest of the arithmetic,
+/// kernel, libraries, plugin libraries (with a hash of their bytes), time started (UTC).
 Environment describe_environment(const std::vector<std::filesystem::path>& plugin_libraries);
 
 }  // namespace ricochet

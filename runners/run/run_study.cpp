@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/allowed_processors.hpp"
@@ -42,6 +43,7 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
     runner.cases = find_kind(study.kind)->start(context);
     runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
   }
+  runner.arithmetic = arithmetic_digest();
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
   return run_study_with(runner, study, options);

@@ -60,7 +60,7 @@ class FolderRun {
   int run() {
     const std::vector<ExpectedCase> expected = expected_cases(runner_, study_);
     for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
-    kept_ = settled_ = store_.begin(results_header(study_), expected);
+    kept_ = settled_ = store_.begin(results_header(study_), expected, runner_.arithmetic);
     say_versions();
     take_over();
     announce();
@@ -88,6 +88,11 @@ class FolderRun {
                       "they were, and {} with --fresh",
                       results(aside), aside == 1 ? "is" : "are", aside == 1 ? "it comes" : "they come",
                       aside == 1 ? "goes" : "go"));
+    if (const int others = store_.of_other_arithmetic(); others > 0)
+      tell(
+          fmt::format("{} case{} computed with other last digits than those of this processor and C library, and kept; "
+                      "the environment says which",
+                      others, others == 1 ? " was" : "s were"));
   }
 
   /// The row of a case that was not run to its end.

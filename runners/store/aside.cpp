@@ -11,7 +11,7 @@ namespace {
 
 using EnvironmentEntries = decltype(Environment::entries);
 
-constexpr const char* kCaseColumns = "status, reason, steps, setup_seconds, run_seconds, operator";
+constexpr const char* kCaseColumns = "status, reason, steps, setup_seconds, run_seconds, operator, arithmetic";
 // The tables of what belongs to a case: name, columns beside case_id.
 constexpr std::pair<const char*, const char*> kRowsOfCases[] = {
     {"axes", "position, name, value"},

@@ -1,7 +1,6 @@
 #include "runners/store/folder_lock.hpp"
 
 #include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -10,26 +9,18 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
-#include <string>
 
+#include "runners/store/run_identity.hpp"
 #include "runners/store/store_error.hpp"
 
 namespace ricochet {
 namespace {
 
-std::string holder(int descriptor) {
-  std::array<char, 256> text{};
+/// What the holder wrote: nothing yet where it is just starting.
+std::string holder_text(int descriptor) {
+  std::array<char, 1024> text{};
   const ssize_t size = ::pread(descriptor, text.data(), text.size(), 0);
-  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size))
-                  : std::string("a process that is starting");
-}
-
-std::string myself() {
-  std::array<char, 128> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
-  return fmt::format("process {} on {}, started {:%Y-%m-%dT%H:%M:%SZ}", ::getpid(), host.data(),
-                     fmt::gmtime(std::time(nullptr)));
+  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
 /// The holder removes the file when it ends: a lock won on a file that is no longer the folder's own is no lock.
@@ -42,7 +33,20 @@ bool still_there(int descriptor, const std::filesystem::path& file) {
 
 }  // namespace
 
+std::string lock_failure(const std::filesystem::path& file, int error) {
+  const std::string failure = fmt::format("{}: cannot be locked: {}", file.string(), std::strerror(error));
+  if (error == ENOSYS || error == EOPNOTSUPP)
+    return failure +
+           "; this file system has no locks: it is to be mounted with them (of Lustre the option \"flock\", of NFS no "
+           "\"nolock\"), or choose a folder on another one with --out";
+  if (error == ENOLCK)
+    return failure +
+           "; the lock service of this file system does not answer: choose a folder on another one with --out";
+  return failure;
+}
+
 FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "results.lock") {
+  const RunIdentity me = this_run();
   for (;;) {
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor_ < 0)
@@ -50,25 +54,31 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "re
           fmt::format("{}: the results folder is not writable: {}", folder.string(), std::strerror(errno)));
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
-      const std::string who = holder(descriptor_);
+      const std::string text = holder_text(descriptor_);
+      const RunIdentity holder = RunIdentity::from_json(text);
+      const bool mine = still_there(descriptor_, file_);
       ::close(descriptor_);
-      if (error != EWOULDBLOCK)
-        throw StoreError(fmt::format("{}: cannot be locked: {}", file_.string(), std::strerror(error)));
+      if (error != EWOULDBLOCK) throw StoreError(lock_failure(file_, error));
+      if (!mine) continue;
+      if (me.succeeds(holder)) {
+        ::unlink(file_.c_str());
+        continue;
+      }
       throw StoreError(
           fmt::format("{}: another run is using this folder ({}); wait for it to end or choose another "
                       "folder with --out",
-                      folder.string(), who));
+                      folder.string(), text.empty() ? "a process that is starting" : holder.text()));
     }
     if (still_there(descriptor_, file_)) break;
     ::close(descriptor_);
   }
-  // A message for people only: losing it (disk full) loses no safety.
-  const std::string text = myself();
+  // A message for people, and for later starts of the same job: losing it (disk full) loses no safety.
+  const std::string text = me.to_json() + "\n";
   if (::ftruncate(descriptor_, 0) != 0 || ::write(descriptor_, text.data(), text.size()) < 0) return;
 }
 
 FolderLock::~FolderLock() {
-  ::unlink(file_.c_str());
+  if (still_there(descriptor_, file_)) ::unlink(file_.c_str());
   ::close(descriptor_);
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace ricochet {
 
 /// The right to write in a results folder, for one process at a time: flock(2) on FOLDER/results.lock, which the kernel
-/// gives back however the process ends. The file says who holds it and is removed at the end. Throws StoreError when
-/// another process holds it (naming that process) or the folder is not writable.
+/// gives back however the process ends. The file says who holds it and is removed at the end. A later start of the same
+/// job of a scheduler does not wait for an earlier one that is still there: it puts a file of its own in its place, and
+/// the store tells the earlier one (epoch.hpp). Throws StoreError when another process holds it (naming that process)
+/// or the folder is not writable.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -17,5 +20,8 @@ class FolderLock {
   std::filesystem::path file_;
   int descriptor_ = -1;
 };
+
+/// Why flock() failed with `error` although nobody holds the file, and what to do.
+std::string lock_failure(const std::filesystem::path& file, int error);
 
 }  // namespace ricochet

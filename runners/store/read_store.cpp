@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 
+#include "runners/store/arithmetics.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
@@ -53,10 +54,10 @@ void read_study(SQLite::Database& database, StudyResults& results) {
 }
 
 void read_cases(SQLite::Database& database, StudyResults& results) {
-  SQLite::Statement statement(
-      database,
-      "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint FROM cases "
-      "ORDER BY position");
+  SQLite::Statement statement(database,
+                              "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint, "
+                              "arithmetic FROM cases "
+                              "ORDER BY position");
   while (statement.executeStep()) {
     CaseRecord& record = results.cases.emplace_back();
     record.id = statement.getColumn(0).getString();
@@ -67,6 +68,7 @@ void read_cases(SQLite::Database& database, StudyResults& results) {
     record.run_seconds = statement.getColumn(5).getDouble();
     record.operator_name = statement.getColumn(6).getString();
     record.partial = statement.getColumn(7).getString().empty();
+    record.arithmetic = statement.getColumn(8).getString();
   }
 }
 
@@ -139,6 +141,7 @@ StudyResults read_tables(SQLite::Database& database) {
            });
 
   results.environment = read_environment(database);
+  tell_arithmetics(results);
   return results;
 }
 
@@ -163,11 +166,11 @@ StudyResults read_store(const std::filesystem::path& folder) {
   return results;
 }
 
-std::string read_motion(const std::filesystem::path& folder, const std::string& key) {
+std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic) {
   std::string content;
   with_store(folder, [&](SQLite::Database& database) {
     SQLite::Statement find(database, "SELECT content FROM motions WHERE key = ?");
-    find.bind(1, key);
+    find.bind(1, motion_key(arithmetic, key));
     if (!find.executeStep()) return;
     const SQLite::Column blob = find.getColumn(0);
     content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));

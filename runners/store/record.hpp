@@ -30,7 +30,8 @@ struct CaseRecord {
   Curve curve;
   std::vector<Table> tables;         ///< rows of its own, without the case's axes (stability.csv)
   std::vector<NumberTable> numbers;  ///< its large tables (points.csv, impacts.csv)
-  bool partial = false;              ///< saved while the case was running: what it had by then
+  std::string arithmetic;  ///< digest of the arithmetic that computed it (arithmetic_digest.hpp); "": not known
+  bool partial = false;    ///< saved while the case was running: what it had by then
 };
 
 /// The entry of an environment that is the time at which its run began.

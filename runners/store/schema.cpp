@@ -82,6 +82,14 @@ CREATE TABLE aside_cases(
   steps INTEGER NOT NULL, setup_seconds REAL NOT NULL, run_seconds REAL NOT NULL, operator TEXT NOT NULL);
 )sql";
 
+// What version 6 adds: the run that the store belongs to (its RunIdentity, as JSON), and with each case the digest of
+// the processor's arithmetic that it was computed with, "" where that is not known.
+constexpr const char* kEpochTable = "CREATE TABLE epoch(number INTEGER PRIMARY KEY, run TEXT NOT NULL);";
+constexpr const char* kArithmeticColumns = R"sql(
+ALTER TABLE cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';
+ALTER TABLE aside_cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';
+)sql";
+
 void create(SQLite::Database& database, const char* tables, const char* prefix = "", const char* key = "id") {
   database.exec(fmt::format(fmt::runtime(tables), prefix, key));
 }
@@ -98,9 +106,13 @@ void create_from(SQLite::Database& database, int version) {
   }
   if (version < 3) create(database, kNumberTables);
   if (version < 4) database.exec(kBegunTable);
-  database.exec(kAsideTables);
-  for (const char* tables : {kRowTables, kLaterRowTables, kNumberTables})
-    create(database, tables, "aside_", "fingerprint");
+  if (version < 5) {
+    database.exec(kAsideTables);
+    for (const char* tables : {kRowTables, kLaterRowTables, kNumberTables})
+      create(database, tables, "aside_", "fingerprint");
+  }
+  database.exec(kEpochTable);
+  database.exec(kArithmeticColumns);
   database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
 }
 
@@ -121,6 +133,9 @@ std::string sentence(const SQLite::Exception& error, const SQLite::Database* dat
           "that is solved",
           cause);
     case SQLITE_READONLY:
+      if (error.getExtendedErrorCode() == SQLITE_READONLY_DBMOVED)
+        return "another run put a new store in the place of this one; this run has changed nothing since";
+      [[fallthrough]];
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_AUTH:

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <numeric>
 
+#include "runners/store/arithmetics.hpp"
 #include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/merge_environments.hpp"
@@ -28,11 +29,6 @@ using Json = nlohmann::ordered_json;
 
 std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-const std::filesystem::path& made(const std::filesystem::path& folder) {
-  make_folder(folder);
-  return folder;
 }
 
 template <class... Values>
@@ -62,7 +58,9 @@ void remove_curve(const std::filesystem::path& folder, const std::string& id) {
 
 }  // namespace
 
-Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "results.sqlite"), lock_(made(folder)) {
+Store::Store(const std::filesystem::path& folder, bool fresh, bool locked) : file_(folder / "results.sqlite") {
+  make_folder(folder);
+  if (locked) lock_.emplace(folder);
   remove_leftovers(folder);
   remove_leftovers(folder / "curves");
   check_owner(file_);
@@ -80,18 +78,18 @@ Store::Store(const std::filesystem::path& folder, bool fresh) : file_(folder / "
     database_->exec("PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;");
   });
   prepare_schema(*database_, file_, true);
-  group_ = std::make_unique<WriteGroup>(*database_, mutex_);
+  group_ = std::make_unique<WriteGroup>(*database_, mutex_, [this] { epoch_.check(*database_, file_); });
 }
 
-std::set<std::string> Store::begin(const StudyResults& study, const std::vector<ExpectedCase>& expected) {
+std::set<std::string> Store::begin(const StudyResults& study, const std::vector<ExpectedCase>& expected,
+                                   const std::string& arithmetic) {
   const std::lock_guard guard(mutex_);
+  arithmetic_ = arithmetic;
   expected_.clear();
   for (std::size_t i = 0; i < expected.size(); ++i)
     expected_[expected[i].id] = {expected[i].fingerprint, static_cast<int>(i)};
   std::set<std::string> kept;
-  guarded(file_, database_.get(), [&] {
-    group_->commit();
-    SQLite::Transaction transaction(*database_);
+  write_alone([&] {
     SQLite::Statement name(*database_, "SELECT value FROM study WHERE key = 'name'");
     if (name.executeStep()) {
       const std::string stored = Json::parse(name.getColumn(0).getString()).get<std::string>();
@@ -102,6 +100,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
                         file_.string(), stored, study.name));
     }
     name.reset();
+    epoch_.raise(*database_, file_);
     kept = settle_rows();
     SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
     insert(state, "name", text_of(study.name));
@@ -113,9 +112,8 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     for (const Column& axis : study.axes) axes.push_back({axis.name, axis.unit, axis.text});
     insert(state, "axes", text_of(axes));
     insert(state, "expected_cases", text_of(study.expected_cases));
-    transaction.commit();
-    rows_ = kept;
   });
+  rows_ = kept;
   return kept;
 }
 
@@ -166,6 +164,19 @@ int Store::aside() const {
   return count;
 }
 
+int Store::of_other_arithmetic() const {
+  const std::lock_guard guard(mutex_);
+  int count = 0;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement others(*database_,
+                             "SELECT count(*) FROM cases WHERE fingerprint != '' AND status != 'refused' AND "
+                             "arithmetic NOT IN ('', ?)");
+    others.bind(1, arithmetic_);
+    if (others.executeStep()) count = others.getColumn(0).getInt();
+  });
+  return count;
+}
+
 void Store::write_environment(const Environment& environment) {
   database_->exec("DELETE FROM environment");
   SQLite::Statement add(*database_, "INSERT INTO environment(position, name, value) VALUES(?, ?, ?)");
@@ -175,16 +186,15 @@ void Store::write_environment(const Environment& environment) {
 
 void Store::save_environment(const Environment& environment) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    group_->commit();
-    SQLite::Transaction transaction(*database_);
-    write_environment(environment);
-    transaction.commit();
-  });
+  write_alone([&] { write_environment(environment); });
 }
 
 void Store::write(std::size_t bytes, const std::function<void()>& rows) {
   guarded(file_, database_.get(), [&] { group_->write(bytes, rows); });
+}
+
+void Store::write_alone(const std::function<void()>& rows) {
+  guarded(file_, database_.get(), [&] { group_->write_alone(rows); });
 }
 
 SQLite::Statement& Store::prepared(const char* sql) {
@@ -228,10 +238,7 @@ std::set<std::string> Store::failed() const {
 
 void Store::nothing_under_way() {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    group_->commit();
-    database_->exec("DELETE FROM begun");
-  });
+  write_alone([&] { database_->exec("DELETE FROM begun"); });
 }
 
 void Store::save(std::span<const CaseRecord> records, const std::string& next) {
@@ -259,11 +266,12 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   if (expected == expected_.end()) throw std::logic_error("a case that begin() did not announce: " + record.id);
   // A case that is saved again (timed after it ran) takes its rows with it.
   if (!rows_.insert(record.id).second) insert(prepared("DELETE FROM cases WHERE id = ?"), record.id);
-  SQLite::Statement& add = prepared("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement& add = prepared("INSERT INTO cases VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto& [fingerprint, case_position] = expected->second;
   // No case has the fingerprint "": what is partial is never taken for finished.
   insert(add, record.id, case_position, partial ? std::string() : fingerprint, record.status, record.reason,
-         static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name);
+         static_cast<std::int64_t>(record.steps), record.setup_seconds, record.run_seconds, record.operator_name,
+         record.arithmetic.empty() ? arithmetic_ : record.arithmetic);
 
   int position = 0;
   SQLite::Statement& axis = prepared("INSERT INTO axes VALUES(?, ?, ?, ?)");
@@ -321,7 +329,7 @@ std::string Store::motion(const std::string& key) const {
   std::string content;
   guarded(file_, database_.get(), [&] {
     SQLite::Statement find(*database_, "SELECT content FROM motions WHERE key = ?");
-    find.bind(1, key);
+    find.bind(1, motion_key(arithmetic_, key));
     if (!find.executeStep()) return;
     const SQLite::Column blob = find.getColumn(0);
     content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
@@ -331,11 +339,10 @@ std::string Store::motion(const std::string& key) const {
 
 void Store::save_motion(const std::string& key, const std::string& content) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    group_->commit();
+  write_alone([&] {
     SQLite::Statement change(*database_, content.empty() ? "DELETE FROM motions WHERE key = ?"
                                                          : "INSERT OR REPLACE INTO motions(key, content) VALUES(?, ?)");
-    change.bind(1, key);
+    change.bind(1, motion_key(arithmetic_, key));
     if (!content.empty()) change.bindNoCopy(2, content.data(), static_cast<int>(content.size()));
     change.exec();
   });
@@ -343,10 +350,7 @@ void Store::save_motion(const std::string& key, const std::string& content) {
 
 void Store::make_views(const StudyResults& results) {
   const std::lock_guard guard(mutex_);
-  guarded(file_, database_.get(), [&] {
-    group_->commit();
-    ricochet::make_views(*database_, results);
-  });
+  write_alone([&] { ricochet::make_views(*database_, results); });
 }
 
 StudyResults Store::load() const {

@@ -7,12 +7,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "runners/store/epoch.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/record.hpp"
 #include "runners/store/write_group.hpp"
@@ -34,17 +36,25 @@ struct ExpectedCase {
 class Store {
  public:
   /// Opens or creates FOLDER/results.sqlite; `fresh` forgets what it held. Refuses a store of another version.
-  Store(const std::filesystem::path& folder, bool fresh);
+  Store(const std::filesystem::path& folder, bool fresh) : Store(folder, fresh, true) {}
+  /// The same without a lock on the folder, as where the locks of the file system hold nobody back: what keeps two runs
+  /// apart is then the epoch alone.
+  static Store unlocked(const std::filesystem::path& folder) { return {folder, false, false}; }
 
   /// States the study (name, question, kind, study, columns, expected_cases of `study`) and its cases. Stored cases
   /// that are not expected with their fingerprint are set aside, those that were and are expected now come back; what
   /// was refused or not finished is dropped. The curves/ID.csv of all these are removed. Returns the ids of the cases
-  /// that need not run. Refuses a store of another study.
-  std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected);
+  /// that need not run. Refuses a store of another study. The store is this run's from here on: what an earlier one
+  /// that still lives would write is refused, and nothing of it changes the store (epoch.hpp). `arithmetic`: digest of
+  /// the arithmetic of this run, kept with its cases; motions are found again under the same one only.
+  std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected,
+                              const std::string& arithmetic = "");
   /// How many of them begin() brought back.
   int returned() const { return returned_; }
   /// How many cases of earlier versions of the study are kept aside.
   int aside() const;
+  /// How many finished cases were computed with another arithmetic than this run's.
+  int of_other_arithmetic() const;
 
   /// Replaces the environment.
   void save_environment(const Environment& environment);
@@ -80,16 +90,20 @@ class Store {
   StudyResults load() const;
 
  private:
+  Store(const std::filesystem::path& folder, bool fresh, bool locked);
   std::set<std::string> settle_rows();
   void write_environment(const Environment& environment);
   void write(std::size_t bytes, const std::function<void()>& rows);
+  void write_alone(const std::function<void()>& rows);
   SQLite::Statement& prepared(const char* sql);
   void note_begin(const std::string& id, Stage stage);
   void save_one(const CaseRecord& record, bool partial);
   void save_numbers(const CaseRecord& record);
 
   std::filesystem::path file_;
-  FolderLock lock_;
+  std::optional<FolderLock> lock_;
+  Epoch epoch_;
+  std::string arithmetic_;
   std::unique_ptr<SQLite::Database> database_;
   std::map<std::string, std::pair<std::string, int>> expected_;  // id → fingerprint, position
   int returned_ = 0;
@@ -103,7 +117,7 @@ class Store {
 /// StoreError.
 StudyResults read_store(const std::filesystem::path& folder);
 
-/// What FOLDER/results.sqlite keeps under a key of Store::motion, "" where there is none.
-std::string read_motion(const std::filesystem::path& folder, const std::string& key);
+/// What FOLDER/results.sqlite keeps under a key of Store::motion for runs of this arithmetic, "" where there is none.
+std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic);
 
 }  // namespace ricochet

@@ -34,11 +34,9 @@ void make_views(SQLite::Database& database, const StudyResults& results) {
   for (const Column& column : cases_table(results).columns)
     columns += fmt::format("{}{} AS {}", columns.empty() ? "" : ", ", expression(column.name, results),
                            in_quotes(column.name, '"'));
-  SQLite::Transaction transaction(database);
   database.exec("DROP VIEW IF EXISTS v_cases");
   database.exec(
       fmt::format("CREATE VIEW v_cases AS SELECT {} FROM cases WHERE fingerprint != '' ORDER BY position", columns));
-  transaction.commit();
 }
 
 }  // namespace ricochet

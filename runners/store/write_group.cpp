@@ -7,8 +7,11 @@
 
 namespace ricochet {
 
-WriteGroup::WriteGroup(SQLite::Database& database, std::mutex& mutex)
-    : database_(database), mutex_(mutex), pace_([this](std::stop_token stop) { keep_pace(std::move(stop)); }) {}
+WriteGroup::WriteGroup(SQLite::Database& database, std::mutex& mutex, std::function<void()> begun)
+    : database_(database),
+      mutex_(mutex),
+      begun_(std::move(begun)),
+      pace_([this](std::stop_token stop) { keep_pace(std::move(stop)); }) {}
 
 WriteGroup::~WriteGroup() {
   pace_.request_stop();
@@ -24,7 +27,7 @@ WriteGroup::~WriteGroup() {
 void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
   const bool large = bytes > most_waiting;
   if (large || failure_) commit();
-  if (!waiting_) database_.exec("BEGIN IMMEDIATE");
+  if (!waiting_) begin();
   waiting_ = true;
   try {
     SQLite::Savepoint own(database_, "own");
@@ -42,6 +45,33 @@ void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
     changed_.notify_all();
 }
 
+void WriteGroup::write_alone(const std::function<void()>& rows) {
+  commit();
+  begin();
+  try {
+    rows();
+    database_.exec("COMMIT");
+  } catch (...) {
+    take_back();
+    throw;
+  }
+}
+
+void WriteGroup::begin() {
+  database_.exec("BEGIN IMMEDIATE");
+  try {
+    if (begun_) begun_();
+  } catch (...) {
+    take_back();
+    throw;
+  }
+}
+
+void WriteGroup::take_back() {
+  // An error of the disk has done it already.
+  if (sqlite3_get_autocommit(database_.getHandle()) == 0) database_.tryExec("ROLLBACK");
+}
+
 void WriteGroup::commit() {
   if (const auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
   if (!waiting_) return;
@@ -51,7 +81,7 @@ void WriteGroup::commit() {
     database_.exec("COMMIT");
   } catch (...) {
     // What cannot be written now may not hold the file.
-    if (sqlite3_get_autocommit(database_.getHandle()) == 0) database_.tryExec("ROLLBACK");
+    take_back();
     throw;
   }
   due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(longest));

@@ -24,22 +24,28 @@ class WriteGroup {
   /// Bytes that may wait; a larger write waits for none and with none.
   static constexpr std::size_t most_waiting = 1 << 20;
 
-  WriteGroup(SQLite::Database& database, std::mutex& mutex);
+  /// `begun` is called when a transaction was begun, and ends it by what it throws.
+  WriteGroup(SQLite::Database& database, std::mutex& mutex, std::function<void()> begun = {});
   ~WriteGroup();
   WriteGroup(const WriteGroup&) = delete;
   WriteGroup& operator=(const WriteGroup&) = delete;
 
   /// All the rows of one write, or none of them; about so many bytes.
   void write(std::size_t bytes, const std::function<void()>& rows);
-  /// Makes durable what waits. Before any other transaction.
+  /// The same, durable when it returns, in a transaction of its own.
+  void write_alone(const std::function<void()>& rows);
+  /// Makes durable what waits.
   void commit();
 
  private:
   using Clock = std::chrono::steady_clock;
   void keep_pace(std::stop_token stop);
+  void begin();
+  void take_back();
 
   SQLite::Database& database_;
   std::mutex& mutex_;
+  const std::function<void()> begun_;
   bool waiting_ = false;        // a transaction is open
   std::size_t bytes_ = 0;       // that wait
   Clock::time_point due_ = {};  // when what is written next, or waits, is to be durable

@@ -262,6 +262,23 @@ TEST_CASE("A plan and the doctor say how many processors may be used, and what a
   }
 }
 
+TEST_CASE("The doctor tells processors apart by what they compute") {
+  const Folder here;
+  const auto digest = [&](const std::string& environment) {
+    const std::string text = here.run("doctor", environment).out;
+    const std::size_t from = text.find("\narithmetic "), to = text.find('\n', from + 1);
+    REQUIRE(from != std::string::npos);
+    return text.substr(from, to - from);
+  };
+  const std::string own = digest("");
+  CHECK(digest("OPENBLAS_NUM_THREADS=1") == own);
+#if defined(__x86_64__)
+  // The C library of a processor that has no fused multiply-add.
+  if (__builtin_cpu_supports("fma"))
+    CHECK(digest("GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA") != own);
+#endif
+}
+
 TEST_CASE("A plan says the physics: a slip of units is seen") {
   const Folder here;
   here.write("tiny.json", tiny().dump(1));

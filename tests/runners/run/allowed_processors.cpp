@@ -2,42 +2,18 @@
 
 #include <fmt/format.h>
 #include <sched.h>
-#include <stdlib.h>
 
 #include <catch2/catch.hpp>
-#include <functional>
-#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <thread>
 
 #include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/variable.hpp"
 
 using namespace ricochet;
 using Catch::Contains;
 
 namespace {
-
-/// A variable of the environment for the length of a test.
-class Variable {
- public:
-  Variable(const char* name, const std::optional<std::string>& value) : name_(name) {
-    if (const char* before = ::getenv(name)) before_ = before;
-    set(value);
-  }
-  ~Variable() { set(before_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  void set(const std::optional<std::string>& value) const {
-    if (value)
-      ::setenv(name_, value->c_str(), 1);
-    else
-      ::unsetenv(name_);
-  }
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 /// What a tree of /proc and /sys grants, with no other limit than that of the machine.
 AllowedProcessors under(const std::string& cgroup, const std::vector<std::pair<std::string, std::string>>& files) {
