@@ -8,6 +8,7 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/command/subcommand.hpp"
+#include "runners/process/worker_service.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/store/store_error.hpp"
 
@@ -65,6 +66,7 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
     out << entries.front().second << (commit != entries.end() ? ", commit " + commit->second : "") << "\n";
     return exit_done;
   }
+  if (first == "worker" && rest.empty()) return serve_as_worker();  // started by this program, not by a person
   const Subcommand& command = find_command(first);
   const Arguments parsed = parse_arguments(command, rest);
   if (parsed.help) {
@@ -107,11 +109,11 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table]",
+       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table] [--isolate]",
        "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"out", "jobs", "fresh", "table", "plugin"},
+       {"out", "jobs", "fresh", "table", "isolate", "plugin"},
        command_run},
       {"plan",
        "STUDY.json [--cases]",

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <ostream>
-#include <thread>
 
 #include "runners/command/command.hpp"
 #include "runners/command/plan_physics.hpp"
 #include "runners/command/study_file.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/forecast.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/store/record_values.hpp"
@@ -110,18 +110,19 @@ struct Costs {
   int runnable = 0, refused = 0, excluded = 0, failed = 0;
 };
 
-void print_costs(const Costs& costs, const Forecast& forecast, std::ostream& out) {
+void print_costs(const Costs& costs, const Forecast& forecast, const AllowedProcessors& cores, std::ostream& out) {
   out << fmt::format("\n{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   out << "predicted: " << duration_text(forecast.seconds) << " on 1 core";
   // A case runs on one core: the longest bounds the whole.
-  if (cores > 1)
-    out << ", " << duration_text(std::max(forecast.seconds / cores, forecast.longest)) << " on all " << cores;
+  if (cores.count > 1)
+    out << ", " << duration_text(std::max(forecast.seconds / cores.count, forecast.longest))
+        << (cores.limit.empty() ? " on all " : " on ") << cores.count;
   if (forecast.measured > 0)
     out << fmt::format(" (a part of {} case{} marched)", forecast.measured, forecast.measured == 1 ? "" : "s");
   out << "\n";
+  if (!cores.limit.empty()) out << "cores that this process may use: " << cores.text() << "\n";
 }
 
 void print_warnings(const std::vector<std::string>& warnings, std::ostream& out) {
@@ -190,6 +191,7 @@ std::string table_of_plans(const Study& study, const StudyPlan& all, const std::
 }  // namespace
 
 int command_plan(const Arguments& arguments, std::ostream& out) {
+  const AllowedProcessors cores = allowed_processors();
   return with_study(arguments, [&](const OpenStudy& open) -> int {
     const Study& study = open.study;
     CasePlanner planner(study, open.catalogue, open.registry);
@@ -203,7 +205,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
                        study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
                                                         : std::string());
     print_axes(axes, out);
-    print_costs(all.costs, costs, out);
+    print_costs(all.costs, costs, cores, out);
     print_reasons(all.reasons, out);
     if (const std::string physics = physics_text(all.runnable, planner, open.registry); !physics.empty())
       out << "\nphysics:\n" << physics;

@@ -8,6 +8,7 @@
 #include "runners/command/study_file.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/report/index_page.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/league.hpp"
 #include "runners/run/run_study.hpp"
@@ -17,13 +18,16 @@
 namespace ricochet {
 
 int command_run(const Arguments& arguments, std::ostream&) {
+  const AllowedProcessors processors = allowed_processors();  // what is wrong with it is not the study's fault
   return with_study(arguments, [&](const OpenStudy& open) {
     for (const std::string& warning : plugin_warnings(open)) std::cerr << "ricochet: " << warning << "\n";
     RunOptions options;
     options.out = arguments.out.value_or("");
-    options.jobs = arguments.jobs;
+    options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
+    options.isolate = arguments.isolate;
+    options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });
 }

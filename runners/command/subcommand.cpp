@@ -23,10 +23,12 @@ po::options_description described(const Subcommand& command) {
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
-    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors)");
+    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors that it may use)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
   if (has("cases")) add("cases", "also print a line for every case");
+  if (has("isolate"))
+    add("isolate", "run cases in processes of their own: one that crashes costs what it had under way");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
@@ -114,6 +116,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.to = path_of(values, "to");
   arguments.fresh = values.count("fresh") > 0;
   arguments.table = values.count("table") > 0;
+  arguments.isolate = values.count("isolate") > 0;
   arguments.cases = values.count("cases") > 0;
   arguments.study = values.count("study") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;

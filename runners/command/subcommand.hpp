@@ -26,10 +26,11 @@ struct Arguments {
   std::vector<std::string> operands;
   std::vector<std::filesystem::path> plugins;    ///< --plugin
   std::optional<std::filesystem::path> out, to;  ///< --out, --to
-  int jobs = 0;                                  ///< --jobs; 0: all processors
+  int jobs = 0;                                  ///< --jobs; 0: all that it may use
   bool fresh = false;                            ///< --fresh
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
+  bool isolate = false;                          ///< --isolate
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given

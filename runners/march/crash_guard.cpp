@@ -30,7 +30,7 @@ constexpr int kSomeFailed = 3;
 // Everything below is read by signal handlers: nothing allocates, locks or has a destructor.
 std::array<struct sigaction, kEndings.size()> former;
 std::array<char, 4096> record_file{};
-std::atomic<bool> armed{false}, taken{false};
+std::atomic<bool> armed{false}, taken{false}, speaking{true};
 
 // Text put together and written without the heap.
 class Line {
@@ -90,7 +90,7 @@ void ended_by(const char* ended) {
   const PluginCall call = current_plugin_call();
   const CaseTicket* const ticket = ticket_in_handler();
   record(ended, call, ticket);
-  tell(ended, call, ticket);
+  if (speaking) tell(ended, call, ticket);
 }
 
 extern "C" void on_crash(int signal) {
@@ -117,10 +117,18 @@ void watch_exits() {
 
 }  // namespace
 
-CrashGuard::CrashGuard(const std::filesystem::path& folder) {
-  const std::string file = crash_record_file(std::filesystem::absolute(folder)).string();
+CrashGuard::CrashGuard(const std::filesystem::path& folder)
+    : CrashGuard(crash_record_file(std::filesystem::absolute(folder)), true) {}
+
+std::unique_ptr<CrashGuard> CrashGuard::quiet(const std::filesystem::path& file) {
+  return std::unique_ptr<CrashGuard>(new CrashGuard(file, false));
+}
+
+CrashGuard::CrashGuard(const std::filesystem::path& file, bool speaks) {
+  const std::string name = file.string();
   record_file.fill('\0');
-  std::memcpy(record_file.data(), file.data(), std::min(file.size(), record_file.size() - 1));
+  std::memcpy(record_file.data(), name.data(), std::min(name.size(), record_file.size() - 1));
+  speaking = speaks;
   current_plugin_call();  // this thread's copy exists before a handler asks for it
   watch_exits();
   taken = false;

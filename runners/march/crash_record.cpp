@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <sstream>
 
 namespace ricochet {
 
@@ -16,8 +17,8 @@ std::filesystem::path crash_record_file(const std::filesystem::path& folder) {
   return folder / "crash.txt";
 }
 
-std::optional<CrashRecord> read_crash_record(const std::filesystem::path& folder) {
-  std::ifstream stream(crash_record_file(folder));
+std::optional<CrashRecord> parse_crash_record(const std::string& text) {
+  std::istringstream stream(text);
   CrashRecord record;
   for (std::string line; std::getline(stream, line);) {
     const std::size_t at = line.find('\t');
@@ -32,6 +33,12 @@ std::optional<CrashRecord> read_crash_record(const std::filesystem::path& folder
   // "ended" comes last: a record without it was cut short.
   if (record.ended.empty()) return std::nullopt;
   return record;
+}
+
+std::optional<CrashRecord> read_crash_record(const std::filesystem::path& folder) {
+  std::ostringstream text;
+  text << std::ifstream(crash_record_file(folder)).rdbuf();
+  return parse_crash_record(text.str());
 }
 
 void remove_crash_record(const std::filesystem::path& folder) {

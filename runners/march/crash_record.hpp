@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,8 @@ struct CrashRecord {
   std::string reason() const;
 };
 
+/// What such a record says; nothing where it is not whole.
+std::optional<CrashRecord> parse_crash_record(const std::string& text);
 /// FOLDER/crash.txt, or nothing when the last run ended otherwise, or was killed.
 std::optional<CrashRecord> read_crash_record(const std::filesystem::path& folder);
 std::filesystem::path crash_record_file(const std::filesystem::path& folder);
@@ -27,9 +30,14 @@ void remove_crash_record(const std::filesystem::path& folder);
 class CrashGuard {
  public:
   explicit CrashGuard(const std::filesystem::path& folder);
+  /// The same without a word on stderr, where another process reads the record. `file`: of the record.
+  static std::unique_ptr<CrashGuard> quiet(const std::filesystem::path& file);
   ~CrashGuard();
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
+
+ private:
+  CrashGuard(const std::filesystem::path& file, bool speaks);
 };
 
 }  // namespace ricochet

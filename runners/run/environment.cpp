@@ -13,11 +13,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #if __has_include(<suitesparse/cholmod.h>)
 #include <suitesparse/cholmod.h>
 #endif
 
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/build_facts.hpp"
 #include "runners/store/fingerprint.hpp"
 
@@ -90,7 +90,7 @@ Environment describe_environment(const std::vector<std::filesystem::path>& plugi
       {"build type", build.type},
       {"flags", build.flags},
       {"processor", processor()},
-      {"cores", std::to_string(std::thread::hardware_concurrency())},
+      {"cores", allowed_processors().text()},
       {"instruction sets", instruction_sets()},
       {"kernel", kernel()},
       {"libraries", libraries()},

@@ -1,13 +1,14 @@
 #include "runners/run/run_study.hpp"
 
-#include <mutex>
-#include <thread>
+#include <optional>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
-#include "runners/store/fingerprint.hpp"
 
 namespace ricochet {
 namespace {
@@ -24,21 +25,23 @@ CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Re
 
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options) {
   StudyRunner runner;
-  runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
-  runner.libraries = [&](const StudyCase& study_case) {
-    return std::vector<std::filesystem::path>{registry.file(Role::mass, study_case.mass.name),
-                                              registry.file(Role::contact, study_case.contact.name),
-                                              registry.file(Role::time, study_case.time.name)};
-  };
-  // Each library is read and hashed once in a run; cases of several threads ask.
-  Fingerprints fingerprints(study.kind, program_hash());
-  std::mutex asked;
-  const auto key = [&](const StudyCase& study_case) {
-    const std::lock_guard guard(asked);
-    return fingerprints.of(study_case, runner.libraries(study_case));
-  };
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  runner.cases = find_kind(study.kind)->start({study, registry, key, options.jobs > 0 ? options.jobs : processors});
+  runner.libraries = [&](const StudyCase& study_case) { return libraries_of(study_case, registry); };
+  StudyIdentity identity(study, registry);
+  const RunContext context{study, registry, [&](const StudyCase& one) { return identity.of(one); },
+                           options.jobs > 0 ? options.jobs : allowed_processors().count};
+  std::optional<IsolatedCases> isolated;
+  if (options.isolate) {
+    isolated.emplace(context, IsolationOptions{options.plugins});
+    runner.cases = isolated->runner();
+    runner.plan = [&](const StudyCase& study_case) {
+      CasePlan plan;
+      plan.predicted_seconds = isolated->predicted_seconds(study_case);
+      return plan;
+    };
+  } else {
+    runner.cases = find_kind(study.kind)->start(context);
+    runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
+  }
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
   return run_study_with(runner, study, options);

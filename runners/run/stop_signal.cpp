@@ -8,16 +8,17 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGXFSZ};
+constexpr std::array<int, 4> kSignals = {SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 std::atomic<int> signals_seen{0};
 std::array<struct sigaction, kSignals.size()> handlers_before;
 
-extern "C" void on_stop(int) {
+extern "C" void on_stop(int signal) {
   stop_requested = true;
-  if (++signals_seen > 1) ::_exit(kInterrupted);
+  // A scheduler's warning is no order, however often it comes.
+  if (signal != SIGUSR1 && ++signals_seen > 1) ::_exit(kInterrupted);
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 #include <mutex>
-#include <thread>
 
 #include "runners/march/crash_record.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/progress.hpp"
@@ -53,7 +53,7 @@ class FolderRun {
         store_(folder_, options.fresh),
         guard_(folder_),
         table_(options.table),
-        jobs_(options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {
+        jobs_(options.jobs > 0 ? options.jobs : allowed_processors().count) {
     if (options.fresh) remove_crash_record(folder_);
   }
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
@@ -242,6 +243,23 @@ TEST_CASE("A plan shows cases, refusals with reasons and cost, and runs nothing"
   };
   CHECK_THAT(timeless(all.out), StartsWith(timeless(outcome.out)) && Contains("operator") && Contains("refused: "));
   CHECK_FALSE(fs::exists(here / "results"));
+}
+
+TEST_CASE("A plan and the doctor say how many processors may be used, and what allows no more") {
+  const Folder here;
+  here.write("tiny.json", tiny().dump(1));
+  if (std::thread::hardware_concurrency() < 2) return;
+  CHECK_THAT(here.run("plan tiny.json", "SLURM_CPUS_PER_TASK=1").out,
+             Contains("\ncores that this process may use: 1 of ") && Contains("(SLURM_CPUS_PER_TASK)"));
+  CHECK_THAT(here.run("doctor", "SLURM_CPUS_ON_NODE=1").out, Contains("(SLURM_CPUS_ON_NODE)"));
+  CHECK_THAT(here.run("run tiny.json --out there", "taskset -c 0").err, Contains("on 1 thread\n"));
+  CHECK_THAT(read(here / "there/report.html"), Contains("(the affinity of this process)"));
+  for (const char* words : {"plan tiny.json", "run tiny.json --out other", "run tiny.json --out other --jobs 1"}) {
+    const Outcome wrong = here.run(words, "SLURM_CPUS_PER_TASK=all");
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err == "ricochet: SLURM_CPUS_PER_TASK is \"all\"; expected a number of processors\n");
+    CHECK_FALSE(fs::exists(here / "other"));
+  }
 }
 
 TEST_CASE("A plan says the physics: a slip of units is seen") {

@@ -188,7 +188,7 @@ TEST_CASE("interruption: kill -9 at any moment leaves a sound store") {
 }
 
 TEST_CASE("interruption: Ctrl-C keeps what is finished, says how to resume, and exits with 130") {
-  const int signal = GENERATE(SIGINT, SIGTERM);
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1);
   const ScratchFolder scratch;
   const auto out = scratch / "out";
   Child child("hang", out, scratch / "messages");
@@ -209,6 +209,23 @@ TEST_CASE("interruption: a second Ctrl-C ends at once") {
   child.send(SIGINT);
   REQUIRE(wait_for([&] { return child.messages().find("stopping") != std::string::npos; }));
   child.send(SIGINT);
+  CHECK(child.wait() == 130);
+  resume_and_compare(scratch, out, kCases - 5);
+}
+
+TEST_CASE("interruption: a scheduler's warning may come twice, and an order to stop after it is the first") {
+  const ScratchFolder scratch;
+  const auto out = scratch / "out";
+  Child child("stubborn", out, scratch / "messages");
+  REQUIRE(wait_for([&] { return stored(out) == 5; }));
+  child.send(SIGUSR1);
+  REQUIRE(wait_for([&] { return child.messages().find("stopping") != std::string::npos; }));
+  child.send(SIGUSR1);
+  ::usleep(100000);
+  child.send(SIGTERM);
+  ::usleep(100000);
+  CHECK(::waitpid(child.process(), nullptr, WNOHANG) == 0);
+  child.send(SIGTERM);
   CHECK(child.wait() == 130);
   resume_and_compare(scratch, out, kCases - 5);
 }

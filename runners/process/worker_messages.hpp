@@ -1,0 +1,69 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runners/store/record.hpp"
+
+/// \file
+/// What coordinator and worker send each other, as bytes of this machine: both are the same program.
+namespace ricochet {
+
+/// What a worker opens before anything else.
+struct WorkerStudy {
+  std::string study;                 ///< resolved, as JSON
+  std::vector<std::string> plugins;  ///< libraries beside the program's own
+  double memory = 0;                 ///< bytes of address space that it may take; 0: no limit
+};
+
+/// That it did, and with what: equal for equal programs, plugins and studies.
+struct WorkerReady {
+  std::string identity;
+  std::string failure, pointer;  ///< why it could not, and where in the study; "" where it could
+};
+
+/// One case to be planned, run or timed.
+struct CaseOrder {
+  std::string id;
+  int workers = 1;    ///< that may march blocks of it at the same time
+  double budget = 0;  ///< s that a call of a plugin's function may last
+};
+
+/// What became of it: a value, or what was thrown.
+struct CaseAnswer {
+  CaseRecord record;           ///< of a run, without axes
+  double seconds = 0;          ///< predicted or timed
+  bool found = false;          ///< whether there is a time
+  std::string error, pointer;  ///< of an exception; `record` is then empty
+};
+
+/// A call of a plugin's function that did not return.
+struct GivenUp {
+  std::string plugin, function;
+  double budget = 0;
+};
+
+/// A key of the store with what is to be kept there; or a question, without.
+struct ShelfMessage {
+  std::string key, content;
+};
+
+std::string to_bytes(const WorkerStudy& message);
+std::string to_bytes(const WorkerReady& message);
+std::string to_bytes(const CaseOrder& message);
+std::string to_bytes(const CaseAnswer& message);
+std::string to_bytes(const GivenUp& message);
+std::string to_bytes(const ShelfMessage& message);
+std::string to_bytes(const CaseRecord& record);
+
+/// The message that these bytes are. Throws std::runtime_error for others.
+template <class T>
+T message_from(const std::string& bytes);
+extern template WorkerStudy message_from(const std::string&);
+extern template WorkerReady message_from(const std::string&);
+extern template CaseOrder message_from(const std::string&);
+extern template CaseAnswer message_from(const std::string&);
+extern template GivenUp message_from(const std::string&);
+extern template ShelfMessage message_from(const std::string&);
+extern template CaseRecord message_from(const std::string&);
+
+}  // namespace ricochet

@@ -1,0 +1,233 @@
+#include "runners/process/worker_service.hpp"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <limits>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/loader/catalogue.hpp>
+
+#include "runners/kinds/kind.hpp"
+#include "runners/march/crash_record.hpp"
+#include "runners/march/watched_threads.hpp"
+#include "runners/process/channel.hpp"
+#include "runners/process/worker_messages.hpp"
+#include "runners/process/worker_process.hpp"
+#include "runners/run/run_study.hpp"
+#include "runners/run/study_identity.hpp"
+#include "runners/run/study_runner.hpp"
+#include "runners/study/load_study.hpp"
+#include "runners/study/stated_plan.hpp"
+
+namespace ricochet {
+namespace {
+
+using Word = Message::Word;
+
+constexpr auto kAliveEvery = std::chrono::seconds(1);
+constexpr int kGaveUp = 1;
+
+// What a plugin asks for beyond the limit ends this process: the coordinator then knows which orbits asked.
+void out_of_memory() {
+  constexpr char text[] = "the memory that a worker may take is exhausted\n";
+  static_cast<void>(!::write(STDERR_FILENO, text, sizeof(text) - 1));
+  ::raise(SIGABRT);
+  ::_exit(kGaveUp);
+}
+
+void limit_memory(double bytes) {
+  if (bytes <= 0) return;
+  const auto most = static_cast<rlim_t>(bytes);
+  const rlimit limit{most, most};
+  ::setrlimit(RLIMIT_AS, &limit);
+  std::set_new_handler(out_of_memory);
+}
+
+class WorkerService {
+ public:
+  WorkerService() : channel_(kWorkerChannel) {}
+
+  int run() {
+    std::thread reader([this] { read(); });
+    std::thread heart([this] {
+      for (;;) {
+        std::this_thread::sleep_for(kAliveEvery);
+        tell({Word::alive});
+      }
+    });
+    reader.detach();
+    heart.detach();
+    for (;;) serve(next());
+  }
+
+ private:
+  /// Without a coordinator there is nothing to do, whatever is under way.
+  void tell(const Message& message) {
+    if (!channel_.send(message)) ::_exit(0);
+  }
+
+  void read() {
+    Message message;
+    while (channel_.receive(message) == Channel::Heard::message) {
+      if (message.word == Word::stop) stop_ = true;
+      const std::lock_guard guard(mutex_);
+      if (message.word == Word::answer) {
+        if (const auto asked = questions_.extract(message.about); !asked.empty())
+          asked.mapped().set_value(std::move(message.content));
+      } else if (message.word != Word::stop) {
+        orders_.push_back(std::move(message));
+        changed_.notify_all();
+      }
+    }
+    ::_exit(0);
+  }
+
+  Message next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !orders_.empty(); });
+    Message order = std::move(orders_.front());
+    orders_.pop_front();
+    return order;
+  }
+
+  std::string ask(Word word, std::string content) {
+    std::future<std::string> answer;
+    std::uint32_t about = 0;
+    {
+      const std::lock_guard guard(mutex_);
+      about = ++asked_;
+      answer = questions_[about].get_future();
+    }
+    tell({word, std::move(content), about});
+    return answer.get();
+  }
+
+  void serve(const Message& order) {
+    if (order.word == Word::study) return tell({Word::ready, to_bytes(open(order.content)), order.about});
+    stop_ = false;
+    const auto request = message_from<CaseOrder>(order.content);
+    const StudyCase* const found = find_case(*study_, request.id);
+    const auto ticket = std::make_shared<CaseTicket>(request.id, "", request.budget);
+    CaseAnswer answer;
+    bool interrupted = false;
+    WatchHooks hooks;
+    hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
+      tell({Word::given_up, to_bytes(GivenUp{call.plugin, call.function, request.budget}), order.about});
+      ::_exit(kGaveUp);
+    };
+    hooks.left_behind = [](const std::vector<LongCall>&) { ::_exit(kGaveUp); };
+    run_watched(
+        1,
+        [&] {
+          const CaseScope scope(ticket);
+          try {
+            answer = answer_to(order.word, *found);
+          } catch (const Interrupted&) {
+            interrupted = true;
+          } catch (const InputError& error) {
+            answer.error = error.what();
+            answer.pointer = error.pointer();
+          } catch (const Refusal& refusal) {
+            answer.error = refusal.sentence;
+          } catch (const std::exception& error) {
+            answer.error = error.what();
+          } catch (...) {
+            answer.error = "an exception that carries no message";
+          }
+          const auto turn = ticket->turn();
+          ticket->close();
+        },
+        stop_, hooks);
+    if (interrupted) return tell({Word::interrupted, "", order.about});
+    tell({order.word == Word::plan  ? Word::planned
+          : order.word == Word::run ? Word::ran
+                                    : Word::timed,
+          to_bytes(answer), order.about});
+  }
+
+  CaseAnswer answer_to(Word word, const StudyCase& study_case) {
+    CaseAnswer answer;
+    if (word == Word::plan) {
+      answer.seconds = plan_for(study_->kind, study_case, registry_).predicted_seconds;
+    } else if (word == Word::time) {
+      const auto seconds = runner_.cases.time(study_case, stop_);
+      answer.found = seconds.has_value();
+      answer.seconds = seconds.value_or(0);
+    } else {
+      answer.record = run_guarded(runner_, study_case, stop_);
+    }
+    return answer;
+  }
+
+  WorkerReady open(const std::string& content) {
+    WorkerReady ready;
+    try {
+      const auto wanted = message_from<WorkerStudy>(content);
+      const std::vector<std::filesystem::path> plugins(wanted.plugins.begin(), wanted.plugins.end());
+      catalogue_.emplace(standard_catalogue(plugins));
+      study_ = parse_study(wanted.study, *catalogue_, registry_);
+      identity_.emplace(*study_, registry_);
+      runner_.cases = find_kind(study_->kind)
+                          ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, 1});
+      if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
+      ready.identity = identity_->of_all();
+      limit_memory(wanted.memory);
+    } catch (const InputError& error) {
+      ready.failure = error.what();
+      ready.pointer = error.pointer();
+    } catch (const std::exception& error) {
+      ready.failure = error.what();
+    } catch (const Refusal& refusal) {
+      ready.failure = refusal.sentence;
+    }
+    return ready;
+  }
+
+  MotionShelf shelf() {
+    MotionShelf shelf;
+    shelf.find = [this](const std::string& key) { return ask(Word::find, key); };
+    shelf.keep = [this](const std::string& key, const std::string& content) {
+      ask(Word::keep, to_bytes(ShelfMessage{key, content}));
+    };
+    shelf.show = [this](const CaseRecord& record) { tell({Word::show, to_bytes(record)}); };
+    shelf.ticket = [](const StudyCase& one) {
+      return std::make_shared<CaseTicket>(one.id, "", std::numeric_limits<double>::infinity());
+    };
+    shelf.failed = [this](const std::string& id) { return !ask(Word::failed, id).empty(); };
+    return shelf;
+  }
+
+  Channel channel_;
+  std::atomic<bool> stop_{false};
+  std::optional<Catalogue> catalogue_;
+  Registry registry_;
+  std::optional<Study> study_;
+  std::optional<StudyIdentity> identity_;
+  StudyRunner runner_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Message> orders_;
+  std::map<std::uint32_t, std::promise<std::string>> questions_;
+  std::uint32_t asked_ = 0;
+};
+
+}  // namespace
+
+int serve_as_worker() {
+  // The coordinator is asked to stop, and tells its workers.
+  for (const int one : {SIGINT, SIGTERM, SIGUSR1, SIGHUP}) ::signal(one, SIG_IGN);
+  const auto guard = CrashGuard::quiet("/proc/self/fd/" + std::to_string(kWorkerCrashRecord));
+  return WorkerService().run();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+#include <mutex>
+#include <ricochet/contract/registry.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/store/fingerprint.hpp"
+#include "runners/study/study.hpp"
+
+namespace ricochet {
+
+/// What tells the cases of a study, and everything that their bits depend on, from others. May be asked by several
+/// threads; each library is read and hashed once.
+class StudyIdentity {
+ public:
+  StudyIdentity(const Study& study, const Registry& registry)
+      : study_(study), registry_(registry), fingerprints_(study.kind, program_hash()) {}
+
+  /// The fingerprint of a case.
+  std::string of(const StudyCase& study_case);
+  /// Of all cases together: equal for processes that compute the same.
+  std::string of_all();
+
+ private:
+  const Study& study_;
+  const Registry& registry_;
+  std::mutex mutex_;
+  Fingerprints fingerprints_;
+};
+
+/// The files of a case's mass, contact and time plugins; "" for a method of the program itself.
+std::vector<std::filesystem::path> libraries_of(const StudyCase& study_case, const Registry& registry);
+
+}  // namespace ricochet
