@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/cost_model.hpp>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight_choice.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -168,42 +168,6 @@ void say_what_is_left_out(Program& program) {
   if (problem.inertia.inverted() && program.kind != OperatorKind::modal)
     say("the mass matrix itself", "M⁻¹ is known: without K a stage is a product with it, with K it is a border");
   if (program.tangents == 0) say("tangent columns", "no exponent is asked for");
-}
-
-Refusal refuse_flight(const std::string& cause) {
-  return Refusal{"the steps in which nothing happens cannot be left out (" + cause + "): march every step"};
-}
-
-// Why a march cannot leave out steps, by what is known before anything is worked out; empty: nothing speaks against it.
-std::string why_grounded(const Program& program, const CompileOptions& options) {
-  if (program.lanes.size() > 1) return "several lanes march as one block";
-  if (program.load && !program.load_constant) return "the load depends on time";
-  if (!kind_applies(OperatorKind::modal, *program.problem))
-    return "the structure has no modes to fly by: it is not held, or has more than 1000 degrees of freedom";
-  if (options.kind != OperatorKind::automatic && options.kind != OperatorKind::modal)
-    return "another operator than the modal one is asked for";
-  return "";
-}
-
-// The tables of flights; why there are none, where there are none.
-std::string let_fly(Program& program, const CompileOptions& options) {
-  double layer = 0;
-  if (program.contact) {
-    const Parameters parameters[] = {program.lanes.front().law};
-    program.law->prepare(program.problem->points(), parameters);
-    layer = program.law->layer(0);
-  }
-  auto flight = std::make_shared<Flight>(program, layer, options.expected_steps);
-  if (!flight->cause().empty()) return flight->cause();
-  program.flight = std::move(flight);
-  const std::string &held = program.flight->held_cause(), &steps = program.flight->steps_cause();
-  program.left_out.push_back({"steps in which no contact changes",
-                              held.empty()    ? "open or closed, they are composed"
-                              : steps.empty() ? "those without contact are composed; with it (" + held +
-                                                    ") they are made without a search or a look"
-                                              : "those without contact are composed; with it (" +
-                                                    (program.law->reads() ? steps : held) + ") every step is marched"});
-  return "";
 }
 
 StageEfforts efforts_read(const std::vector<StageProgram>& stages) {

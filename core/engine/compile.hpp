@@ -44,6 +44,7 @@ struct CompileOptions {
   int tangents = 0;                   ///< tangent columns per lane
   bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
   MarchWay march = MarchWay::every_step;
+  std::optional<double> memory = {};  ///< bytes that may be taken for leaving out steps; none: what there is
 };
 
 /// What the facts of a scheme need to know about a problem.

@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <bit>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/flight_memory.hpp>
 
 namespace ricochet {
 namespace {
 
 constexpr long long longest_wait = 64;  // steps between two looks that found nothing
-constexpr int most_powers = 40;
 // Steps after which the tip is read sooner than searched for: at all, and where its ends do not tell.
 constexpr long long at_once = 32, soon_read = 256;
 constexpr long long brief = 8;  // steps in contact that are marched before any is left out
@@ -15,10 +14,9 @@ constexpr long long brief = 8;  // steps in contact that are marched before any 
 
 Flight::Flight(const Program& program, double layer, long long steps)
     : layer_(layer),
-      powers_(std::clamp(static_cast<int>(std::bit_width(static_cast<unsigned long long>(steps))), 4, most_powers)) {
-  const double n = program.model->rows(), slots = static_cast<double>(program.plan.slots.size()), width = slots + 3;
-  const double numbers = n * n + n * powers_ * (slots * width + 2 * width * (width + 1));
-  most_sets_ = static_cast<std::size_t>(std::clamp(0.25e9 / (8 * numbers), 1.0, 64.0));
+      powers_(flight_powers(steps)),
+      most_sets_(most_flight_sets(
+          flight_set_bytes(program.model->rows(), static_cast<int>(program.plan.slots.size()), powers_))) {
   free_ = std::make_unique<FlightSet>(program, layer, std::vector<HeldPoint>{}, powers_);
   set_ = free_.get();
   held_cause_ = why_not_held(program);

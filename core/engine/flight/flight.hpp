@@ -118,7 +118,7 @@ class Flight {
 
   double layer_;
   int powers_;
-  std::size_t most_sets_;  // of held points that are remembered: as many as a quarter of a gigabyte holds, 64 at most
+  std::size_t most_sets_;
   std::unique_ptr<FlightSet> free_;
   Pace pace_;
   std::string held_cause_, steps_cause_;

@@ -1,6 +1,7 @@
 // What a flight is made of: k steps at once, what bounds them, what they bring, and where there is none.
 #include <random>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/flight_memory.hpp>
 
 #include "tests/marching.hpp"
 
@@ -170,6 +171,23 @@ TEST_CASE("what cannot fly says why") {
   CHECK_THAT(refusal_of(scene, free_of_contact, 1e-5), Catch::Contains("the load depends on time"));
   scene.load = Formula("0.1*x", "/scene/load");
   CHECK(refusal_of(scene, free_of_contact, 1e-5).empty());
+}
+
+TEST_CASE("tables that would not fit into memory are refused with how much there is, and marched without where free") {
+  const SceneSpec scene = swinging(1e-4, 0.02);
+  CompileOptions small = flights(1000000);
+  small.memory = 1e4;
+  const auto problem = problem_of(scene, 6, free_of_contact.mass, free_of_contact.contact);
+  const auto refused = compiled(problem, free_of_contact, 1e-6, small);
+  REQUIRE(std::holds_alternative<Refusal>(refused));
+  CHECK_THAT(std::get<Refusal>(refused).sentence, Catch::Contains("MB of memory, and there are 0.01 MB"));
+  small.march = MarchWay::automatic;
+  const auto marched = compiled(problem, free_of_contact, 1e-6, small);
+  REQUIRE(std::holds_alternative<Program>(marched));
+  CHECK_FALSE(std::get<Program>(marched).flight);
+  CHECK_THAT(std::get<Program>(marched).every_step_because, Catch::Contains("MB of memory"));
+  CHECK(flight_bytes(12, 2, 6, 1000000) < 64e6);
+  CHECK(flight_bytes(1000, 2, 500, 1000000) < 1e9);
 }
 
 TEST_CASE("what is chosen automatically flies where steps are many, and marches where they are few") {
