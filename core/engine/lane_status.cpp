@@ -32,6 +32,8 @@ std::string text(const LaneEnd& end) {
       return "idle";
     case EndCause::twin_met:
       return "the twin fell on its orbit";
+    case EndCause::process_ended:
+      return "the process that marched it ended";
   }
   return {};
 }

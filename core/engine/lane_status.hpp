@@ -15,6 +15,7 @@ enum class EndCause {
   energy_beyond,          ///< value: energy of an audit, J; bound, J
   idle,                   ///< nothing is marched there
   twin_met,               ///< a twin trajectory fell on its orbit
+  process_ended,          ///< that of the march, for a reason of its own
 };
 
 /// The end of a march: its cause, with the numbers that the cause tells of.
@@ -27,7 +28,7 @@ struct LaneEnd {
   explicit operator bool() const { return cause != EndCause::none; }
   /// Whether the step itself could not be made: then the march has failed. Otherwise it went where no motion of the
   /// scene goes: it has diverged.
-  bool failed() const { return cause == EndCause::law_not_converged; }
+  bool failed() const { return cause == EndCause::law_not_converged || cause == EndCause::process_ended; }
   bool operator==(const LaneEnd&) const = default;
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/march/block_service.hpp"
 #include "runners/march/case_plan.hpp"
 #include "runners/march/march_pace.hpp"
 #include "runners/march/motion_shelf.hpp"
@@ -24,6 +25,7 @@ struct RunContext {
   const Registry& registry;
   std::function<std::string(const StudyCase&)> key;  ///< of a case and everything that its bits depend on
   int jobs = 1;                                      ///< threads of the whole run
+  BlockService* blocks = nullptr;                    ///< what marches blocks of a case elsewhere; null: nothing does
 };
 
 /// How the cases of one study run.
@@ -35,6 +37,11 @@ struct CaseRunner {
   std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
   /// Processor seconds of one case's marching, alone; empty: cases of this kind are not timed apart.
   std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
+  /// Marches a block that a case of another process began by its BlockService, `so_far` being told what would be lost;
+  /// returns the answer. Throws Interrupted where `stop` became true. Empty: cases are not cut into blocks.
+  std::function<std::string(const StudyCase&, const std::string& order, const std::function<void(std::string)>& so_far,
+                            const std::atomic<bool>& stop)>
+      block;
 };
 
 /// One point of a stored study that is to be marched again.

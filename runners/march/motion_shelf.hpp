@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "runners/march/block_service.hpp"
 #include "runners/march/case_watch.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
@@ -38,9 +39,10 @@ std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*re
 
 /// Where a case keeps what would be lost if it were killed, and says how far it is.
 struct CaseDesk {
-  MotionShelf shelf;  ///< bytes by key; empty bytes forget a key
-  std::string key;    ///< of this case and everything its bits depend on
-  int workers = 1;    ///< threads that this case may use
+  MotionShelf shelf;               ///< bytes by key; empty bytes forget a key
+  std::string key;                 ///< of this case and everything its bits depend on
+  int workers = 1;                 ///< threads that this case may use
+  BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
 
 }  // namespace ricochet

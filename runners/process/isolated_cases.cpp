@@ -10,10 +10,11 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/study_identity.hpp"
+#include "runners/process/block_pool.hpp"
 #include "runners/process/key_claims.hpp"
 #include "runners/process/worker_messages.hpp"
 #include "runners/process/worker_process.hpp"
-#include "runners/march/study_identity.hpp"
 
 namespace ricochet {
 namespace {
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double look_up = 0.25;        // s between two looks at `stop`
 constexpr double longest_silence = 60;  // s; a worker says every second that it is there
-constexpr double after_stop = 6;        // s for coming back
+constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
 constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
 
@@ -48,38 +49,43 @@ struct Reply {
 class IsolatedCases::Desk {
  public:
   Desk(const RunContext& context, const IsolationOptions& options)
-      : context_(context), identity_(context.study, context.registry) {
+      : context_(context),
+        identity_(context.study, context.registry),
+        kind_(find_kind(context.study.kind)->start(context)),
+        pool_(context.jobs, [this](const BlockPool::Block& block, const std::function<bool()>& stopping) {
+          march(block, stopping);
+        }) {
     opening_.study = context.study.resolved.dump();
     for (const auto& plugin : options.plugins) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
     opening_.memory = options.memory;
+    opening_.width = context.jobs;
   }
 
   /// A first worker is there, and what only shows where a study is opened has shown.
   void open(MotionShelf shelf, const std::atomic<bool>& stop) {
     shelf_ = std::move(shelf);
-    give_back(take(stop));
+    give_back(take([&] { return stop.load(); }));
   }
 
+  bool times() const { return static_cast<bool>(kind_.time); }
+
   CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop) {
-    CaseOrder order{study_case.id, context_.jobs, budget_of(study_case)};
-    const bool unlimited = !std::isfinite(order.budget);
-    if (unlimited) order.budget = longest_call;
+    const Limit limit = limit_of(study_case);
+    const auto stopping = [&] { return stop.load(); };
     for (int attempt = 1;; ++attempt) {
-      std::unique_ptr<Worker> worker = take(stop);
-      Reply reply = talk(*worker, {word, to_bytes(order)}, stop);
+      const std::shared_ptr<Worker> worker = take(stopping);
+      Reply reply = talk(worker, {word, to_bytes(CaseOrder{study_case.id, limit.seconds})}, stopping, 2 * after_stop);
       claims_.release(worker->number);
+      pool_.forget(worker->number);
       if (!reply.lost) {
-        give_back(std::move(worker));
+        give_back(worker);
         if (reply.message.word == Word::interrupted) throw Interrupted{};
         return message_from<CaseAnswer>(reply.message.content);
       }
       if (stop) throw Interrupted{};
-      if (reply.lost->given_up && !unlimited)
-        throw std::runtime_error(fmt::format("plugin {} did not return from {}() within the budget of {:g} s",
-                                             reply.lost->given_up->plugin, reply.lost->given_up->function,
-                                             order.budget));
+      if (reply.lost->given_up && !limit.ours) throw std::runtime_error(over_budget(*reply.lost->given_up));
       if (attempt < attempts) continue;
-      throw std::runtime_error(sentence(*reply.lost) + ", twice");
+      throw std::runtime_error(sentence(*reply.lost));
     }
   }
 
@@ -88,28 +94,71 @@ class IsolatedCases::Desk {
     int number = 0;
   };
 
-  static std::string sentence(const Lost& lost) {
-    if (lost.given_up)
-      return fmt::format("plugin {} did not return from {}() within {:g} s; its process was ended",
-                         lost.given_up->plugin, lost.given_up->function, lost.given_up->budget);
-    return lost.end.sentence();
+  /// How long a call of a plugin's function may last for a case.
+  struct Limit {
+    double seconds = 0;
+    bool ours = false;  ///< the case has no budget
+  };
+  static Limit limit_of(const StudyCase& study_case) {
+    const double budget = budget_of(study_case);
+    return std::isfinite(budget) ? Limit{budget, false} : Limit{longest_call, true};
   }
 
-  std::unique_ptr<Worker> take(const std::atomic<bool>& stop) {
-    auto worker = std::make_unique<Worker>();
+  static std::string over_budget(const GivenUp& call) {
+    return fmt::format("plugin {} did not return from {}() within the budget of {:g} s", call.plugin, call.function,
+                       call.budget);
+  }
+
+  /// Has a block marched by a worker, for the one that asked.
+  void march(const BlockPool::Block& block, const std::function<bool()>& stopping) {
+    const auto tell = [&](BlockNews::What what, std::string content) {
+      block.tell(BlockNews{what, std::move(content)});
+    };
+    try {
+      auto request = message_from<BlockRequest>(block.request);
+      const StudyCase* const study_case = find_case(context_.study, request.id);
+      if (!study_case) throw std::runtime_error("a block of no case");
+      const Limit limit = limit_of(*study_case);
+      request.budget = limit.seconds;
+      const std::shared_ptr<Worker> worker = take(stopping);
+      const Reply reply = talk(worker, {Word::block, to_bytes(request)}, stopping, after_stop, block.tell);
+      if (!reply.lost) {
+        give_back(worker);
+        return block.tell(message_from<BlockNews>(reply.message.content));
+      }
+      if (stopping()) return tell(BlockNews::What::interrupted, "");
+      if (reply.lost->given_up && !limit.ours)
+        return tell(BlockNews::What::gave_up, over_budget(*reply.lost->given_up));
+      tell(BlockNews::What::lost, sentence(*reply.lost));
+    } catch (const Interrupted&) {
+      tell(BlockNews::What::interrupted, "");
+    } catch (const std::exception& error) {
+      tell(BlockNews::What::failed, error.what());
+    }
+  }
+
+  static std::string sentence(const Lost& lost) {
+    if (lost.given_up)
+      return fmt::format("plugin {} did not return from {}() within {:g} s; its process was ended twice",
+                         lost.given_up->plugin, lost.given_up->function, lost.given_up->budget);
+    return lost.end.sentence("twice");
+  }
+
+  std::shared_ptr<Worker> take(const std::function<bool()>& stopping) {
     {
       const std::lock_guard guard(mutex_);
       if (!idle_.empty()) {
-        worker = std::move(idle_.back());
+        const std::shared_ptr<Worker> worker = std::move(idle_.back());
         idle_.pop_back();
         return worker;
       }
-      worker->number = ++born_;
     }
-    const Reply reply = talk(*worker, {Word::study, to_bytes(opening_)}, stop);
+    const auto worker = std::make_shared<Worker>();
+    worker->number = ++born_;
+    const Reply reply = talk(worker, {Word::study, to_bytes(opening_)}, stopping, after_stop);
     if (reply.lost) {
-      if (stop) throw Interrupted{};
-      throw std::runtime_error("a worker did not open the study: " + sentence(*reply.lost));
+      if (stopping()) throw Interrupted{};
+      throw std::runtime_error("a worker did not open the study: " + reply.lost->end.sentence());
     }
     const auto ready = message_from<WorkerReady>(reply.message.content);
     if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
@@ -119,51 +168,57 @@ class IsolatedCases::Desk {
     return worker;
   }
 
-  void give_back(std::unique_ptr<Worker> worker) {
+  void give_back(const std::shared_ptr<Worker>& worker) {
     const std::lock_guard guard(mutex_);
-    idle_.push_back(std::move(worker));
+    idle_.push_back(worker);
   }
 
-  /// Sends an order and serves the worker until it is done with it.
-  Reply talk(Worker& worker, Message order, const std::atomic<bool>& stop) {
+  /// Sends an order and serves the worker until it is done with it. `patience`: s for coming back after `stopping`.
+  Reply talk(const std::shared_ptr<Worker>& worker, Message order, const std::function<bool()>& stopping,
+             double patience, const std::function<void(BlockNews)>& so_far = {}) {
     order.about = 1;
     Reply reply;
     std::optional<GivenUp> given_up;
     std::optional<Clock::time_point> told_to_stop;
     Clock::time_point heard = Clock::now();
     bool silent = false;
-    Channel::Heard state = worker.channel().send(order) ? Channel::Heard::silence : Channel::Heard::gone;
+    Channel::Heard state = worker->channel().send(order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
-      state = worker.channel().receive(reply.message, look_up);
-      if (stop && !told_to_stop) {
+      state = worker->channel().receive(reply.message, look_up);
+      if (!told_to_stop && stopping()) {
         told_to_stop = Clock::now();
-        worker.channel().send({Word::stop});
+        worker->channel().send({Word::stop});
       }
+      if (told_to_stop && since(*told_to_stop) > patience) worker->kill();
       if (state == Channel::Heard::silence) {
         silent = since(heard) > longest_silence;
-        if (silent || (told_to_stop && since(*told_to_stop) > after_stop)) worker.kill();
+        if (silent) worker->kill();
       }
       if (state != Channel::Heard::message) continue;
       heard = Clock::now();
-      if (told_to_stop && since(*told_to_stop) > after_stop) worker.kill();
-      if (reply.message.word == Word::given_up)
+      if (reply.message.word == Word::given_up) {
         given_up = message_from<GivenUp>(reply.message.content);
-      else if (reply.message.word != Word::alive && !serve(worker, reply.message, stop))
+      } else if (reply.message.word == Word::block_news) {
+        auto news = message_from<BlockNews>(reply.message.content);
+        if (news.what != BlockNews::What::so_far) return reply;
+        if (so_far) so_far(std::move(news));
+      } else if (reply.message.word != Word::alive && !serve(worker, reply.message, stopping)) {
         return reply;
+      }
     }
-    reply.lost = Lost{worker.end(), given_up};
+    reply.lost = Lost{worker->end(), given_up};
     reply.lost->end.silent = silent;
     return reply;
   }
 
   /// Answers what a worker asks for; false where the message is what it was asked for.
-  bool serve(Worker& worker, const Message& message, const std::atomic<bool>& stop) {
+  bool serve(const std::shared_ptr<Worker>& worker, const Message& message, const std::function<bool()>& stopping) {
     const auto answer = [&](std::string content) {
-      worker.channel().send({Word::answer, std::move(content), message.about});
+      worker->channel().send({Word::answer, std::move(content), message.about});
     };
     if (message.word == Word::find) {
       answer(claims_.find(
-          worker.number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stop));
+          worker->number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stopping));
     } else if (message.word == Word::keep) {
       const auto kept = message_from<ShelfMessage>(message.content);
       if (shelf_.keep) shelf_.keep(kept.key, kept.content);
@@ -175,6 +230,12 @@ class IsolatedCases::Desk {
       CaseRecord record = message_from<CaseRecord>(message.content);
       if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
       if (shelf_.show) shelf_.show(record);
+    } else if (message.word == Word::march) {
+      pool_.begin({message.content, worker->number, message.about, [worker, about = message.about](BlockNews news) {
+                     worker->channel().send({Word::block_news, to_bytes(news), about});
+                   }});
+    } else if (message.word == Word::cancel) {
+      pool_.stop(worker->number, message.about);
     } else {
       return false;
     }
@@ -183,12 +244,14 @@ class IsolatedCases::Desk {
 
   const RunContext context_;
   StudyIdentity identity_;
+  const CaseRunner kind_;  // what this kind's cases are asked for; nothing of it runs here
   WorkerStudy opening_;
   MotionShelf shelf_;
   KeyClaims claims_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Worker>> idle_;
-  int born_ = 0;
+  std::vector<std::shared_ptr<Worker>> idle_;
+  std::atomic<int> born_{0};
+  BlockPool pool_;  // last: its threads use all of the above
 };
 
 IsolatedCases::IsolatedCases(const RunContext& context, const IsolationOptions& options)
@@ -203,6 +266,12 @@ CaseRunner IsolatedCases::runner() {
   runner.run = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
     return desk->ask(Word::run, study_case, stop).record;
   };
+  if (desk_->times())
+    runner.time = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      const CaseAnswer answer = desk->ask(Word::time, study_case, stop);
+      if (!answer.error.empty()) throw std::runtime_error(answer.error);
+      return answer.found ? std::optional(answer.seconds) : std::nullopt;
+    };
   return runner;
 }
 

@@ -5,7 +5,7 @@
 namespace ricochet {
 
 std::string KeyClaims::find(int owner, const std::string& key, const std::function<std::string()>& look,
-                            const std::atomic<bool>& stop) {
+                            const std::function<bool()>& stopping) {
   constexpr auto look_up = std::chrono::milliseconds(100);
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -17,7 +17,7 @@ std::string KeyClaims::find(int owner, const std::string& key, const std::functi
       owners_[key] = owner;
       return "";
     }
-    if (claimed->second == owner || waiting_.count(claimed->second) != 0 || stop) return "";
+    if (claimed->second == owner || waiting_.count(claimed->second) != 0 || stopping()) return "";
     waiting_.insert(owner);
     changed_.wait_for(lock, look_up);
     waiting_.erase(owner);

@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <map>
@@ -15,7 +14,7 @@ class KeyClaims {
  public:
   /// What `look` finds; "" where this owner is to compute it. Waits while another one does.
   std::string find(int owner, const std::string& key, const std::function<std::string()>& look,
-                   const std::atomic<bool>& stop);
+                   const std::function<bool()>& stopping);
   /// Something is kept under the key.
   void kept(const std::string& key);
   /// The owner's case has ended: nobody waits for it any more.

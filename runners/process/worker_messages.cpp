@@ -74,7 +74,7 @@ void serialize(Archive& archive, CaseRecord& record) {
 
 template <class Archive>
 void serialize(Archive& archive, WorkerStudy& message) {
-  archive(message.study, message.plugins, message.memory);
+  archive(message.study, message.plugins, message.memory, message.width);
 }
 
 template <class Archive>
@@ -84,7 +84,17 @@ void serialize(Archive& archive, WorkerReady& message) {
 
 template <class Archive>
 void serialize(Archive& archive, CaseOrder& message) {
-  archive(message.id, message.workers, message.budget);
+  archive(message.id, message.budget);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockRequest& message) {
+  archive(message.id, message.order, message.budget);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockNews& message) {
+  archive(message.what, message.content);
 }
 
 template <class Archive>
@@ -111,6 +121,12 @@ std::string to_bytes(const WorkerReady& message) {
 std::string to_bytes(const CaseOrder& message) {
   return to_bytes(message, message_mark);
 }
+std::string to_bytes(const BlockRequest& message) {
+  return to_bytes(message, message_mark);
+}
+std::string to_bytes(const BlockNews& message) {
+  return to_bytes(message, message_mark);
+}
 std::string to_bytes(const CaseAnswer& message) {
   return to_bytes(message, message_mark);
 }
@@ -131,6 +147,8 @@ T message_from(const std::string& bytes) {
 template WorkerStudy message_from(const std::string&);
 template WorkerReady message_from(const std::string&);
 template CaseOrder message_from(const std::string&);
+template BlockRequest message_from(const std::string&);
+template BlockNews message_from(const std::string&);
 template CaseAnswer message_from(const std::string&);
 template GivenUp message_from(const std::string&);
 template ShelfMessage message_from(const std::string&);

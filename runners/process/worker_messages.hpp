@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/march/block_service.hpp"
 #include "runners/store/record.hpp"
 
 /// \file
@@ -13,6 +14,7 @@ struct WorkerStudy {
   std::string study;                 ///< resolved, as JSON
   std::vector<std::string> plugins;  ///< libraries beside the program's own
   double memory = 0;                 ///< bytes of address space that it may take; 0: no limit
+  int width = 1;                     ///< blocks that are marched at one time, by all workers together
 };
 
 /// That it did, and with what: equal for equal programs, plugins and studies.
@@ -24,8 +26,13 @@ struct WorkerReady {
 /// One case to be planned, run or timed.
 struct CaseOrder {
   std::string id;
-  int workers = 1;    ///< that may march blocks of it at the same time
   double budget = 0;  ///< s that a call of a plugin's function may last
+};
+
+/// A block of a case, to be marched by another worker than the one that runs the case.
+struct BlockRequest {
+  std::string id, order;
+  double budget = 0;  ///< s that a call of a plugin's function may last; set by the coordinator
 };
 
 /// What became of it: a value, or what was thrown.
@@ -50,6 +57,8 @@ struct ShelfMessage {
 std::string to_bytes(const WorkerStudy& message);
 std::string to_bytes(const WorkerReady& message);
 std::string to_bytes(const CaseOrder& message);
+std::string to_bytes(const BlockRequest& message);
+std::string to_bytes(const BlockNews& message);
 std::string to_bytes(const CaseAnswer& message);
 std::string to_bytes(const GivenUp& message);
 std::string to_bytes(const ShelfMessage& message);
@@ -61,6 +70,8 @@ T message_from(const std::string& bytes);
 extern template WorkerStudy message_from(const std::string&);
 extern template WorkerReady message_from(const std::string&);
 extern template CaseOrder message_from(const std::string&);
+extern template BlockRequest message_from(const std::string&);
+extern template BlockNews message_from(const std::string&);
 extern template CaseAnswer message_from(const std::string&);
 extern template GivenUp message_from(const std::string&);
 extern template ShelfMessage message_from(const std::string&);

@@ -44,11 +44,12 @@ std::string ended_by(int status) {
 
 }  // namespace
 
-std::string WorkerEnd::sentence() const {
+std::string WorkerEnd::sentence(const std::string& times) const {
   std::string text;
+  const std::string often = times.empty() ? "" : " " + times;
   if (!plugin.empty()) text += fmt::format("plugin {}, {}(): ", plugin, function);
-  text +=
-      silent ? "its process did not answer any more and was killed" : fmt::format("its process was ended by {}", cause);
+  text += silent ? fmt::format("its process did not answer any more and was killed{}", often)
+                 : fmt::format("its process was ended{} by {}", often, cause);
   if (!last_lines.empty()) text += fmt::format("; it wrote: {}", last_lines);
   return text;
 }

@@ -17,8 +17,9 @@ struct WorkerEnd {
   std::string last_lines;        ///< of its stderr
   bool silent = false;           ///< it said nothing for too long, and was killed for that
 
-  /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault)".
-  std::string sentence() const;
+  /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …".
+  /// `times`: put behind the verb, "twice".
+  std::string sentence(const std::string& times = "") const;
 };
 
 /// `ricochet worker` as a child of this process: the same program, with a channel to it. What it writes to stderr goes

@@ -19,12 +19,12 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/crash_record.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/march/watched_threads.hpp"
 #include "runners/process/channel.hpp"
 #include "runners/process/worker_messages.hpp"
 #include "runners/process/worker_process.hpp"
 #include "runners/run/run_study.hpp"
-#include "runners/march/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/study/stated_plan.hpp"
@@ -53,7 +53,7 @@ void limit_memory(double bytes) {
   std::set_new_handler(out_of_memory);
 }
 
-class WorkerService {
+class WorkerService : public BlockService {
  public:
   WorkerService() : channel_(kWorkerChannel) {}
 
@@ -70,6 +70,21 @@ class WorkerService {
     for (;;) serve(next());
   }
 
+  int width() const override { return width_; }
+
+  int begin(const std::string& case_id, const std::string& order, std::function<void(BlockNews)> heard) override {
+    std::uint32_t about = 0;
+    {
+      const std::lock_guard guard(mutex_);
+      about = ++asked_;
+      heard_[about] = std::move(heard);
+    }
+    tell({Word::march, to_bytes(BlockRequest{case_id, order, 0}), about});
+    return static_cast<int>(about);
+  }
+
+  void stop(int block) override { tell({Word::cancel, "", static_cast<std::uint32_t>(block)}); }
+
  private:
   /// Without a coordinator there is nothing to do, whatever is under way.
   void tell(const Message& message) {
@@ -80,6 +95,10 @@ class WorkerService {
     Message message;
     while (channel_.receive(message) == Channel::Heard::message) {
       if (message.word == Word::stop) stop_ = true;
+      if (message.word == Word::block_news) {
+        hear(message);
+        continue;
+      }
       const std::lock_guard guard(mutex_);
       if (message.word == Word::answer) {
         if (const auto asked = questions_.extract(message.about); !asked.empty())
@@ -90,6 +109,19 @@ class WorkerService {
       }
     }
     ::_exit(0);
+  }
+
+  void hear(const Message& message) {
+    auto news = message_from<BlockNews>(message.content);
+    std::function<void(BlockNews)> heard;
+    {
+      const std::lock_guard guard(mutex_);
+      const auto found = heard_.find(message.about);
+      if (found == heard_.end()) return;
+      heard = found->second;
+      if (news.what != BlockNews::What::so_far) heard_.erase(found);
+    }
+    heard(std::move(news));
   }
 
   Message next() {
@@ -115,14 +147,50 @@ class WorkerService {
   void serve(const Message& order) {
     if (order.word == Word::study) return tell({Word::ready, to_bytes(open(order.content)), order.about});
     stop_ = false;
+    if (order.word == Word::block) return serve_block(message_from<BlockRequest>(order.content), order.about);
     const auto request = message_from<CaseOrder>(order.content);
-    const StudyCase* const found = find_case(*study_, request.id);
-    const auto ticket = std::make_shared<CaseTicket>(request.id, "", request.budget);
+    const StudyCase& study_case = *find_case(*study_, request.id);
     CaseAnswer answer;
+    const Caught caught =
+        watched(request.id, request.budget, order.about, [&] { answer = answer_to(order.word, study_case); });
+    if (caught.interrupted) return tell({Word::interrupted, "", order.about});
+    answer.error = caught.error;
+    answer.pointer = caught.pointer;
+    tell({order.word == Word::plan  ? Word::planned
+          : order.word == Word::run ? Word::ran
+                                    : Word::timed,
+          to_bytes(answer), order.about});
+  }
+
+  void serve_block(const BlockRequest& request, std::uint32_t about) {
+    const StudyCase& study_case = *find_case(*study_, request.id);
+    const auto news = [&](BlockNews::What what, std::string content) {
+      tell({Word::block_news, to_bytes(BlockNews{what, std::move(content)}), about});
+    };
+    std::string answer;
+    const Caught caught = watched(request.id, request.budget, about, [&] {
+      answer = runner_.cases.block(
+          study_case, request.order, [&](std::string bytes) { news(BlockNews::What::so_far, std::move(bytes)); },
+          stop_);
+    });
+    if (caught.interrupted) return news(BlockNews::What::interrupted, "");
+    if (!caught.error.empty()) return news(BlockNews::What::failed, caught.error);
+    news(BlockNews::What::done, std::move(answer));
+  }
+
+  /// What was thrown where a case or a block was worked for.
+  struct Caught {
     bool interrupted = false;
+    std::string error, pointer;
+  };
+
+  /// Works for a case on a thread of its own, watched: a plugin's function that does not come back ends this process.
+  Caught watched(const std::string& case_id, double budget, std::uint32_t about, const std::function<void()>& work) {
+    const auto ticket = std::make_shared<CaseTicket>(case_id, "", budget);
+    Caught caught;
     WatchHooks hooks;
     hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
-      tell({Word::given_up, to_bytes(GivenUp{call.plugin, call.function, request.budget}), order.about});
+      tell({Word::given_up, to_bytes(GivenUp{call.plugin, call.function, budget}), about});
       ::_exit(kGaveUp);
     };
     hooks.left_behind = [](const std::vector<LongCall>&) { ::_exit(kGaveUp); };
@@ -131,28 +199,24 @@ class WorkerService {
         [&] {
           const CaseScope scope(ticket);
           try {
-            answer = answer_to(order.word, *found);
+            work();
           } catch (const Interrupted&) {
-            interrupted = true;
+            caught.interrupted = true;
           } catch (const InputError& error) {
-            answer.error = error.what();
-            answer.pointer = error.pointer();
+            caught.error = error.what();
+            caught.pointer = error.pointer();
           } catch (const Refusal& refusal) {
-            answer.error = refusal.sentence;
+            caught.error = refusal.sentence;
           } catch (const std::exception& error) {
-            answer.error = error.what();
+            caught.error = error.what();
           } catch (...) {
-            answer.error = "an exception that carries no message";
+            caught.error = "an exception that carries no message";
           }
           const auto turn = ticket->turn();
           ticket->close();
         },
         stop_, hooks);
-    if (interrupted) return tell({Word::interrupted, "", order.about});
-    tell({order.word == Word::plan  ? Word::planned
-          : order.word == Word::run ? Word::ran
-                                    : Word::timed,
-          to_bytes(answer), order.about});
+    return caught;
   }
 
   CaseAnswer answer_to(Word word, const StudyCase& study_case) {
@@ -177,8 +241,10 @@ class WorkerService {
       catalogue_.emplace(standard_catalogue(plugins));
       study_ = parse_study(wanted.study, *catalogue_, registry_);
       identity_.emplace(*study_, registry_);
-      runner_.cases = find_kind(study_->kind)
-                          ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, 1});
+      width_ = wanted.width;
+      runner_.cases =
+          find_kind(study_->kind)
+              ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, 1, this});
       if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
       ready.identity = identity_->of_all();
       limit_memory(wanted.memory);
@@ -218,7 +284,9 @@ class WorkerService {
   std::condition_variable changed_;
   std::deque<Message> orders_;
   std::map<std::uint32_t, std::promise<std::string>> questions_;
+  std::map<std::uint32_t, std::function<void(BlockNews)>> heard_;  // of blocks that others march for this one
   std::uint32_t asked_ = 0;
+  int width_ = 1;
 };
 
 }  // namespace

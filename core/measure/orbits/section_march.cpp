@@ -7,6 +7,11 @@
 #include <ricochet/measure/orbits/section_march.hpp>
 
 namespace ricochet {
+
+std::string end_text(const Orbit& orbit) {
+  return orbit.end_words.empty() ? text(orbit.end) : orbit.end_words;
+}
+
 namespace {
 
 constexpr int impact_periods = 64;     // whose impacts are kept

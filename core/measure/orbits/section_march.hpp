@@ -3,6 +3,7 @@
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
+#include <string>
 #include <vector>
 
 /// \file
@@ -68,7 +69,8 @@ struct Orbit {
   Stage stage = Stage::transient;
   int transient_periods = 0, kept_periods = 0;
   bool settled = false;
-  LaneEnd end;  ///< of a stopped one
+  LaneEnd end;            ///< of a stopped one
+  std::string end_words;  ///< what ended its process, where that was the cause; else ""
   int stopped_period = 0;
   Settling settling;
   SectionSeries readings;             ///< per kept period: the strobed point without the sawtooth of single steps
@@ -89,6 +91,9 @@ struct Orbit {
   LaneState entry;  ///< when the kept periods began, one step after a strobe
   LaneState now;    ///< the latest one
 };
+
+/// Why a stopped orbit stopped, in words.
+std::string end_text(const Orbit& orbit);
 
 /// A block of lanes that march orbits.
 class SectionMarch {

@@ -25,7 +25,7 @@ void CellScenes::begin() {
 
 int CellScenes::displaced(double value) {
   const auto [known, added] = displacements_.try_emplace(value, 0);
-  if (added) known->second = scenes_->add([&] { return with_parameter(case_, displacement_pointer, value); });
+  if (added) known->second = scenes_->add(displacement_pointer, value, true);
   return known->second;
 }
 
@@ -36,18 +36,14 @@ int CellScenes::moving(double value) {
   double place = 0;
   for (const double candidate : axes_[turned_ ? 1 : 0].values)
     if ((*scenes_)[displaced(place = candidate)].refusal.empty()) break;
-  return known->second = scenes_->add([&] {
-    return with_parameters(case_, {{displacement_pointer, place}, {velocity_pointer, value}});
-  });
+  return known->second = scenes_->add({{{displacement_pointer, place}, {velocity_pointer, value}}});
 }
 
 CellScenes::Prepared CellScenes::prepare(std::size_t column, std::size_t row) {
   Prepared out;
   const double x = axes_[0].values[column], y = axes_[1].values[row];
   if (!shared_) {
-    out.task.scene = scenes_->add([&] {
-      return with_parameters(case_, {{axes_[0].pointer, x}, {axes_[1].pointer, y}});
-    });
+    out.task.scene = scenes_->add({{{axes_[0].pointer, x}, {axes_[1].pointer, y}}});
     out.refusal = (*scenes_)[out.task.scene].refusal;
     out.task.lane = (*scenes_)[out.task.scene].lane;
     return out;

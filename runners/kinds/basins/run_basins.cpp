@@ -88,7 +88,9 @@ class BasinsRun {
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
                                                 .workers = desk_.workers,
                                                 .budget = budget_of(case_) - record_.run_seconds,
-                                                .lean = true});
+                                                .lean = true,
+                                                .blocks = desk_.blocks,
+                                                .case_id = case_.id});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
     OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
     scheduler.restore(checkpoints.find());

@@ -50,7 +50,11 @@ class BifurcationRun {
     if (scenes_.groups() == 0) return refused();
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
-    OrbitScheduler scheduler(scenes_, {.section = section_, .workers = desk_.workers, .budget = budget_of(case_)});
+    OrbitScheduler scheduler(scenes_, {.section = section_,
+                                       .workers = desk_.workers,
+                                       .budget = budget_of(case_),
+                                       .blocks = desk_.blocks,
+                                       .case_id = case_.id});
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
     ExponentCheckpoints batches(desk_.shelf, desk_.key);
@@ -222,6 +226,7 @@ class BifurcationRun {
         OrbitView view;
         view.value = value.value;
         view.start = s;
+        view.scene = scene;
         view.refusal = scenes_[scene].refusal;
         if (task >= 0) {
           if (!scheduler_->finished(task)) continue;
@@ -271,12 +276,16 @@ class BifurcationRun {
       if (!all[i].complete()) continue;
       task.orbits.push_back(all[i].orbit);
       task.groups.push_back(all[i].group);
+      task.scenes.push_back(all[i].scene);
       places.push_back(i);
     }
     if (exponents() > 0 && !places.empty()) {
       for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
       task.count = exponents();
       task.workers = desk_.workers;
+      task.blocks = desk_.blocks;
+      task.case_id = case_.id;
+      task.lost = [this](const std::string& cause) { record_.notes.push_back("no exponents of an orbit: " + cause); };
       batches.serve(task);
       double seconds = 0;
       const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
@@ -306,7 +315,7 @@ class BifurcationRun {
                                    marched, scheduler_->count());
     } else if (marched == 0) {
       for (const OrbitView& view : all)
-        if (view.orbit) record_.reason = "no orbit was completed; " + text(view.orbit->end);
+        if (view.orbit) record_.reason = "no orbit was completed; " + end_text(*view.orbit);
     } else if (bad > 0) {
       record_.notes.push_back(
           fmt::format("{} of {} orbits were refused or stopped; their rows say why", bad, all.size()));

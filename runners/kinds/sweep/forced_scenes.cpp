@@ -23,12 +23,14 @@ std::map<std::string, ParameterValue> shared_parameters(const Parameters& all, c
 ForcedScenes::ForcedScenes(const StudyCase& study_case, const Registry& registry)
     : case_(study_case), registry_(registry), groups_(march_way(study_case)) {}
 
-int ForcedScenes::add(const std::function<StudyCase()>& variant) {
+int ForcedScenes::add(SceneVariant variant) {
   const int number = count();
   scenes_.emplace_back();
   ForcedScene& scene = scenes_.back();
+  scene.variant = std::move(variant);
   try {
-    const StudyCase one = variant();
+    StudyCase one = with_parameters(case_, scene.variant.values);
+    if (!scene.variant.own_state) one = at_rest(one);
     scene.pulsation = forcing_pulsation(one.scene);
     const auto* entry = registry_.contact(one.contact.name);
     LaneCandidate candidate;
@@ -57,6 +59,7 @@ int ForcedScenes::add(const std::function<StudyCase()>& variant) {
     const auto problem = candidate.problem;
     const double h = candidate.h;
     scene.group = groups_.add(std::move(candidate));
+    if (pioneer_ < 0) pioneer_ = number;
     if (scene.group == static_cast<int>(beyond_limit_.size()))
       beyond_limit_.push_back(beyond_explicit_limit(problem, std::get<StepPlan>(plan), h, plan_at));
     scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];
@@ -69,10 +72,7 @@ int ForcedScenes::add(const std::function<StudyCase()>& variant) {
 }
 
 int ForcedScenes::add(const std::string& pointer, double value, bool own_state) {
-  return add([&] {
-    const StudyCase one = with_parameter(case_, pointer, value);
-    return own_state ? one : at_rest(one);
-  });
+  return add({{{pointer, value}}, own_state});
 }
 
 std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScenes& scenes,

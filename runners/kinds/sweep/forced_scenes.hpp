@@ -13,8 +13,15 @@
 
 namespace ricochet {
 
+/// What makes a scene of a sweep out of its case: scalars that change, and where it begins.
+struct SceneVariant {
+  std::vector<std::pair<std::string, double>> values;  ///< JSON pointer and value
+  bool own_state = true;                               ///< in the case's own initial state; else at rest
+};
+
 /// One scene of a sweep, made ready.
 struct ForcedScene {
+  SceneVariant variant;
   std::string refusal;  ///< why this one cannot be marched; "" when it can
   int group = -1;       ///< of those that share one factorisation
   LaneSpec lane;        ///< with the scene's own initial state
@@ -28,13 +35,15 @@ class ForcedScenes {
   ForcedScenes(const StudyCase& study_case, const Registry& registry);
 
   /// Prepares one more scene; its number is the count before. Refusals and bad values are kept, not thrown.
-  int add(const std::function<StudyCase()>& variant);
+  int add(SceneVariant variant);
   /// The case with one parameter changed, in its own initial state or at rest in the laboratory frame.
   int add(const std::string& pointer, double value, bool own_state);
 
   const ForcedScene& operator[](int scene) const { return scenes_[static_cast<std::size_t>(scene)]; }
   int count() const { return static_cast<int>(scenes_.size()); }
   int groups() const { return groups_.count(); }
+  /// The scene that began the first group, and with it chose the operator of all; −1: there is none.
+  int pioneer() const { return pioneer_; }
 
   /// What the scenes of a group share, as LaneGroups has it.
   const SemiDiscrete& problem(int group) const { return *groups_.problem(group); }
@@ -57,6 +66,7 @@ class ForcedScenes {
   const Registry& registry_;
   std::vector<ForcedScene> scenes_;
   LaneGroups groups_;
+  int pioneer_ = -1;
   std::vector<std::string> beyond_limit_;  // per group: why an explicit step of it is refused
 };
 

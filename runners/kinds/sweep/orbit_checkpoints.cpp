@@ -29,8 +29,8 @@ MarchedOrbits OrbitCheckpoints::find() {
 
 void OrbitCheckpoints::save(const MarchedOrbits& marched) {
   if (!shelf_.keep) return;
-  if (!marched.finished.empty()) shelf_.keep(part(parts_++), to_bytes({marched.finished, {}}));
-  shelf_.keep(part(-1), to_bytes({{}, marched.running}));
+  if (!marched.finished.empty()) shelf_.keep(part(parts_++), to_bytes(MarchedOrbits{marched.finished, {}}));
+  shelf_.keep(part(-1), to_bytes(MarchedOrbits{{}, marched.running}));
 }
 
 void OrbitCheckpoints::forget() {

@@ -9,6 +9,7 @@
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/kinds/sweep/case_workers.hpp"
+#include "runners/kinds/sweep/distributed_exponents.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 
 namespace ricochet {
@@ -101,20 +102,32 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       exponents.method = fmt::format("twin({:g})", twin_offset);
     }
   };
+  const auto recall_batch = [&](std::size_t i) {
+    const std::vector<std::size_t>& members = batches[i].orbits;
+    std::vector<OrbitExponents> known = task.find ? task.find(i) : std::vector<OrbitExponents>();
+    if (known.size() != members.size()) return false;
+    for (std::size_t b = 0; b < members.size(); ++b) found[members[b]] = std::move(known[b]);
+    return true;
+  };
+  const auto keep_batch = [&](std::size_t i) {
+    if (!task.keep) return;
+    std::vector<OrbitExponents> known;
+    for (const std::size_t orbit : batches[i].orbits) known.push_back(found[orbit]);
+    task.keep(i, known);
+  };
+  if (task.blocks) {
+    std::vector<std::vector<std::size_t>> unknown;
+    for (std::size_t i = 0; i < batches.size(); ++i)
+      unknown.push_back(recall_batch(i) ? std::vector<std::size_t>() : batches[i].orbits);
+    measure_elsewhere(scenes, task, plan, unknown, found, seconds, keep_batch, stop);
+    return found;
+  }
   std::atomic<std::size_t> next{0};
   seconds += run_workers(task.workers, [&](int) {
     for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
-      const std::vector<std::size_t>& members = batches[i].orbits;
-      std::vector<OrbitExponents> known = task.find ? task.find(i) : std::vector<OrbitExponents>();
-      if (known.size() == members.size()) {
-        for (std::size_t b = 0; b < members.size(); ++b) found[members[b]] = std::move(known[b]);
-        continue;
-      }
+      if (recall_batch(i)) continue;
       measure(batches[i]);
-      if (!task.keep) continue;
-      known.clear();
-      for (const std::size_t orbit : members) known.push_back(found[orbit]);
-      task.keep(i, known);
+      keep_batch(i);
     }
   });
   if (stop) throw Interrupted{};

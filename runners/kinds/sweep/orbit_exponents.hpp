@@ -27,10 +27,15 @@ MarginalRoots marginal_roots(const ForcedScenes& scenes, int group);
 /// What is measured, of which orbits.
 struct ExponentTask {
   std::vector<const Orbit*> orbits;
-  std::vector<int> groups;     ///< of each orbit
-  std::vector<bool> sawtooth;  ///< per group: see MarginalRoots
-  int count = 1;               ///< exponents
-  int workers = 1;             ///< threads
+  std::vector<int> groups;         ///< of each orbit
+  std::vector<bool> sawtooth;      ///< per group: see MarginalRoots
+  int count = 1;                   ///< exponents
+  int workers = 1;                 ///< threads
+  BlockService* blocks = nullptr;  ///< other processes that measure; null: threads of this one
+  std::string case_id = {};        ///< for them
+  std::vector<int> scenes = {};    ///< of each orbit, for them
+  /// Told why an orbit has none: what ended the processes that measured it.
+  std::function<void(const std::string&)> lost = {};
   /// Where batches outlive the program: find(number) gives what keep(number, batch) was given, or none. May be empty.
   std::function<std::vector<OrbitExponents>(std::size_t)> find;
   std::function<void(std::size_t, const std::vector<OrbitExponents>&)> keep;

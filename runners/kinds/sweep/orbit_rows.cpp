@@ -99,8 +99,8 @@ std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector
 std::pair<std::string, std::string> status_of(const OrbitView& view) {
   if (!view.orbit) return {"refused", view.refusal};
   if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
-  const LaneEnd& end = view.orbit->end;
-  return {end.failed() ? "failed" : "diverged", fmt::format("period {}: {}", view.orbit->stopped_period, text(end))};
+  return {view.orbit->end.failed() ? "failed" : "diverged",
+          fmt::format("period {}: {}", view.orbit->stopped_period, end_text(*view.orbit))};
 }
 
 SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes) {

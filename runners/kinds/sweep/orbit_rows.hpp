@@ -18,7 +18,7 @@ struct OrbitView {
   std::size_t start = 0;  ///< which of the case's starts
   std::string refusal;    ///< why there is no orbit
   const Orbit* orbit = nullptr;
-  int group = -1;
+  int scene = -1, group = -1;
   const SemiDiscrete* problem = nullptr;  ///< of that group
   std::string marginal;                   ///< what the stability analysis says of roots that are the scheme's
   std::optional<EquivalentViscosity> viscosity;

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "runners/kinds/sweep/case_workers.hpp"
+#include "runners/kinds/sweep/distributed_orbits.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/march/prepare_case.hpp"
 
@@ -203,6 +204,21 @@ void OrbitScheduler::work(Shared& shared, int worker) {
 }
 
 void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint) {
+  if (options_.blocks) {
+    DistributedOrbits distributed(queue_, scenes_, options_);
+    const auto count = [&] {
+      seconds_ += distributed.seconds();
+      lane_periods_ += distributed.lane_periods();
+      over_budget_ = over_budget_ || distributed.over_budget();
+    };
+    try {
+      distributed.run(stop, checkpoint);
+    } catch (...) {
+      count();
+      throw;
+    }
+    return count();
+  }
   Shared shared(*this, stop, checkpoint);
   // A worker waits only for orbits that another one is marching: fewer threads than workers make no difference.
   seconds_ += run_workers(options_.workers, [&](int worker) {

@@ -1,9 +1,11 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "runners/kinds/sweep/orbit_queue.hpp"
+#include "runners/march/block_service.hpp"
 
 namespace ricochet {
 
@@ -11,10 +13,12 @@ namespace ricochet {
 struct ScheduleOptions {
   SectionPlan section;
   int workers = 1;
-  int lanes = 8;          ///< most lanes of a block
-  double interval = 5;    ///< s between checkpoints
-  double budget = 1e300;  ///< processor seconds
-  bool lean = false;      ///< see OrbitQueue
+  int lanes = 8;                   ///< most lanes of a block
+  double interval = 5;             ///< s between checkpoints
+  double budget = 1e300;           ///< processor seconds
+  bool lean = false;               ///< see OrbitQueue
+  BlockService* blocks = nullptr;  ///< other processes that march; null: threads of this one
+  std::string case_id = {};        ///< for them
 };
 
 /// Marches orbits in blocks of lanes, on threads that take from one queue: chains (orbits that follow each other) first

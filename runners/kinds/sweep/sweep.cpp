@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runners/kinds/single_study.hpp"
+#include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/kinds/sweep/dynamics_tables.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
@@ -21,10 +22,14 @@ Kind sweep_kind(RunSweep run) {
     const int workers = std::max(1, context.jobs / static_cast<int>(context.study.cases.size()));
     CaseRunner runner;
     runner.open = [shelf](MotionShelf opened, const std::atomic<bool>&) { *shelf = std::move(opened); };
-    runner.run = [run, shelf, workers, key = context.key, &registry = context.registry](const StudyCase& study_case,
-                                                                                        const std::atomic<bool>& stop) {
-      return run(study_case, registry, CaseDesk{*shelf, key(study_case), workers}, stop);
+    runner.run = [run, shelf, workers, blocks = context.blocks, key = context.key, &registry = context.registry](
+                     const StudyCase& study_case, const std::atomic<bool>& stop) {
+      return run(study_case, registry, CaseDesk{*shelf, key(study_case), workers, blocks}, stop);
     };
+    runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](
+                       const StudyCase& study_case, const std::string& order,
+                       const std::function<void(std::string)>& so_far,
+                       const std::atomic<bool>& stop) { return marcher->march(study_case, order, so_far, stop); };
     return runner;
   };
   kind.tables = [](StudyResults& results) {

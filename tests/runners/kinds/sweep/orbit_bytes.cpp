@@ -83,7 +83,7 @@ TEST_CASE("nothing marched is nothing") {
 }
 
 TEST_CASE("bytes that are cut short or of another kind are refused") {
-  const std::string bytes = to_bytes({{full_orbit()}, {full_orbit()}});
+  const std::string bytes = to_bytes(MarchedOrbits{{full_orbit()}, {full_orbit()}});
   for (std::size_t size = 0; size < bytes.size(); ++size)
     CHECK_THROWS_AS(marched_orbits(bytes.substr(0, size)), std::runtime_error);
   std::string other = bytes;

@@ -19,8 +19,7 @@ class Sweep {
  public:
   explicit Sweep(const Json& text) : opened_(opened_sweep(text)), scenes(opened_.first(), *opened_.registry) {
     const std::string pointer = opened_.first().settings.at("parameter").at("pointer");
-    for (const double value : parameter_values(opened_.first().settings))
-      scenes.add([&] { return at_rest(with_parameter(opened_.first(), pointer, value)); });
+    for (const double value : parameter_values(opened_.first().settings)) scenes.add(pointer, value, false);
     options.section = section_plan(opened_.first(), scenes);
     options.interval = 1e9;
   }
@@ -46,7 +45,7 @@ void add_all(OrbitScheduler& scheduler, const Sweep& sweep) {
 std::vector<std::string> bits(const OrbitScheduler& scheduler) {
   std::vector<std::string> all;
   for (int i = 0; i < scheduler.count(); ++i)
-    all.push_back(scheduler.finished(i) ? to_bytes({{scheduler.orbit(i)}, {}}) : "");
+    all.push_back(scheduler.finished(i) ? to_bytes(MarchedOrbits{{scheduler.orbit(i)}, {}}) : "");
   return all;
 }
 

@@ -1,0 +1,146 @@
+#include "runners/kinds/sweep/block_orders.hpp"
+
+#include <cereal/types/utility.hpp>
+
+#include "runners/kinds/sweep/orbit_archive.hpp"
+#include "runners/march/bytes.hpp"
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* order_mark = "block 1";
+constexpr const char* answer_mark = "answer of a block 1";
+constexpr std::size_t most_scenes = 8192;  // that are kept for later blocks
+
+std::vector<double> numbers(const Eigen::VectorXd& vector) {
+  return {vector.data(), vector.data() + vector.size()};
+}
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+template <class Archive>
+void serialize(Archive& archive, SceneVariant& variant) {
+  archive(variant.values, variant.own_state);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SectionPlan& plan) {
+  archive(plan.pulsation, plan.steps_per_period, plan.strobe, plan.transient, plan.at_most, plan.keep, plan.section,
+          plan.tolerance, plan.scale);
+}
+
+template <class Archive>
+void serialize(Archive& archive, OrderedOrbit& orbit) {
+  archive(orbit.scene, orbit.position, orbit.velocity);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockOrder& order) {
+  archive(order.scenes, order.section, order.lanes, order.lean, order.interval, order.orbits, order.marched,
+          order.exponents, order.sawtooth);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockAnswer& answer) {
+  archive(answer.marched, answer.exponents, answer.seconds, answer.lane_periods);
+}
+
+std::string to_bytes(const BlockOrder& order) {
+  return to_bytes(order, order_mark);
+}
+std::string to_bytes(const BlockAnswer& answer) {
+  return to_bytes(answer, answer_mark);
+}
+BlockOrder block_order(const std::string& bytes) {
+  return from_bytes<BlockOrder>(bytes, order_mark);
+}
+BlockAnswer block_answer(const std::string& bytes) {
+  return from_bytes<BlockAnswer>(bytes, answer_mark);
+}
+
+int BlockOrders::place(int scene) {
+  if (order_.scenes.empty()) {
+    places_[scenes_.pioneer()] = 0;
+    order_.scenes.push_back(scenes_[scenes_.pioneer()].variant);
+  }
+  const auto [known, added] = places_.try_emplace(scene, static_cast<int>(order_.scenes.size()));
+  if (added) order_.scenes.push_back(scenes_[scene].variant);
+  return known->second;
+}
+
+int BlockOrders::add(int scene, const LaneSpec& lane) {
+  const int at = place(scene);
+  order_.orbits.push_back({at, numbers(lane.position), numbers(lane.velocity)});
+  return static_cast<int>(order_.orbits.size()) - 1;
+}
+
+// The scenes' numbers, made as far as they are not known.
+std::vector<int> BlockMarcher::prepare(const StudyCase& study_case, const std::vector<SceneVariant>& variants) {
+  const auto key_of = [](const SceneVariant& variant) { return Key{variant.values, variant.own_state}; };
+  const Key pioneer = key_of(variants.front());
+  if (case_ != &study_case || pioneer_ != pioneer || known_.size() > most_scenes) {
+    scenes_.emplace(study_case, registry_);
+    known_.clear();
+    case_ = &study_case;
+    pioneer_ = pioneer;
+  }
+  std::vector<int> scenes;
+  for (const SceneVariant& variant : variants) {
+    const auto [known, added] = known_.try_emplace(key_of(variant), 0);
+    if (added) known->second = scenes_->add(variant);
+    const ForcedScene& scene = (*scenes_)[known->second];
+    if (!scene.refusal.empty()) throw std::runtime_error(scene.refusal);
+    scenes.push_back(known->second);
+  }
+  return scenes;
+}
+
+std::string BlockMarcher::march(const StudyCase& study_case, const std::string& bytes,
+                                const std::function<void(std::string)>& so_far, const std::atomic<bool>& stop) {
+  const double begun = thread_seconds();
+  BlockOrder order = block_order(bytes);
+  const std::vector<int> scenes = prepare(study_case, order.scenes);
+  const auto lane_of = [&](const OrderedOrbit& orbit) {
+    LaneSpec lane = (*scenes_)[scenes.at(static_cast<std::size_t>(orbit.scene))].lane;
+    lane.position = vector_of(orbit.position);
+    lane.velocity = vector_of(orbit.velocity);
+    return lane;
+  };
+  BlockAnswer answer;
+  if (order.exponents > 0) {
+    ExponentTask task;
+    task.sawtooth.assign(static_cast<std::size_t>(scenes_->groups()), order.sawtooth);
+    task.count = order.exponents;
+    for (std::size_t i = 0; i < order.orbits.size(); ++i) {
+      Orbit& orbit = order.marched.finished.at(i);
+      orbit.lane = lane_of(order.orbits[i]);
+      task.orbits.push_back(&orbit);
+      task.groups.push_back((*scenes_)[scenes.at(static_cast<std::size_t>(order.orbits[i].scene))].group);
+    }
+    answer.exponents = measure_exponents(*scenes_, task, order.section, answer.seconds, stop);
+    return to_bytes(answer);
+  }
+  OrbitScheduler scheduler(
+      *scenes_,
+      {.section = order.section, .workers = 1, .lanes = order.lanes, .interval = order.interval, .lean = order.lean});
+  for (const OrderedOrbit& orbit : order.orbits)
+    scheduler.add({scenes.at(static_cast<std::size_t>(orbit.scene)), lane_of(orbit), -1, -1});
+  scheduler.restore(std::move(order.marched));
+  std::string last;
+  scheduler.run(stop, [&](const MarchedOrbits& marched) {
+    answer.marched = marched;
+    answer.seconds = thread_seconds() - begun;
+    answer.lane_periods = scheduler.lane_periods();
+    so_far(to_bytes(answer));
+  });
+  // All orbits have been told.
+  answer.marched = {};
+  return to_bytes(answer);
+}
+
+}  // namespace ricochet

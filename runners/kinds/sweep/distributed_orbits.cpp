@@ -1,0 +1,166 @@
+#include "runners/kinds/sweep/distributed_orbits.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "runners/march/prepare_case.hpp"
+
+namespace ricochet {
+namespace {
+
+using What = BlockNews::What;
+using Clock = std::chrono::steady_clock;
+
+constexpr double block_seconds = 2;  // of predicted work
+constexpr double look_up = 0.1;      // s between two looks at `stop`
+constexpr int most_attempts = 2;
+
+}  // namespace
+
+DistributedOrbits::DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scenes, const ScheduleOptions& options)
+    : queue_(queue), scenes_(scenes), options_(options), service_(*options.blocks, options.case_id) {}
+
+// Orbits of a block: as many as take some seconds, fewer where all processes would not have a share, and where there
+// are enough a full block of lanes.
+int DistributedOrbits::block_size() const {
+  const int width = options_.blocks->width(), ready = std::max(1, queue_.ready());
+  const int fair = (ready + width - 1) / width, half = (ready + 2 * width - 1) / (2 * width);
+  const double steps =
+      static_cast<double>(options_.section.transient + options_.section.keep) * options_.section.steps_per_period;
+  const double one = steps * scenes_.predicted_step_seconds(0, options_.lanes) / options_.lanes;
+  const double timed = std::clamp(std::ceil(block_seconds / std::max(one, 1e-12)), 1.0, 4096.0);
+  return std::max(std::min(options_.lanes, fair), std::min(half, static_cast<int>(timed)));
+}
+
+void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
+  BlockOrders orders(scenes_, options_.section);
+  Block block;
+  block.alone = alone;
+  const auto add = [&](int number) {
+    const OrbitTask& task = queue_.task(number);
+    block.tasks.push_back(number);
+    return orders.add(task.scene, task.lane);
+  };
+  for (Orbit& orbit : batch.orbits) {
+    orders.order().marched.running.push_back(orbit);
+    orders.order().marched.running.back().task = add(orbit.task);
+  }
+  for (const int number : batch.fresh) add(number);
+  block.running = std::move(batch.orbits);
+  orders.order().lanes = options_.lanes;
+  orders.order().lean = options_.lean;
+  // One that is suspected tells each of its periods.
+  orders.order().interval = alone ? 0 : options_.interval;
+  blocks_[service_.begin(to_bytes(orders.order()))] = std::move(block);
+}
+
+void DistributedOrbits::fill() {
+  while (service_.room()) {
+    OrbitQueue::Batch batch;
+    const bool alone = !alone_.empty();
+    if (alone) {
+      Orbit orbit = std::move(alone_.front());
+      alone_.pop_front();
+      if (orbit.now.slots.empty())
+        batch.fresh.push_back(orbit.task);
+      else
+        batch.orbits.push_back(std::move(orbit));
+    } else {
+      batch.orbits = queue_.resume(options_.lanes);
+      if (batch.empty()) batch = queue_.take(-1, block_size());
+    }
+    if (batch.empty()) return;
+    send(std::move(batch), alone);
+  }
+}
+
+void DistributedOrbits::hear(Block& block, const std::string& bytes) {
+  BlockAnswer answer = block_answer(bytes);
+  const auto number = [&](const Orbit& orbit) { return block.tasks.at(static_cast<std::size_t>(orbit.task)); };
+  for (Orbit& orbit : answer.marched.finished) {
+    orbit.task = number(orbit);
+    orbit.lane = queue_.task(orbit.task).lane;
+    if (!queue_.finished(orbit.task)) queue_.finish(std::move(orbit));
+  }
+  block.running = std::move(answer.marched.running);
+  for (Orbit& orbit : block.running) {
+    orbit.task = number(orbit);
+    orbit.lane = queue_.task(orbit.task).lane;
+  }
+  seconds_ += answer.seconds - block.seconds;
+  lane_periods_ += answer.lane_periods - block.lane_periods;
+  block.seconds = answer.seconds;
+  block.lane_periods = answer.lane_periods;
+}
+
+void DistributedOrbits::lose(Block block, const std::string& cause) {
+  for (const int number : block.tasks) {
+    if (queue_.finished(number)) continue;
+    Orbit orbit;
+    orbit.task = number;
+    orbit.lane = queue_.task(number).lane;
+    for (Orbit& seen : block.running)
+      if (seen.task == number) orbit = std::move(seen);
+    if (++attempts_[number] < most_attempts || block.tasks.size() > 1) {
+      alone_.push_back(std::move(orbit));
+      continue;
+    }
+    orbit.stage = Orbit::Stage::stopped;
+    orbit.stopped_period = orbit.transient_periods + orbit.kept_periods + 1;
+    orbit.end = {.cause = EndCause::process_ended};
+    orbit.end_words = cause;
+    queue_.finish(std::move(orbit));
+  }
+}
+
+MarchedOrbits DistributedOrbits::under_way() {
+  std::vector<std::vector<Orbit>> all;
+  for (const auto& [number, block] : blocks_) all.push_back(block.running);
+  std::vector<Orbit> begun;
+  for (const Orbit& orbit : alone_)
+    if (!orbit.now.slots.empty()) begun.push_back(orbit);
+  all.push_back(std::move(begun));
+  return queue_.stock(all);
+}
+
+void DistributedOrbits::run(const std::atomic<bool>& stop,
+                            const std::function<void(const MarchedOrbits&)>& checkpoint) {
+  queue_.open();
+  Clock::time_point last = Clock::now();
+  std::vector<Block> interrupted;
+  bool ending = false;
+  while (queue_.open_tasks() > 0) {
+    if ((stop || over_budget_) && !ending) {
+      ending = true;
+      service_.stop();
+    }
+    if (!ending) fill();
+    if (service_.count() == 0) break;
+    if (auto heard = service_.next(look_up)) {
+      auto& [number, news] = *heard;
+      Block& block = blocks_.at(number);
+      if (news.what == What::so_far || news.what == What::done) hear(block, news.content);
+      if (news.what == What::failed || news.what == What::gave_up) throw std::runtime_error(news.content);
+      if (news.what != What::so_far) {
+        const auto ended = blocks_.extract(number);
+        if (news.what == What::lost && !ending) lose(std::move(ended.mapped()), news.content);
+        if (news.what == What::interrupted || (news.what == What::lost && ending))
+          interrupted.push_back(std::move(ended.mapped()));
+      }
+    }
+    over_budget_ = over_budget_ || seconds_ > options_.budget;
+    if (std::chrono::duration<double>(Clock::now() - last).count() > options_.interval) {
+      last = Clock::now();
+      checkpoint(under_way());
+    }
+  }
+  for (Block& block : interrupted) blocks_[-1 - static_cast<int>(blocks_.size())] = std::move(block);
+  checkpoint(under_way());
+  blocks_.clear();
+  if (stop) throw Interrupted{};
+  if (!over_budget_ && queue_.open_tasks() > 0) throw std::runtime_error("blocks of orbits came back unfinished");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,57 @@
+#pragma once
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/kinds/sweep/block_orders.hpp"
+#include "runners/kinds/sweep/blocks_under_way.hpp"
+#include "runners/kinds/sweep/orbit_scheduler.hpp"
+
+namespace ricochet {
+
+/// Marches the orbits of a queue as blocks in other processes. A block whose process ends goes back orbit by orbit,
+/// each from where it was last seen; an orbit that ends a process of its own for the second time has stopped there,
+/// with the reason. All others have their usual bits: none depends on its company.
+class DistributedOrbits {
+ public:
+  DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scenes, const ScheduleOptions& options);
+
+  /// As OrbitScheduler::run().
+  void run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint);
+  double seconds() const { return seconds_; }
+  long long lane_periods() const { return lane_periods_; }
+  bool over_budget() const { return over_budget_; }
+
+ private:
+  struct Block {
+    std::vector<int> tasks;  // by their places in the order
+    std::vector<Orbit> running;
+    double seconds = 0;
+    long long lane_periods = 0;
+    bool alone = false;
+  };
+
+  void fill();
+  int block_size() const;
+  void send(OrbitQueue::Batch batch, bool alone);
+  void hear(Block& block, const std::string& bytes);
+  void lose(Block block, const std::string& cause);
+  MarchedOrbits under_way();
+
+  OrbitQueue& queue_;
+  const ForcedScenes& scenes_;
+  const ScheduleOptions& options_;
+  BlocksUnderWay service_;
+  std::map<int, Block> blocks_;
+  std::deque<Orbit> alone_;      // to go on, or with no period: to begin, in blocks of their own
+  std::map<int, int> attempts_;  // processes that ended, by task
+  double seconds_ = 0;
+  long long lane_periods_ = 0;
+  bool over_budget_ = false;
+};
+
+}  // namespace ricochet
