@@ -24,6 +24,8 @@ class BlockService {
   virtual ~BlockService() = default;
   /// Blocks that are marched at one time, over the whole run.
   virtual int width() const = 0;
+  /// Of these, those that a case may count on: fewer where other cases are under way or wait.
+  virtual int share() const = 0;
   /// Begins a block of a case and returns its number. `heard` is told what it has so far, and in the end, once, what
   /// became of it; by another thread.
   virtual int begin(const std::string& case_id, const std::string& order, std::function<void(BlockNews)> heard) = 0;

@@ -72,9 +72,13 @@ class IsolatedCases::Desk {
   CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop) {
     const Limit limit = limit_of(study_case);
     const auto stopping = [&] { return stop.load(); };
+    // Each pending case was planned before the first one ran.
+    if (word == Word::plan) ++pending_;
+    const int left = word == Word::run ? pending_-- : 1, share = context_.jobs / std::clamp(left, 1, context_.jobs);
     for (int attempt = 1;; ++attempt) {
       const std::shared_ptr<Worker> worker = take(stopping);
-      Reply reply = talk(worker, {word, to_bytes(CaseOrder{study_case.id, limit.seconds})}, stopping, 2 * after_stop);
+      Reply reply =
+          talk(worker, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share})}, stopping, 2 * after_stop);
       claims_.release(worker->number);
       pool_.forget(worker->number);
       if (!reply.lost) {
@@ -250,7 +254,7 @@ class IsolatedCases::Desk {
   KeyClaims claims_;
   std::mutex mutex_;
   std::vector<std::shared_ptr<Worker>> idle_;
-  std::atomic<int> born_{0};
+  std::atomic<int> born_{0}, pending_{0};
   BlockPool pool_;  // last: its threads use all of the above
 };
 

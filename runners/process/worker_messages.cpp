@@ -84,7 +84,7 @@ void serialize(Archive& archive, WorkerReady& message) {
 
 template <class Archive>
 void serialize(Archive& archive, CaseOrder& message) {
-  archive(message.id, message.budget);
+  archive(message.id, message.budget, message.share);
 }
 
 template <class Archive>

@@ -27,6 +27,7 @@ struct WorkerReady {
 struct CaseOrder {
   std::string id;
   double budget = 0;  ///< s that a call of a plugin's function may last
+  int share = 1;      ///< see BlockService
 };
 
 /// A block of a case, to be marched by another worker than the one that runs the case.

@@ -71,6 +71,7 @@ class WorkerService : public BlockService {
   }
 
   int width() const override { return width_; }
+  int share() const override { return share_; }
 
   int begin(const std::string& case_id, const std::string& order, std::function<void(BlockNews)> heard) override {
     std::uint32_t about = 0;
@@ -150,6 +151,7 @@ class WorkerService : public BlockService {
     if (order.word == Word::block) return serve_block(message_from<BlockRequest>(order.content), order.about);
     const auto request = message_from<CaseOrder>(order.content);
     const StudyCase& study_case = *find_case(*study_, request.id);
+    share_ = request.share;
     CaseAnswer answer;
     const Caught caught =
         watched(request.id, request.budget, order.about, [&] { answer = answer_to(order.word, study_case); });
@@ -286,7 +288,7 @@ class WorkerService : public BlockService {
   std::map<std::uint32_t, std::promise<std::string>> questions_;
   std::map<std::uint32_t, std::function<void(BlockNews)>> heard_;  // of blocks that others march for this one
   std::uint32_t asked_ = 0;
-  int width_ = 1;
+  int width_ = 1, share_ = 1;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "runners/kinds/sweep/block_orders.hpp"
 
+#include <algorithm>
 #include <cereal/types/utility.hpp>
 
 #include "runners/kinds/sweep/orbit_archive.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 constexpr const char* order_mark = "block 1";
 constexpr const char* answer_mark = "answer of a block 1";
-constexpr std::size_t most_scenes = 8192;  // that are kept for later blocks
+constexpr std::size_t most_scenes = 8192, most_kept_cases = 8;  // that are kept for later blocks
 
 std::vector<double> numbers(const Eigen::VectorXd& vector) {
   return {vector.data(), vector.data() + vector.size()};
@@ -79,34 +80,36 @@ int BlockOrders::add(int scene, const LaneSpec& lane) {
   return static_cast<int>(order_.orbits.size()) - 1;
 }
 
-// The scenes' numbers, made as far as they are not known.
-std::vector<int> BlockMarcher::prepare(const StudyCase& study_case, const std::vector<SceneVariant>& variants) {
-  const auto key_of = [](const SceneVariant& variant) { return Key{variant.values, variant.own_state}; };
-  const Key pioneer = key_of(variants.front());
-  if (case_ != &study_case || pioneer_ != pioneer || known_.size() > most_scenes) {
-    scenes_.emplace(study_case, registry_);
-    known_.clear();
-    case_ = &study_case;
-    pioneer_ = pioneer;
+BlockMarcher::Scenes& BlockMarcher::scenes_of(const StudyCase& study_case, const SceneVariant& pioneer) {
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Scenes& one) {
+    return one.study_case == &study_case && one.pioneer == key_of(pioneer) && one.known.size() < most_scenes;
+  });
+  if (found != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, found);
+  } else {
+    // Of another batch of cells: it does not come back.
+    std::erase_if(kept_, [&](const Scenes& one) { return one.study_case == &study_case; });
+    kept_.push_front({&study_case, key_of(pioneer), std::make_unique<ForcedScenes>(study_case, registry_), {}});
+    if (kept_.size() > most_kept_cases) kept_.pop_back();
   }
-  std::vector<int> scenes;
-  for (const SceneVariant& variant : variants) {
-    const auto [known, added] = known_.try_emplace(key_of(variant), 0);
-    if (added) known->second = scenes_->add(variant);
-    const ForcedScene& scene = (*scenes_)[known->second];
-    if (!scene.refusal.empty()) throw std::runtime_error(scene.refusal);
-    scenes.push_back(known->second);
-  }
-  return scenes;
+  return kept_.front();
 }
 
 std::string BlockMarcher::march(const StudyCase& study_case, const std::string& bytes,
                                 const std::function<void(std::string)>& so_far, const std::atomic<bool>& stop) {
   const double begun = thread_seconds();
   BlockOrder order = block_order(bytes);
-  const std::vector<int> scenes = prepare(study_case, order.scenes);
+  Scenes& kept = scenes_of(study_case, order.scenes.at(0));
+  std::vector<int> scenes;
+  for (const SceneVariant& variant : order.scenes) {
+    const auto [known, added] = kept.known.try_emplace(key_of(variant), 0);
+    if (added) known->second = kept.all->add(variant);
+    const ForcedScene& scene = (*kept.all)[known->second];
+    if (!scene.refusal.empty()) throw std::runtime_error(scene.refusal);
+    scenes.push_back(known->second);
+  }
   const auto lane_of = [&](const OrderedOrbit& orbit) {
-    LaneSpec lane = (*scenes_)[scenes.at(static_cast<std::size_t>(orbit.scene))].lane;
+    LaneSpec lane = (*kept.all)[scenes.at(static_cast<std::size_t>(orbit.scene))].lane;
     lane.position = vector_of(orbit.position);
     lane.velocity = vector_of(orbit.velocity);
     return lane;
@@ -114,19 +117,19 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
   BlockAnswer answer;
   if (order.exponents > 0) {
     ExponentTask task;
-    task.sawtooth.assign(static_cast<std::size_t>(scenes_->groups()), order.sawtooth);
+    task.sawtooth.assign(static_cast<std::size_t>(kept.all->groups()), order.sawtooth);
     task.count = order.exponents;
     for (std::size_t i = 0; i < order.orbits.size(); ++i) {
       Orbit& orbit = order.marched.finished.at(i);
       orbit.lane = lane_of(order.orbits[i]);
       task.orbits.push_back(&orbit);
-      task.groups.push_back((*scenes_)[scenes.at(static_cast<std::size_t>(order.orbits[i].scene))].group);
+      task.groups.push_back((*kept.all)[scenes.at(static_cast<std::size_t>(order.orbits[i].scene))].group);
     }
-    answer.exponents = measure_exponents(*scenes_, task, order.section, answer.seconds, stop);
+    answer.exponents = measure_exponents(*kept.all, task, order.section, answer.seconds, stop);
     return to_bytes(answer);
   }
   OrbitScheduler scheduler(
-      *scenes_,
+      *kept.all,
       {.section = order.section, .workers = 1, .lanes = order.lanes, .interval = order.interval, .lean = order.lean});
   for (const OrderedOrbit& orbit : order.orbits)
     scheduler.add({scenes.at(static_cast<std::size_t>(orbit.scene)), lane_of(orbit), -1, -1});

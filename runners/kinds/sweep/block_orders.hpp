@@ -1,8 +1,9 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <list>
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,7 +65,7 @@ class BlockOrders {
   std::map<int, int> places_;  // of scenes
 };
 
-/// The side that marches: keeps the scenes of the case that it last worked for.
+/// The side that marches: keeps the scenes of the cases that it last worked for.
 class BlockMarcher {
  public:
   explicit BlockMarcher(const Registry& registry) : registry_(registry) {}
@@ -73,14 +74,18 @@ class BlockMarcher {
                     const std::function<void(std::string)>& so_far, const std::atomic<bool>& stop);
 
  private:
-  std::vector<int> prepare(const StudyCase& study_case, const std::vector<SceneVariant>& variants);
-
   using Key = std::pair<std::vector<std::pair<std::string, double>>, bool>;
+  struct Scenes {
+    const StudyCase* study_case;
+    Key pioneer;
+    std::unique_ptr<ForcedScenes> all;
+    std::map<Key, int> known;
+  };
+  static Key key_of(const SceneVariant& variant) { return {variant.values, variant.own_state}; }
+  Scenes& scenes_of(const StudyCase& study_case, const SceneVariant& pioneer);
+
   const Registry& registry_;
-  const StudyCase* case_ = nullptr;
-  std::optional<ForcedScenes> scenes_;
-  Key pioneer_;
-  std::map<Key, int> known_;
+  std::list<Scenes> kept_;  // the one that was used last first
 };
 
 }  // namespace ricochet

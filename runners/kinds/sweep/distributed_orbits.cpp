@@ -25,8 +25,8 @@ DistributedOrbits::DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scen
 // Orbits of a block: as many as take some seconds, fewer where all processes would not have a share, and where there
 // are enough a full block of lanes.
 int DistributedOrbits::block_size() const {
-  const int width = options_.blocks->width(), ready = std::max(1, queue_.ready());
-  const int fair = (ready + width - 1) / width, half = (ready + 2 * width - 1) / (2 * width);
+  const int share = options_.blocks->share(), ready = std::max(1, queue_.ready());
+  const int fair = (ready + share - 1) / share, half = (ready + 2 * share - 1) / (2 * share);
   const double steps =
       static_cast<double>(options_.section.transient + options_.section.keep) * options_.section.steps_per_period;
   const double one = steps * scenes_.predicted_step_seconds(0, options_.lanes) / options_.lanes;
