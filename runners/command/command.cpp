@@ -8,8 +8,8 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/command/subcommand.hpp"
-#include "runners/run/worker_service.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/worker_service.hpp"
 #include "runners/store/store_error.hpp"
 
 namespace ricochet {
@@ -109,11 +109,11 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table] [--isolate]",
+       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
        "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"out", "jobs", "fresh", "table", "isolate", "plugin"},
+       {"out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
        command_run},
       {"plan",
        "STUDY.json [--cases]",

@@ -7,6 +7,7 @@
 #include "runners/command/command.hpp"
 #include "runners/command/study_file.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/report/index_page.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
@@ -17,6 +18,18 @@
 
 namespace ricochet {
 
+namespace {
+
+/// Whether a method of the study is of a library that is not the program's own: somebody is writing it.
+bool runs_foreign_code(const OpenStudy& open) {
+  for (const StudyCase& one : open.study.cases)
+    for (const std::filesystem::path& file : libraries_of(one, open.registry))
+      if (file.extension() == ".so" && open.catalogue.foreign(file)) return true;
+  return false;
+}
+
+}  // namespace
+
 int command_run(const Arguments& arguments, std::ostream&) {
   const AllowedProcessors processors = allowed_processors();  // what is wrong with it is not the study's fault
   return with_study(arguments, [&](const OpenStudy& open) {
@@ -26,7 +39,7 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
-    options.isolate = arguments.isolate;
+    options.isolate = arguments.isolate || (!arguments.threads && runs_foreign_code(open));
     options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });

@@ -23,12 +23,16 @@ po::options_description described(const Subcommand& command) {
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
-    add("jobs", po::value<int>()->value_name("N"), "cases that run at the same time (default: all processors that it may use)");
+    add("jobs", po::value<int>()->value_name("N"),
+        "cases that run at the same time (default: all processors that it may use)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
   if (has("cases")) add("cases", "also print a line for every case");
   if (has("isolate"))
-    add("isolate", "run cases in processes of their own: one that crashes costs what it had under way");
+    add("isolate",
+        "run in worker processes: a plugin that crashes costs what it had under way (where a plugin is not "
+        "Ricochet's own, this is the default)");
+  if (has("threads")) add("threads", "run in threads of this process, whoever wrote the plugins");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
@@ -117,6 +121,8 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.fresh = values.count("fresh") > 0;
   arguments.table = values.count("table") > 0;
   arguments.isolate = values.count("isolate") > 0;
+  arguments.threads = values.count("threads") > 0;
+  if (arguments.isolate && arguments.threads) throw UsageError("--isolate and --threads exclude each other");
   arguments.cases = values.count("cases") > 0;
   arguments.study = values.count("study") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;

@@ -31,6 +31,7 @@ struct Arguments {
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
   bool isolate = false;                          ///< --isolate
+  bool threads = false;                          ///< --threads
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given

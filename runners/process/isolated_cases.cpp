@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/engine/available_memory.hpp>
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/study_identity.hpp"
@@ -27,6 +28,13 @@ constexpr double longest_silence = 60;  // s; a worker says every second that it
 constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
 constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
+
+// Bytes; 0 (no limit) where nobody says what there is.
+double share_of_memory(int jobs) {
+  constexpr double least = 2.0 * (1 << 30);
+  const double free = available_memory();
+  return std::isfinite(free) ? std::max(least, free / jobs) : 0;
+}
 
 double since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
@@ -57,7 +65,7 @@ class IsolatedCases::Desk {
         }) {
     opening_.study = context.study.resolved.dump();
     for (const auto& plugin : options.plugins) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
-    opening_.memory = options.memory;
+    opening_.memory = options.memory > 0 ? options.memory : share_of_memory(context.jobs);
     opening_.width = context.jobs;
   }
 
@@ -157,12 +165,16 @@ class IsolatedCases::Desk {
         return worker;
       }
     }
-    const auto worker = std::make_shared<Worker>();
-    worker->number = ++born_;
-    const Reply reply = talk(worker, {Word::study, to_bytes(opening_)}, stopping, after_stop);
-    if (reply.lost) {
+    std::shared_ptr<Worker> worker;
+    Reply reply;
+    for (int attempt = 1;; ++attempt) {
+      worker = std::make_shared<Worker>();
+      worker->number = ++born_;
+      reply = talk(worker, {Word::study, to_bytes(opening_)}, stopping, after_stop);
+      if (!reply.lost) break;
       if (stopping()) throw Interrupted{};
-      throw std::runtime_error("a worker did not open the study: " + reply.lost->end.sentence());
+      if (attempt == attempts)
+        throw std::runtime_error("no worker opens the study: " + reply.lost->end.sentence("twice"));
     }
     const auto ready = message_from<WorkerReady>(reply.message.content);
     if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);

@@ -11,7 +11,7 @@ namespace ricochet {
 /// What worker processes are given.
 struct IsolationOptions {
   std::vector<std::filesystem::path> plugins;  ///< libraries beside the program's own
-  double memory = 0;                           ///< bytes of address space of each; 0: no limit
+  double memory = 0;  ///< bytes of address space of each; 0: its share of what is free, and never less than 2 GiB
 };
 
 /// Cases whose code runs in processes of their own: a plugin that crashes, aborts, takes all memory or never returns

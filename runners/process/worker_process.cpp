@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -133,6 +134,7 @@ WorkerEnd WorkerProcess::end() {
   const std::lock_guard guard(mutex_);
   found.last_lines = last_lines_;
   while (found.last_lines.ends_with('\n')) found.last_lines.pop_back();
+  std::replace(found.last_lines.begin(), found.last_lines.end(), '\n', '|');
   return found;
 }
 

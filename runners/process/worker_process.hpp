@@ -14,7 +14,7 @@ namespace ricochet {
 struct WorkerEnd {
   std::string cause;             ///< "signal 11 (segmentation fault)", "exit code 7"
   std::string plugin, function;  ///< whose function it was in, where it could say so: "contact 'x' (file)", "solve"
-  std::string last_lines;        ///< of its stderr
+  std::string last_lines;        ///< of its stderr, "|" between two
   bool silent = false;           ///< it said nothing for too long, and was killed for that
 
   /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …".

@@ -198,7 +198,8 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
        {"core/contract", "core/loader", "core/scene", "core/engine", "core/measure", "runners/table", "runners/study",
         "runners/store", "runners/march", "runners/report"}},
       {"runners/process",
-       {"core/contract", "runners/table", "runners/study", "runners/store", "runners/march", "runners/kinds"}},
+       {"core/contract", "core/engine", "runners/table", "runners/study", "runners/store", "runners/march",
+        "runners/kinds"}},
       {"runners/run",
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
         "runners/march", "runners/kinds", "runners/process", "runners/report"}},
@@ -207,7 +208,7 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
         "runners/command"}},
       {"runners/command",
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
-        "runners/kinds", "runners/run", "runners/report", "runners/check"}},
+        "runners/march", "runners/kinds", "runners/run", "runners/report", "runners/check"}},
   };
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {

@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* ends_mark = "ends of cells 3";
+constexpr const char* ends_mark = "ends of cells 4";
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void serialize(Archive& archive, MotionClass& motion) {
 
 template <class Archive>
 void serialize(Archive& archive, CellEnd& end) {
-  archive(end.motion, end.period, end.periods, end.status, end.reason, end.section, end.displacements);
+  archive(end.motion, end.period, end.periods, end.status, end.reason, end.lost, end.section, end.displacements);
 }
 
 CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan) {
@@ -30,6 +30,7 @@ CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan) {
   const RegimeVerdict& verdict = view.judged.verdict;
   CellEnd end;
   std::tie(end.status, end.reason) = status_of(view);
+  end.lost = orbit.end.cause == EndCause::process_ended;
   end.periods = orbit.transient_periods + orbit.kept_periods;
   if (orbit.stage != Orbit::Stage::complete) return end;
   end.motion = verdict.motion;

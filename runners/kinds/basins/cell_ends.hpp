@@ -16,6 +16,7 @@ struct CellEnd {
   int period = 0;                     ///< of what repeats, be it without contact; 0: nothing does
   long long periods = 0;              ///< marched, transient and kept
   std::string status, reason;         ///< done, refused, diverged, failed
+  bool lost = false;                  ///< the processes that marched it ended
   std::vector<SectionPoint> section;  ///< strobed: one period of what repeats, else the last points
   std::vector<double> displacements;  ///< of the same strobes, without the sawtooth of single steps
 };

@@ -203,7 +203,7 @@ class BasinsRun {
 
   void finish() {
     write_tables(record_, true);
-    std::size_t marched = 0, complete = 0, refused = 0;
+    std::size_t marched = 0, complete = 0, refused = 0, lost = 0;
     const CellEnd* bad = nullptr;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
       if (!refinement_.marched(cell)) continue;
@@ -212,9 +212,11 @@ class BasinsRun {
       refused += end.status == "refused";
       marched += end.status != "refused";
       complete += end.status == "done";
+      lost += end.lost;
       if (end.status != "done" && !bad) bad = &end;
     }
     put_measure(record_, "orbits", static_cast<double>(complete));
+    if (lost > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost));
     if (lane_periods_ > 0)
       put_measure(record_, "lane_steps_per_second",
                   static_cast<double>(lane_periods_ * section_.steps_per_period) / std::max(1e-9, record_.run_seconds));

@@ -56,8 +56,9 @@ Table bifurcation_answers(const StudyResults& results) {
       const auto share = rows.number(row, "share");
       all += intervals;
       const bool depends = verdict == "depends" && !choice.empty();
-      parts += fmt::format("{}{} in {}{}", parts.empty() ? "" : ", ", depends ? "depends on " + spoken_choice(choice) : verdict,
-                           intervals, share ? fmt::format(" ({} of the range)", report::share_text(*share)) : "");
+      parts += fmt::format("{}{} in {}{}", parts.empty() ? "" : ", ",
+                           depends ? "depends on " + spoken_choice(choice) : verdict, intervals,
+                           share ? fmt::format(" ({} of the range)", report::share_text(*share)) : "");
     }
     const auto from = rows.number(0, "from"), to = rows.number(0, "to");
     const std::string range = from && to ? fmt::format(" of {} from {} to {}", parameter.name, number_text(*from, 5),

@@ -285,7 +285,10 @@ class BifurcationRun {
       task.workers = desk_.workers;
       task.blocks = desk_.blocks;
       task.case_id = case_.id;
-      task.lost = [this](const std::string& cause) { record_.notes.push_back("no exponents of an orbit: " + cause); };
+      task.lost = [this](const std::string& cause) {
+        ++lost_;
+        record_.notes.push_back("no exponents of an orbit: " + cause);
+      };
       batches.serve(task);
       double seconds = 0;
       const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
@@ -302,12 +305,16 @@ class BifurcationRun {
       record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
     long long marched = 0, bad = 0;
     for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
-    record_.steps = scheduler_->lane_periods() * section_.steps_per_period;
+    for (int task = 0; task < scheduler_->count(); ++task)
+      if (scheduler_->finished(task)) record_.steps += scheduler_->marched_periods(task) * section_.steps_per_period;
     put_measure(record_, "orbits", static_cast<double>(marched));
+    for (const OrbitView& view : all) lost_ += view.orbit && view.orbit->end.cause == EndCause::process_ended;
+    if (lost_ > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost_));
     add_shares(record_, all);
     if (scheduler_->lane_periods() > 0)
       put_measure(record_, "lane_steps_per_second",
-                  static_cast<double>(record_.steps) / std::max(1e-9, scheduler_->seconds()));
+                  static_cast<double>(scheduler_->lane_periods() * section_.steps_per_period) /
+                      std::max(1e-9, scheduler_->seconds()));
     record_.status = marched > 0 ? "done" : "diverged";
     if (scheduler_->over_budget()) {
       record_.status = "failed";
@@ -355,6 +362,7 @@ class BifurcationRun {
   MarchedOrbits saved_;
   CaseRecord record_;
   bool crowded_ = false;
+  int lost_ = 0;  // orbits whose processes ended
   PartialPace pace_;
 };
 

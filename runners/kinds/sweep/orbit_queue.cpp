@@ -50,7 +50,6 @@ void OrbitQueue::open() {
   std::stable_partition(ready_.begin(), ready_.end(), [&](int number) { return chained(number); });
 }
 
-// Whether a task goes on from the end of another; one that stopped in its own first period left none.
 bool OrbitQueue::follows(int number) const {
   const int after = task(number).after;
   return after >= 0 && !orbits_[static_cast<std::size_t>(after)].now.slots.empty();

@@ -31,6 +31,8 @@ class OrbitQueue {
   int count() const { return static_cast<int>(tasks_.size()); }
   const Orbit& orbit(int number) const { return orbits_[static_cast<std::size_t>(number)]; }
   bool finished(int number) const { return done_[static_cast<std::size_t>(number)]; }
+  /// Whether a task goes on from the end of another; one that stopped in its own first period left none.
+  bool follows(int number) const;
   int group(int number) const { return scenes_[task(number).scene].group; }
 
   /// Takes back what an interrupted run had marched.
@@ -58,7 +60,6 @@ class OrbitQueue {
   MarchedOrbits stock(const std::vector<std::vector<Orbit>>& marching);
 
  private:
-  bool follows(int number) const;
   bool chained(int number) const { return task(number).follower >= 0 || task(number).after >= 0; }
   Orbit begin(int number) const;
 

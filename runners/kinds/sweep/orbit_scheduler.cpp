@@ -203,6 +203,12 @@ void OrbitScheduler::work(Shared& shared, int worker) {
   }
 }
 
+long long OrbitScheduler::marched_periods(int number) const {
+  const Orbit& one = queue_.orbit(number);
+  const int last = one.stage == Orbit::Stage::stopped ? one.stopped_period : one.transient_periods + one.kept_periods;
+  return std::max(0, queue_.follows(number) ? last : last - 1);
+}
+
 void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint) {
   if (options_.blocks) {
     DistributedOrbits distributed(queue_, scenes_, options_);

@@ -41,6 +41,8 @@ class OrbitScheduler {
   /// The orbit of a finished task; stage complete or stopped.
   const Orbit& orbit(int number) const { return queue_.orbit(number); }
   bool finished(int number) const { return queue_.finished(number); }
+  /// Periods that a block marched it: all but the first one of an orbit from t = 0. Whoever marched it, and when.
+  long long marched_periods(int number) const;
   /// Processor seconds of marching, and lane-periods made, over all threads.
   double seconds() const { return seconds_; }
   long long lane_periods() const { return lane_periods_; }

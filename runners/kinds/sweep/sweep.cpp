@@ -8,6 +8,7 @@
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 
@@ -39,6 +40,9 @@ Kind sweep_kind(RunSweep run) {
     derive_dynamics(results);
   };
   kind.alone = single_study;
+  kind.contradiction = [](const CaseRecord& record) {
+    return measure(record, "orbits_lost").value_or(0) > 0 ? "the process of an orbit ended" : "";
+  };
   return kind;
 }
 
@@ -46,6 +50,7 @@ std::vector<MeasureInfo> orbit_measures() {
   using Of = MeasureInfo::Of;
   return {
       {"orbits", "1", "Orbits that were marched to the end of their kept periods.", Of::computation},
+      {"orbits_lost", "1", "Orbits that ended the process which marched them, twice.", Of::computation},
       {"share_periodic", "1", "Share of these orbits that repeat, contact-free ones not counted."},
       {"share_chaotic", "1", "Share of these orbits that are chaotic."},
       {"impacts_per_period", "1", "Impacts in one forcing period, mean over these orbits."},

@@ -1,0 +1,336 @@
+/// Cases in worker processes: the same results as in threads, whatever a plugin or a stranger does to the workers.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "runners/store/store.hpp"
+#include "runners/store/store_error.hpp"
+#include "runners/table/csv_text.hpp"
+#include "tests/runners/scratch_folder.hpp"
+
+using namespace ricochet;
+using Catch::Contains;
+using Catch::Matchers::Matches;
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
+Json study_of(const std::string& kind) {
+  Json study = Json::parse(R"({
+    "name": "here", "question": "Is it the same?",
+    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2e11, "density": 8000,
+                            "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}, "damping": {"stiffness": 1e-4}},
+              "stops": {"lower": -0.1, "upper": 0.1, "at": "tip"}},
+    "mesh": {"elements": 4},
+    "methods": {"mass": ["consistent", {"name": "singular", "velocity": "P1"}], "contact": "signorini", "time": "newmark-dumont-paoli"}
+  })");
+  study["kind"] = kind;
+  Json& scene = study["scene"];
+  if (kind == "trajectory" || kind == "convergence" || kind == "work-precision")
+    scene["initial"] = {{"displacement", "0.04*x^2"}, {"velocity", "-2*x"}};
+  else
+    scene["support"] = {{"amplitude", 0.08}, {"pulsation", 10}};
+  if (kind == "trajectory") study.update(Json::parse(R"({"step": [1e-4, 5e-5], "duration": 0.3})"));
+  if (kind == "convergence")
+    study.update(Json::parse(R"({"step": [4e-4, 2e-4, 1e-4], "duration": 0.2, "reference": "self"})"));
+  if (kind == "bifurcation")
+    study.update(Json::parse(R"({
+      "parameter": {"pointer": "/scene/support/amplitude", "from": 0.07, "to": 0.1, "count": 7},
+      "steps_per_period": 200, "start": ["rest", "up", "down"], "transient": {"periods": 40, "at_most": 80}, "keep": 20,
+      "section": "strobe", "exponents": 2, "refine": 0.002})"));
+  if (kind == "basins") {
+    scene["initial"] = {{"displacement", "0.1*(x/1.501)^2"}, {"velocity", "x/1.501"}};
+    study.update(Json::parse(R"({
+      "axes": [{"pointer": "/scene/initial/displacement", "from": -1, "to": 1, "count": 9},
+               {"pointer": "/scene/initial/velocity", "from": -2, "to": 2, "count": 7}],
+      "steps_per_period": 200, "transient": {"periods": 40, "at_most": 80}, "keep": 16, "refine": true})"));
+  }
+  return study;
+}
+
+Json stumbling(const std::string& how, double beyond) {
+  Json study = study_of("bifurcation");
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = {{"name", "stumbles"}, {"how", how}, {"beyond", beyond}};
+  study["refine"] = nullptr;
+  study["exponents"] = 0;
+  return study;
+}
+
+struct Ended {
+  int code = 0;
+  std::string out, messages;
+};
+
+std::string command_line(const ScratchFolder& scratch, const Json& study, const std::string& out,
+                         const std::string& options) {
+  write_text(scratch / (out + ".json"), study.dump());
+  return "'" RICOCHET_COMMAND "' run '" + (scratch / (out + ".json")).string() + "' --jobs 2 --out '" +
+         (scratch / out).string() + "' " + options + " >'" + (scratch / "said").string() + "' 2>'" +
+         (scratch / "told").string() + "' </dev/null";
+}
+
+Ended run(const ScratchFolder& scratch, const Json& study, const std::string& out, const std::string& options) {
+  const int status = std::system(("RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, options)).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(scratch / "said"), read_text(scratch / "told")};
+}
+
+/// Measures that belong to the machine.
+bool of_the_machine(const std::string& column) {
+  static const std::set<std::string> names = {"setup_seconds", "run_seconds", "lane_steps_per_second",
+                                              "exponent_seconds", "microseconds_per_step"};
+  return names.count(column) != 0 || column.starts_with("timed_");
+}
+
+using Rows = std::vector<std::map<std::string, std::string>>;
+
+Rows rows_of(const fs::path& file) {
+  std::istringstream lines(read_text(file));
+  std::string line;
+  std::vector<std::string> names;
+  Rows rows;
+  while (std::getline(lines, line)) {
+    std::vector<std::string> cells;
+    bool quoted = false;
+    std::string cell;
+    for (const char c : line + ",") {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) {
+        cells.push_back(cell);
+        cell.clear();
+      } else if (c != '"') {
+        cell += c;
+      }
+    }
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    std::map<std::string, std::string> row;
+    // A dictionary has a row for each column that is there.
+    bool wanted = true;
+    for (std::size_t i = 0; i < names.size() && i < cells.size(); ++i) {
+      if (!of_the_machine(names[i])) row[names[i]] = cells[i];
+      wanted = wanted && !(names[i] == "column" && of_the_machine(cells[i]));
+    }
+    if (wanted) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// The first cell that differs; "" where none does.
+std::string difference(const Rows& a, const Rows& b) {
+  if (a.size() != b.size()) return std::to_string(a.size()) + " rows, " + std::to_string(b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] == b[i]) continue;
+    if (a[i].size() != b[i].size()) return "columns";
+    for (const auto& [column, cell] : a[i])
+      if (b[i].count(column) == 0 || b[i].at(column) != cell)
+        return "row " + std::to_string(i) + ", " + column + ": " + cell + " | " +
+               (b[i].count(column) ? b[i].at(column) : "no such column");
+  }
+  return "";
+}
+
+void check_same(const fs::path& a, const fs::path& b) {
+  int tables = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(a)) {
+    if (entry.path().extension() != ".csv") continue;
+    const fs::path name = fs::relative(entry.path(), a);
+    INFO(name);
+    REQUIRE(fs::exists(b / name));
+    CHECK(difference(rows_of(entry.path()), rows_of(b / name)) == "");
+    ++tables;
+  }
+  CHECK(tables > 2);
+}
+
+}  // namespace
+
+TEST_CASE("workers: every kind of study has in them the tables that it has in threads") {
+  const std::string kind = GENERATE("trajectory", "convergence", "bifurcation", "basins");
+  CAPTURE(kind);
+  const ScratchFolder scratch;
+  const Json study = study_of(kind);
+  const Ended threads = run(scratch, study, "threads", "");
+  INFO(threads.messages);
+  REQUIRE(threads.code == 0);
+  const Ended workers = run(scratch, study, "workers", "--isolate");
+  INFO(workers.messages);
+  CHECK(workers.code == 0);
+  check_same(scratch / "threads", scratch / "workers");
+}
+
+TEST_CASE("workers: an orbit that ends its process twice is a failed row with the reason, and no other row changes") {
+  const auto [how, cause] = GENERATE(table<std::string, std::string>({
+      {"segv", "solve\\(\\): its process was ended twice by signal 11 \\(segmentation fault\\); it wrote: too deep.*"},
+      {"abort", "solve\\(\\): its process was ended twice by signal 6 \\(abort\\); it wrote: too deep for me"},
+      {"exit", "its process was ended twice by exit code 7; it wrote: too deep for me"},
+      {"kill", "its process was ended twice by signal 9 \\(killed\\); it wrote: too deep for me"},
+      {"greedy",
+       "solve\\(\\): its process was ended twice by signal 6 \\(abort\\); it wrote: too deep for me\\|the memory.*"},
+  }));
+  CAPTURE(how);
+  // The sanitizer's own memory goes beyond any limit: workers have none under it.
+  if (how == "greedy" && sanitized) return;
+  const ScratchFolder scratch;
+  const std::string options = "--isolate --plugin '" RICOCHET_STUMBLING "'";
+  const Ended sound = run(scratch, stumbling("none", 7e-3), "sound", options);
+  INFO(sound.messages);
+  REQUIRE(sound.code == 0);
+  const Ended ended = run(scratch, stumbling(how, 7e-3), "ended", options);
+  INFO(ended.messages << ended.out);
+  CHECK(ended.code == 3);
+  CHECK_THAT(ended.out, Contains("the process of an orbit ended"));
+  const Rows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
+  REQUIRE(before.size() == after.size());
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    std::map<std::string, std::string> was = before[i], is = after[i];
+    for (const char* column : {"case", "contact.how"}) was[column] = is[column];
+    if (is["status"] != "failed") {
+      CHECK(was == is);
+      continue;
+    }
+    ++failed;
+    CHECK(is["start"] == was["start"]);
+    CHECK_THAT(is["reason"], Matches("period [0-9]+: .*" + cause));
+  }
+  // Hard impacts are rare here: some orbits ended, most did not.
+  CHECK(failed > 0);
+  CHECK(failed < before.size() / 2);
+}
+
+TEST_CASE("workers: a call that never returns costs its case the budget, in a worker as in a thread") {
+  const ScratchFolder scratch;
+  Json study = stumbling("sleep", 7e-3);
+  study["budget"] = 1;
+  const Ended ended = run(scratch, study, "out", "--isolate --plugin '" RICOCHET_STUMBLING "'");
+  INFO(ended.messages);
+  CHECK(ended.code == 3);
+  const Rows rows = rows_of(scratch / "out/cases.csv");
+  REQUIRE(rows.size() == 1);
+  CHECK_THAT(rows[0].at("reason"), Contains("did not return from solve() within the budget of 1 s"));
+}
+
+namespace {
+
+/// A run in a process of its own.
+class Running {
+ public:
+  Running(const ScratchFolder& scratch, const Json& study, const std::string& out) : out_(scratch / out) {
+    const std::string line = "exec env RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, "--isolate");
+    process_ = ::fork();
+    if (process_ != 0) return;
+    ::setpgid(0, 0);
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    ::_exit(127);
+  }
+  ~Running() {
+    if (process_ > 0) finish(SIGKILL);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  bool ended() { return process_ < 0 || ::waitpid(process_, &status_, WNOHANG) == process_; }
+  pid_t process() const { return process_; }
+  /// Its workers.
+  std::vector<pid_t> children() const {
+    std::istringstream text(
+        read_text("/proc/" + std::to_string(process_) + "/task/" + std::to_string(process_) + "/children"));
+    std::vector<pid_t> all;
+    for (pid_t one = 0; text >> one;) all.push_back(one);
+    // Those that threads of it began.
+    for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process_) + "/task")) {
+      std::istringstream more(read_text(thread.path() / "children"));
+      for (pid_t one = 0; more >> one;)
+        if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+    }
+    return all;
+  }
+  /// Sends a signal and waits; the exit code, or minus the signal.
+  int finish(int signal = 0) {
+    if (signal != 0) ::kill(process_, signal);
+    ::waitpid(process_, &status_, 0);
+    process_ = -1;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  }
+
+ private:
+  fs::path out_;
+  pid_t process_ = -1;
+  int status_ = 0;
+};
+
+/// A sweep that takes a second or two.
+Json longer() {
+  Json study = study_of("bifurcation");
+  study["parameter"]["count"] = 13;
+  study["steps_per_period"] = 4000;
+  return study;
+}
+
+}  // namespace
+
+TEST_CASE("workers: one that a stranger kills costs nothing but time") {
+  const ScratchFolder scratch;
+  const Json study = longer();
+  REQUIRE(run(scratch, study, "threads", "").code == 0);
+  for (int moment = 1; moment <= 4; ++moment) {
+    CAPTURE(moment);
+    const std::string out = "killed-" + std::to_string(moment);
+    Running running(scratch, study, out);
+    ::usleep(static_cast<useconds_t>(150000 * moment));
+    const std::vector<pid_t> children = running.children();
+    if (!children.empty()) ::kill(children[static_cast<std::size_t>(moment) % children.size()], SIGKILL);
+    CHECK(running.finish() == 0);
+    check_same(scratch / "threads", scratch / out);
+  }
+}
+
+TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, and leaves no worker behind") {
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1, SIGKILL);
+  CAPTURE(signal);
+  const ScratchFolder scratch;
+  const Json study = longer();
+  REQUIRE(run(scratch, study, "threads", "").code == 0);
+  std::vector<pid_t> children;
+  {
+    Running running(scratch, study, "out");
+    ::usleep(900000);
+    REQUIRE_FALSE(running.ended());
+    children = running.children();
+    CHECK(running.finish(signal) == (signal == SIGKILL ? -SIGKILL : 130));
+  }
+  CHECK_FALSE(children.empty());
+  const auto any_left = [&] {
+    return std::any_of(children.begin(), children.end(), [](pid_t one) { return ::kill(one, 0) == 0; });
+  };
+  constexpr int tries = 500;
+  for (int i = 0; i < tries && any_left(); ++i) ::usleep(10000);
+  CHECK_FALSE(any_left());
+  const Ended again = run(scratch, study, "out", "--isolate");
+  INFO(again.messages);
+  CHECK(again.code == 0);
+  check_same(scratch / "threads", scratch / "out");
+  // And threads go on from where workers were.
+  const Ended kept = run(scratch, study, "out", "");
+  CHECK_THAT(kept.messages, Contains("0 to run"));
+}
