@@ -15,8 +15,9 @@ namespace {
 
 /// A database of one table, and what another process would see of it.
 struct Numbers {
-  explicit Numbers(const ScratchFolder& folder)
-      : file(folder.path() / "numbers.sqlite"), database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+  /// wait_ms: how long a commit waits for readers (SQLite's rollback journal lets none in while it commits).
+  explicit Numbers(const ScratchFolder& folder, int wait_ms)
+      : file(folder.path() / "numbers.sqlite"), database(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, wait_ms) {
     database.exec("CREATE TABLE numbers(n INTEGER)");
   }
   void write(WriteGroup& group, int n, std::size_t bytes = 0) {
@@ -41,7 +42,7 @@ struct Numbers {
 
 TEST_CASE("write group: the first write is durable at once, those right after it soon, without another call") {
   const ScratchFolder folder;
-  Numbers numbers(folder);
+  Numbers numbers(folder, 10000);
   WriteGroup group(numbers.database, numbers.mutex);
   numbers.write(group, 0);
   CHECK(numbers.seen() == 1);
@@ -55,7 +56,7 @@ TEST_CASE("write group: the first write is durable at once, those right after it
 
 TEST_CASE("write group: a large write is durable when it returns, and so is what waited") {
   const ScratchFolder folder;
-  Numbers numbers(folder);
+  Numbers numbers(folder, 10000);
   WriteGroup group(numbers.database, numbers.mutex);
   for (int n = 0; n < 3; ++n) numbers.write(group, n);
   numbers.write(group, 3, WriteGroup::most_waiting + 1);
@@ -67,7 +68,7 @@ TEST_CASE("write group: a large write is durable when it returns, and so is what
 
 TEST_CASE("write group: a write that throws takes its own rows back, and leaves those that wait") {
   const ScratchFolder folder;
-  Numbers numbers(folder);
+  Numbers numbers(folder, 10000);
   {
     WriteGroup group(numbers.database, numbers.mutex);
     for (int n = 0; n < 3; ++n) numbers.write(group, n);
@@ -87,7 +88,7 @@ TEST_CASE("write group: a write that throws takes its own rows back, and leaves 
 
 TEST_CASE("write group: what cannot be made durable is told by the next call") {
   const ScratchFolder folder;
-  Numbers numbers(folder);
+  Numbers numbers(folder, 0);
   WriteGroup group(numbers.database, numbers.mutex);
   numbers.write(group, 0);
   {
