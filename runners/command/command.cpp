@@ -46,7 +46,7 @@ const Subcommand& find_command(const std::string& name) {
                    "\n`ricochet --help` lists the commands");
 }
 
-int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
+int dispatch(const std::vector<std::string>& arguments, std::ostream& out, const FindHosts& hosts) {
   if (arguments.empty()) throw UsageError("expected a command\n\n" + overview());
   const std::string& first = arguments.front();
   const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
@@ -68,7 +68,8 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
   }
   if (first == "worker" && rest.empty()) return serve_as_worker();  // started by this program, not by a person
   const Subcommand& command = find_command(first);
-  const Arguments parsed = parse_arguments(command, rest);
+  Arguments parsed = parse_arguments(command, rest);
+  parsed.hosts = hosts;
   if (parsed.help) {
     out << help_text(command);
     return exit_done;
@@ -76,9 +77,9 @@ int dispatch(const std::vector<std::string>& arguments, std::ostream& out) {
   return command.run(parsed, out);
 }
 
-int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
+int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, const FindHosts& hosts) {
   try {
-    return dispatch(arguments, out);
+    return dispatch(arguments, out, hosts);
   } catch (const UsageError& error) {
     err << "ricochet: " << error.what() << "\n";
     return exit_bad_input;
@@ -199,8 +200,9 @@ const std::vector<Subcommand>& subcommands() {
   return all;
 }
 
-int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err) {
-  const int code = guarded(arguments, out, err);
+int run_command(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+                const FindHosts& hosts) {
+  const int code = guarded(arguments, out, err, hosts);
   if (!out.flush()) {
     err << "ricochet: the output could not be written completely\n";
     return code == exit_done ? exit_store : code;

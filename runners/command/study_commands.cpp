@@ -39,7 +39,11 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
-    options.isolate = arguments.isolate || (!arguments.threads && runs_foreign_code(open));
+    if (arguments.hosts) {
+      if (arguments.threads) throw UsageError("--threads is for one machine: the ranks of a job have workers");
+      options.hosts = arguments.hosts(arguments.jobs);
+    }
+    options.isolate = arguments.isolate || arguments.hosts || (!arguments.threads && runs_foreign_code(open));
     options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "runners/command/command.hpp"
+
 namespace ricochet {
 
 /// The command was used wrongly (exit code 2); the message says how it is used.
@@ -39,6 +41,7 @@ struct Arguments {
   int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
   int snapshots = 0;                             ///< --snapshots; 0: none given
   bool help = false;
+  FindHosts hosts;  ///< not a word of the command line: see run_command()
 };
 
 /// One command: what it takes, what it says of itself, what it does.

@@ -8,13 +8,14 @@
 #include <mutex>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/engine/available_memory.hpp>
 
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/process/block_pool.hpp"
 #include "runners/process/key_claims.hpp"
 #include "runners/process/worker_messages.hpp"
+#include "runners/process/worker_places.hpp"
 #include "runners/process/worker_process.hpp"
 
 namespace ricochet {
@@ -29,11 +30,11 @@ constexpr double after_stop = 6;        // s for coming back; for a case that wa
 constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
 
-// Bytes; 0 (no limit) where nobody says what there is.
-double share_of_memory(int jobs) {
-  constexpr double least = 2.0 * (1 << 30);
-  const double free = available_memory();
-  return std::isfinite(free) ? std::max(least, free / jobs) : 0;
+std::string other_arithmetic(const std::string& host) {
+  return fmt::format(
+      "{} computes other last digits than this machine (another processor or C library): a study's results come from "
+      "one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
+      host);
 }
 
 double since(Clock::time_point then) {
@@ -58,21 +59,30 @@ class IsolatedCases::Desk {
  public:
   Desk(const RunContext& context, const IsolationOptions& options)
       : context_(context),
-        identity_(context.study, context.registry),
+        of_all_(StudyIdentity(context.study, context.registry).of_all()),
         kind_(find_kind(context.study.kind)->start(context)),
-        pool_(context.jobs, [this](const BlockPool::Block& block, const std::function<bool()>& stopping) {
+        places_(options.hosts.empty()
+                    ? std::vector<std::shared_ptr<WorkerHost>>{std::make_shared<LocalHost>(context.jobs)}
+                    : options.hosts),
+        pool_(places_.width(), [this](const BlockPool::Block& block, const std::function<bool()>& stopping) {
           march(block, stopping);
         }) {
     opening_.study = context.study.resolved.dump();
     for (const auto& plugin : options.plugins) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
-    opening_.memory = options.memory > 0 ? options.memory : share_of_memory(context.jobs);
-    opening_.width = context.jobs;
+    opening_.width = places_.width();
+    opening_.arithmetic = arithmetic_digest();
   }
 
   /// A first worker is there, and what only shows where a study is opened has shown.
   void open(MotionShelf shelf, const std::atomic<bool>& stop) {
     shelf_ = std::move(shelf);
-    give_back(take([&] { return stop.load(); }));
+    places_.give_back(take(Where::here, [&] { return stop.load(); }).member);
+  }
+
+  int cases_at_once() const {
+    constexpr int held = 4;  // of each of its own workers: a case that waits for its blocks takes memory, not time
+    const int all = places_.width();
+    return kind_.block ? std::min(all, std::max(held * places_.width_here(), 2 * held)) : all;
   }
 
   bool times() const { return static_cast<bool>(kind_.time); }
@@ -82,29 +92,38 @@ class IsolatedCases::Desk {
     const auto stopping = [&] { return stop.load(); };
     // Each pending case was planned before the first one ran.
     if (word == Word::plan) ++pending_;
-    const int left = word == Word::run ? pending_-- : 1, share = context_.jobs / std::clamp(left, 1, context_.jobs);
-    for (int attempt = 1;; ++attempt) {
-      const std::shared_ptr<Worker> worker = take(stopping);
-      Reply reply =
-          talk(worker, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share})}, stopping, 2 * after_stop);
-      claims_.release(worker->number);
-      pool_.forget(worker->number);
+    const int width = places_.width();
+    const int left = word == Word::run ? pending_-- : 1, share = width / std::clamp(left, 1, width);
+    for (int attempt = 1;;) {
+      const Taken taken = take(place_of(word), stopping);
+      const int number = taken.member->number;
+      Reply reply = talk(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share})}, stopping,
+                         2 * after_stop);
+      claims_.release(number);
+      pool_.forget(number);
       if (!reply.lost) {
-        give_back(worker);
+        places_.give_back(taken.member);
         if (reply.message.word == Word::interrupted) throw Interrupted{};
         return message_from<CaseAnswer>(reply.message.content);
       }
       if (stop) throw Interrupted{};
+      if (reply.lost->end.host_lost) continue;
       if (reply.lost->given_up && !limit.ours) throw std::runtime_error(over_budget(*reply.lost->given_up));
-      if (attempt < attempts) continue;
+      if (attempt++ < attempts) continue;
       throw std::runtime_error(sentence(*reply.lost));
     }
   }
 
  private:
-  struct Worker : WorkerProcess {
-    int number = 0;
-  };
+  using Where = WorkerPlaces::Where;
+  using Taken = WorkerPlaces::Taken;
+  using MemberPointer = WorkerPlaces::MemberPointer;
+
+  /// A case whose blocks others march keeps what they made, and waits: beside the store. What is timed is timed on one
+  /// machine.
+  Where place_of(Word word) const {
+    return word == Word::time || (word == Word::run && kind_.block) ? Where::here : Where::anywhere;
+  }
 
   /// How long a call of a plugin's function may last for a case.
   struct Limit {
@@ -132,12 +151,15 @@ class IsolatedCases::Desk {
       if (!study_case) throw std::runtime_error("a block of no case");
       const Limit limit = limit_of(*study_case);
       request.budget = limit.seconds;
-      const std::shared_ptr<Worker> worker = take(stopping);
-      const Reply reply = talk(worker, {Word::block, to_bytes(request)}, stopping, after_stop, block.tell);
-      if (!reply.lost) {
-        give_back(worker);
-        return block.tell(message_from<BlockNews>(reply.message.content));
-      }
+      Reply reply;
+      do {
+        const Taken taken = take(Where::anywhere, stopping);
+        reply = talk(taken.member, {Word::block, to_bytes(request)}, stopping, after_stop, block.tell);
+        if (!reply.lost) {
+          places_.give_back(taken.member);
+          return block.tell(message_from<BlockNews>(reply.message.content));
+        }
+      } while (reply.lost->end.host_lost && !stopping());
       if (stopping()) return tell(BlockNews::What::interrupted, "");
       if (reply.lost->given_up && !limit.ours)
         return tell(BlockNews::What::gave_up, over_budget(*reply.lost->given_up));
@@ -156,59 +178,59 @@ class IsolatedCases::Desk {
     return lost.end.sentence("twice");
   }
 
-  std::shared_ptr<Worker> take(const std::function<bool()>& stopping) {
-    {
-      const std::lock_guard guard(mutex_);
-      if (!idle_.empty()) {
-        const std::shared_ptr<Worker> worker = std::move(idle_.back());
-        idle_.pop_back();
-        return worker;
+  /// A worker that has opened the study.
+  Taken take(Where where, const std::function<bool()>& stopping) {
+    for (int attempt = 1;;) {
+      Taken taken = places_.take(where);
+      if (taken.member->worker) return taken;
+      const std::string name = taken.member->host->name();
+      taken.member->worker = taken.member->host->start();
+      WorkerStudy opening = opening_;
+      opening.memory = taken.member->host->memory();
+      const Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, stopping, after_stop);
+      if (!reply.lost) {
+        check(message_from<WorkerReady>(reply.message.content), name);
+        return taken;
       }
-    }
-    std::shared_ptr<Worker> worker;
-    Reply reply;
-    for (int attempt = 1;; ++attempt) {
-      worker = std::make_shared<Worker>();
-      worker->number = ++born_;
-      reply = talk(worker, {Word::study, to_bytes(opening_)}, stopping, after_stop);
-      if (!reply.lost) break;
       if (stopping()) throw Interrupted{};
-      if (attempt == attempts)
-        throw std::runtime_error("no worker opens the study: " + reply.lost->end.sentence("twice"));
+      if (reply.lost->end.host_lost) continue;
+      if (attempt++ == attempts)
+        throw std::runtime_error(
+            fmt::format("no worker on {} opens the study: {}", name, reply.lost->end.sentence("twice")));
     }
-    const auto ready = message_from<WorkerReady>(reply.message.content);
-    if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
-    if (!ready.failure.empty()) throw std::runtime_error("a worker did not open the study: " + ready.failure);
-    if (ready.identity != identity_.of_all())
-      throw std::runtime_error("a worker has another program or other plugins than this process");
-    return worker;
   }
 
-  void give_back(const std::shared_ptr<Worker>& worker) {
-    const std::lock_guard guard(mutex_);
-    idle_.push_back(worker);
+  void check(const WorkerReady& ready, const std::string& host) const {
+    if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
+    if (!ready.failure.empty())
+      throw std::runtime_error(fmt::format("a worker on {} did not open the study: {}", host, ready.failure));
+    if (ready.identity != of_all_)
+      throw std::runtime_error(
+          fmt::format("a worker on {} has another program or other plugins than this process", host));
+    if (ready.arithmetic != opening_.arithmetic) throw std::runtime_error(other_arithmetic(host));
   }
 
   /// Sends an order and serves the worker until it is done with it. `patience`: s for coming back after `stopping`.
-  Reply talk(const std::shared_ptr<Worker>& worker, Message order, const std::function<bool()>& stopping,
-             double patience, const std::function<void(BlockNews)>& so_far = {}) {
+  Reply talk(const MemberPointer& member, Message order, const std::function<bool()>& stopping, double patience,
+             const std::function<void(BlockNews)>& so_far = {}) {
     order.about = 1;
+    Worker& worker = *member->worker;
     Reply reply;
     std::optional<GivenUp> given_up;
     std::optional<Clock::time_point> told_to_stop;
     Clock::time_point heard = Clock::now();
     bool silent = false;
-    Channel::Heard state = worker->channel().send(order) ? Channel::Heard::silence : Channel::Heard::gone;
+    Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
-      state = worker->channel().receive(reply.message, look_up);
+      state = worker.receive(reply.message, look_up);
       if (!told_to_stop && stopping()) {
         told_to_stop = Clock::now();
-        worker->channel().send({Word::stop});
+        worker.send({Word::stop});
       }
-      if (told_to_stop && since(*told_to_stop) > patience) worker->kill();
+      if (told_to_stop && since(*told_to_stop) > patience) worker.kill();
       if (state == Channel::Heard::silence) {
         silent = since(heard) > longest_silence;
-        if (silent) worker->kill();
+        if (silent) worker.kill();
       }
       if (state != Channel::Heard::message) continue;
       heard = Clock::now();
@@ -218,23 +240,23 @@ class IsolatedCases::Desk {
         auto news = message_from<BlockNews>(reply.message.content);
         if (news.what != BlockNews::What::so_far) return reply;
         if (so_far) so_far(std::move(news));
-      } else if (reply.message.word != Word::alive && !serve(worker, reply.message, stopping)) {
+      } else if (reply.message.word != Word::alive && !serve(member, reply.message, stopping)) {
         return reply;
       }
     }
-    reply.lost = Lost{worker->end(), given_up};
+    reply.lost = Lost{worker.end(), given_up};
     reply.lost->end.silent = silent;
     return reply;
   }
 
   /// Answers what a worker asks for; false where the message is what it was asked for.
-  bool serve(const std::shared_ptr<Worker>& worker, const Message& message, const std::function<bool()>& stopping) {
+  bool serve(const MemberPointer& member, const Message& message, const std::function<bool()>& stopping) {
     const auto answer = [&](std::string content) {
-      worker->channel().send({Word::answer, std::move(content), message.about});
+      member->worker->send({Word::answer, std::move(content), message.about});
     };
     if (message.word == Word::find) {
       answer(claims_.find(
-          worker->number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stopping));
+          member->number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stopping));
     } else if (message.word == Word::keep) {
       const auto kept = message_from<ShelfMessage>(message.content);
       if (shelf_.keep) shelf_.keep(kept.key, kept.content);
@@ -247,11 +269,11 @@ class IsolatedCases::Desk {
       if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
       if (shelf_.show) shelf_.show(record);
     } else if (message.word == Word::march) {
-      pool_.begin({message.content, worker->number, message.about, [worker, about = message.about](BlockNews news) {
-                     worker->channel().send({Word::block_news, to_bytes(news), about});
+      pool_.begin({message.content, member->number, message.about, [member, about = message.about](BlockNews news) {
+                     member->worker->send({Word::block_news, to_bytes(news), about});
                    }});
     } else if (message.word == Word::cancel) {
-      pool_.stop(worker->number, message.about);
+      pool_.stop(member->number, message.about);
     } else {
       return false;
     }
@@ -259,20 +281,23 @@ class IsolatedCases::Desk {
   }
 
   const RunContext context_;
-  StudyIdentity identity_;
+  const std::string of_all_;
   const CaseRunner kind_;  // what this kind's cases are asked for; nothing of it runs here
   WorkerStudy opening_;
   MotionShelf shelf_;
   KeyClaims claims_;
-  std::mutex mutex_;
-  std::vector<std::shared_ptr<Worker>> idle_;
-  std::atomic<int> born_{0}, pending_{0};
+  std::atomic<int> pending_{0};
+  WorkerPlaces places_;
   BlockPool pool_;  // last: its threads use all of the above
 };
 
 IsolatedCases::IsolatedCases(const RunContext& context, const IsolationOptions& options)
     : desk_(std::make_shared<Desk>(context, options)) {}
 IsolatedCases::~IsolatedCases() = default;
+
+int IsolatedCases::cases_at_once() const {
+  return desk_->cases_at_once();
+}
 
 CaseRunner IsolatedCases::runner() {
   CaseRunner runner;

@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/process/worker.hpp"
 
 namespace ricochet {
 
 /// What worker processes are given.
 struct IsolationOptions {
   std::vector<std::filesystem::path> plugins;  ///< libraries beside the program's own
-  double memory = 0;  ///< bytes of address space of each; 0: its share of what is free, and never less than 2 GiB
+  /// The machines that they are on, this one first; none: this one alone, with as many as the run has jobs.
+  std::vector<std::shared_ptr<WorkerHost>> hosts = {};
 };
 
 /// Cases whose code runs in processes of their own: a plugin that crashes, aborts, takes all memory or never returns
@@ -24,6 +26,9 @@ class IsolatedCases {
   ~IsolatedCases();
 
   CaseRunner runner();
+  /// Cases that are under way at one time: as many as there are workers, or, where they only wait for their blocks,
+  /// what this machine can hold.
+  int cases_at_once() const;
   /// The cost of a case as its plan predicts it, s. Throws std::runtime_error where the process ended.
   double predicted_seconds(const StudyCase& study_case);
 

@@ -6,10 +6,12 @@
 #include <array>
 #include <string_view>
 
+#include "runners/store/fingerprint.hpp"
+
 namespace ricochet {
 
 const std::string& worker_program() {
-  static const std::string program = "/proc/self/exe";
+  static const std::string program = program_file().string();
   return program;
 }
 

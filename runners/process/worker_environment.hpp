@@ -4,7 +4,8 @@
 
 namespace ricochet {
 
-/// The program that workers are: this one, found even where its file was replaced meanwhile.
+/// The program that workers are: this one, found even where its file was replaced meanwhile; never one that is an MPI
+/// rank.
 const std::string& worker_program();
 
 /// The environment variables of a worker, "NAME=value": those of this process without what a parallel launcher put

@@ -74,12 +74,12 @@ void serialize(Archive& archive, CaseRecord& record) {
 
 template <class Archive>
 void serialize(Archive& archive, WorkerStudy& message) {
-  archive(message.study, message.plugins, message.memory, message.width);
+  archive(message.study, message.plugins, message.memory, message.width, message.arithmetic);
 }
 
 template <class Archive>
 void serialize(Archive& archive, WorkerReady& message) {
-  archive(message.identity, message.failure, message.pointer);
+  archive(message.identity, message.arithmetic, message.failure, message.pointer);
 }
 
 template <class Archive>

@@ -15,11 +15,12 @@ struct WorkerStudy {
   std::vector<std::string> plugins;  ///< libraries beside the program's own
   double memory = 0;                 ///< bytes of address space that it may take; 0: no limit
   int width = 1;                     ///< blocks that are marched at one time, by all workers together
+  std::string arithmetic;            ///< digest of the coordinator's
 };
 
 /// That it did, and with what: equal for equal programs, plugins and studies.
 struct WorkerReady {
-  std::string identity;
+  std::string identity, arithmetic;
   std::string failure, pointer;  ///< why it could not, and where in the study; "" where it could
 };
 

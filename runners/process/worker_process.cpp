@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <ricochet/engine/available_memory.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -44,6 +46,21 @@ std::string ended_by(int status) {
 }
 
 }  // namespace
+
+std::string machine_name() {
+  std::array<char, 256> text{};
+  return ::gethostname(text.data(), text.size() - 1) == 0 ? text.data() : "?";
+}
+
+double free_memory() {
+  const double free = available_memory();
+  return std::isfinite(free) ? free : 0;
+}
+
+double memory_for_each(double free, int workers) {
+  constexpr double least = 2.0 * (1 << 30);
+  return free > 0 ? std::max(least, free / workers) : 0;
+}
 
 std::string WorkerEnd::sentence(const std::string& times) const {
   std::string text;
@@ -114,15 +131,23 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::kill() {
+  const std::lock_guard guard(mutex_);
   if (!ended_) ::kill(pid_, SIGKILL);
 }
 
 WorkerEnd WorkerProcess::end() {
   WorkerEnd found;
   int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  siginfo_t info{};
+  while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
   }
-  ended_ = true;
+  {
+    // From here on its number may be another process's.
+    const std::lock_guard guard(mutex_);
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    ended_ = true;
+  }
   listener_.join();
   found.cause = ended_by(status);
   if (const auto crash = parse_crash_record(content_of_descriptor(crash_record_))) {

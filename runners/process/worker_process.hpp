@@ -6,38 +6,25 @@
 #include <string>
 #include <thread>
 
-#include "runners/process/channel.hpp"
+#include "runners/process/worker.hpp"
 
 namespace ricochet {
 
-/// How a worker ended.
-struct WorkerEnd {
-  std::string cause;             ///< "signal 11 (segmentation fault)", "exit code 7"
-  std::string plugin, function;  ///< whose function it was in, where it could say so: "contact 'x' (file)", "solve"
-  std::string last_lines;        ///< of its stderr, "|" between two
-  bool silent = false;           ///< it said nothing for too long, and was killed for that
-
-  /// "plugin contact 'x' (x.so), solve(): its process was ended by signal 11 (segmentation fault); it wrote: …".
-  /// `times`: put behind the verb, "twice".
-  std::string sentence(const std::string& times = "") const;
-};
-
 /// `ricochet worker` as a child of this process: the same program, with a channel to it. What it writes to stderr goes
 /// on to this process's, and its end is kept.
-class WorkerProcess {
+class WorkerProcess : public Worker {
  public:
   /// Throws std::runtime_error where no process can be had.
   WorkerProcess();
   /// Ends it.
-  ~WorkerProcess();
+  ~WorkerProcess() override;
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  Channel& channel() { return *channel_; }
-  pid_t pid() const { return pid_; }
-  void kill();
-  /// Waits until it has ended. Once.
-  WorkerEnd end();
+  bool send(const Message& message) override { return channel_->send(message); }
+  Channel::Heard receive(Message& message, double seconds) override { return channel_->receive(message, seconds); }
+  void kill() override;
+  WorkerEnd end() override;
 
  private:
   void pass_on_stderr(int descriptor);
@@ -49,6 +36,34 @@ class WorkerProcess {
   std::mutex mutex_;
   std::string last_lines_;
   bool ended_ = false;
+};
+
+/// The name of this machine, "?" where it has none.
+std::string machine_name();
+
+/// Bytes that its processes may still take; 0 where nobody says.
+double free_memory();
+
+/// The address space of each of so many workers where so much is free: an equal share, and never less than 2 GiB; 0 (no
+/// limit) where it is not known.
+double memory_for_each(double free, int workers);
+
+/// This machine.
+class LocalHost : public WorkerHost {
+ public:
+  /// `memory`: bytes of address space for each worker.
+  LocalHost(int width, double memory) : width_(width), memory_(memory) {}
+  explicit LocalHost(int width) : LocalHost(width, memory_for_each(free_memory(), width)) {}
+
+  std::string name() const override { return machine_name(); }
+  int width() const override { return width_; }
+  double memory() const override { return memory_; }
+  bool there() const override { return true; }
+  std::unique_ptr<Worker> start() override { return std::make_unique<WorkerProcess>(); }
+
+ private:
+  const int width_;
+  const double memory_;
 };
 
 /// Descriptors that a worker is born with.

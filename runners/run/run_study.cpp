@@ -4,11 +4,11 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/march/study_identity.hpp"
 #include "runners/run/study_runner.hpp"
 
 namespace ricochet {
@@ -32,7 +32,7 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
                            options.jobs > 0 ? options.jobs : allowed_processors().count};
   std::optional<IsolatedCases> isolated;
   if (options.isolate) {
-    isolated.emplace(context, IsolationOptions{options.plugins});
+    isolated.emplace(context, IsolationOptions{options.plugins, options.hosts});
     runner.cases = isolated->runner();
     runner.plan = [&](const StudyCase& study_case) {
       CasePlan plan;
@@ -46,7 +46,9 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   runner.arithmetic = arithmetic_digest();
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
-  return run_study_with(runner, study, options);
+  RunOptions shared = options;
+  if (isolated) shared.jobs = isolated->cases_at_once();
+  return run_study_with(runner, study, shared);
 }
 
 int rebuild_report(const std::filesystem::path& folder) {

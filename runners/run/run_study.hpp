@@ -6,17 +6,19 @@
 #include <vector>
 
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/process/worker.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
 
 struct RunOptions {
-  std::filesystem::path out;                        ///< results folder; empty: results/NAME
-  int jobs = 0;                                     ///< 0: all processors that it may use
-  bool fresh = false;                               ///< forget what the folder holds
-  bool table = false;                               ///< print a line for every case
-  bool isolate = false;                             ///< cases run in worker processes
-  std::vector<std::filesystem::path> plugins = {};  ///< libraries beside the program's own, for workers
+  std::filesystem::path out;                            ///< results folder; empty: results/NAME
+  int jobs = 0;                                         ///< 0: all processors that it may use
+  bool fresh = false;                                   ///< forget what the folder holds
+  bool table = false;                                   ///< print a line for every case
+  bool isolate = false;                                 ///< cases run in worker processes
+  std::vector<std::filesystem::path> plugins = {};      ///< libraries beside the program's own, for workers
+  std::vector<std::shared_ptr<WorkerHost>> hosts = {};  ///< where workers run; none: this machine alone
 };
 
 /// What would run for a case of a study of this kind, decided without running it.

@@ -18,6 +18,7 @@
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/crash_record.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/march/watched_threads.hpp"
@@ -253,6 +254,7 @@ class WorkerService : public BlockService {
               ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, 1, this});
       if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
       ready.identity = identity_->of_all();
+      ready.arithmetic = arithmetic_digest();
       limit_memory(wanted.memory);
     } catch (const InputError& error) {
       ready.failure = error.what();

@@ -18,7 +18,7 @@ namespace {
 
 /// The core library as the loader mapped it; the program itself where the core is linked into it.
 std::filesystem::path core_file() {
-  std::filesystem::path found = "/proc/self/exe";
+  std::filesystem::path found = program_file();
   dl_iterate_phdr(
       [](dl_phdr_info* info, std::size_t, void* data) {
         const std::filesystem::path file = info->dlpi_name;
@@ -31,6 +31,13 @@ std::filesystem::path core_file() {
 }
 
 }  // namespace
+
+std::filesystem::path program_file() {
+  const std::filesystem::path self = "/proc/self/exe";
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::read_symlink(self, error);
+  return file.filename() == "ricochet-mpi" ? file.parent_path() / "ricochet" : self;
+}
 
 Json content_of(const MethodChoice& method) {
   Json parameters = Json::object();
@@ -57,7 +64,7 @@ std::string file_hash(const std::filesystem::path& file) {
 }
 
 const std::string& program_hash() {
-  static const std::string hash = content_hash(file_hash("/proc/self/exe") + file_hash(core_file()));
+  static const std::string hash = content_hash(file_hash(program_file()) + file_hash(core_file()));
   return hash;
 }
 

@@ -19,6 +19,9 @@ Json content_of(const MethodChoice& method);
 /// content_hash() of a file's bytes. Throws StoreError (path and cause) when it cannot be read.
 std::string file_hash(const std::filesystem::path& file);
 
+/// The program that computes: this one, or `ricochet` beside ricochet-mpi, which starts it.
+std::filesystem::path program_file();
+
 /// Hash of the running program: the executable and the core library it uses. Computed once per process.
 const std::string& program_hash();
 

@@ -208,7 +208,8 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
         "runners/command"}},
       {"runners/command",
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
-        "runners/march", "runners/kinds", "runners/run", "runners/report", "runners/check"}},
+        "runners/march", "runners/kinds", "runners/process", "runners/run", "runners/report", "runners/check"}},
+      {"runners/mpi", {"runners/process", "runners/command"}},
   };
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {

@@ -1,0 +1,203 @@
+#include "runners/process/remote_hosts.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <stdexcept>
+#include <utility>
+
+namespace ricochet {
+namespace {
+
+using What = HostMessage::What;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr double look_around = 0.25;  // s
+
+double seconds_since(SteadyClock::time_point then) {
+  return std::chrono::duration<double>(SteadyClock::now() - then).count();
+}
+
+}  // namespace
+
+struct RemoteHosts::Inbox {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<Message> messages;
+  std::optional<WorkerEnd> end;
+
+  void put(Message message) {
+    const std::lock_guard guard(mutex);
+    messages.push_back(std::move(message));
+    changed.notify_all();
+  }
+  /// The first end counts.
+  void close(WorkerEnd why) {
+    const std::lock_guard guard(mutex);
+    if (!end) end = std::move(why);
+    changed.notify_all();
+  }
+};
+
+class RemoteHosts::RemoteWorker : public Worker {
+ public:
+  RemoteWorker(RemoteHosts& all, int rank, std::uint32_t number, std::shared_ptr<Inbox> inbox)
+      : all_(all), rank_(rank), number_(number), inbox_(std::move(inbox)) {
+    all_.tell(rank_, {What::start, number_, {}});
+  }
+  ~RemoteWorker() override {
+    kill();
+    const std::lock_guard guard(all_.mutex_);
+    all_.ranks_.at(rank_).workers.erase(number_);
+  }
+
+  bool send(const Message& message) override {
+    {
+      const std::lock_guard guard(inbox_->mutex);
+      if (inbox_->end) return false;
+    }
+    all_.tell(rank_, {What::message, number_, message});
+    return true;
+  }
+
+  Channel::Heard receive(Message& message, double seconds) override {
+    std::unique_lock lock(inbox_->mutex);
+    inbox_->changed.wait_for(lock, std::chrono::duration<double>(seconds),
+                             [&] { return inbox_->end || !inbox_->messages.empty(); });
+    if (!inbox_->messages.empty()) {
+      message = std::move(inbox_->messages.front());
+      inbox_->messages.pop_front();
+      return Channel::Heard::message;
+    }
+    return inbox_->end ? Channel::Heard::gone : Channel::Heard::silence;
+  }
+
+  void kill() override { all_.tell(rank_, {What::kill, number_, {}}); }
+
+  WorkerEnd end() override {
+    kill();
+    std::unique_lock lock(inbox_->mutex);
+    inbox_->changed.wait(lock, [&] { return inbox_->end.has_value(); });
+    return *inbox_->end;
+  }
+
+ private:
+  RemoteHosts& all_;
+  const int rank_;
+  const std::uint32_t number_;
+  const std::shared_ptr<Inbox> inbox_;
+};
+
+class RemoteHosts::Host : public WorkerHost {
+ public:
+  Host(RemoteHosts& all, int rank, std::string name, int width, double memory)
+      : all_(all), rank_(rank), name_(std::move(name)), width_(width), memory_(memory) {}
+
+  std::string name() const override { return name_; }
+  int width() const override { return width_; }
+  double memory() const override { return memory_; }
+  bool there() const override { return !all_.ranks_.at(rank_).lost; }
+
+  std::unique_ptr<Worker> start() override {
+    const auto inbox = std::make_shared<Inbox>();
+    std::uint32_t number = 0;
+    {
+      const std::lock_guard guard(all_.mutex_);
+      number = ++all_.born_;
+      Rank& rank = all_.ranks_.at(rank_);
+      rank.workers[number] = inbox;
+      if (rank.lost) inbox->close({.cause = "its machine is lost", .host_lost = true});
+    }
+    return std::make_unique<RemoteWorker>(all_, rank_, number, inbox);
+  }
+
+ private:
+  RemoteHosts& all_;
+  const int rank_;
+  const std::string name_;
+  const int width_;
+  const double memory_;
+};
+
+RemoteHosts::RemoteHosts(Transport& transport, std::function<void(const HostFacts&)> lost, double silence)
+    : transport_(transport), lost_(std::move(lost)), silence_(silence) {
+  for (int rank = 1; rank < transport.size(); ++rank) ranks_[rank].heard = SteadyClock::now();
+  listener_ = std::thread([this] { listen(); });
+}
+
+RemoteHosts::~RemoteHosts() {
+  ending_ = true;
+  listener_.join();
+  for (const auto& [number, rank] : ranks_)
+    if (!rank.lost) tell(number, {What::leave, 0, {}});
+}
+
+void RemoteHosts::tell(int rank, const HostMessage& message) {
+  transport_.send(rank, to_bytes(message));
+}
+
+void RemoteHosts::listen() {
+  while (!ending_) {
+    if (auto parcel = transport_.receive(look_around)) hear(std::move(*parcel));
+    look_for_lost();
+  }
+}
+
+void RemoteHosts::hear(Transport::Parcel parcel) {
+  HostMessage said = host_message(parcel.bytes);
+  std::shared_ptr<Inbox> inbox;
+  {
+    const std::lock_guard guard(mutex_);
+    Rank& rank = ranks_.at(parcel.from);
+    rank.heard = SteadyClock::now();
+    if (rank.lost) return;  // its work was given to others
+    if (said.what == What::facts) {
+      rank.facts = host_facts(said.message.content);
+      changed_.notify_all();
+    }
+    const auto found = rank.workers.find(said.worker);
+    if (found != rank.workers.end()) inbox = found->second;
+  }
+  if (!inbox) return;
+  if (said.what == What::message) inbox->put(std::move(said.message));
+  if (said.what == What::ended) inbox->close(worker_end(said.message.content));
+}
+
+void RemoteHosts::look_for_lost() {
+  std::vector<HostFacts> lost;
+  {
+    const std::lock_guard guard(mutex_);
+    for (auto& [number, rank] : ranks_) {
+      if (rank.lost || !rank.facts || seconds_since(rank.heard) < silence_) continue;
+      rank.lost = true;
+      lost.push_back(*rank.facts);
+      for (const auto& [worker, inbox] : rank.workers)
+        inbox->close({.cause = "its machine is lost", .host_lost = true});
+    }
+  }
+  for (const HostFacts& one : lost) lost_(one);
+}
+
+std::vector<HostFacts> RemoteHosts::facts() {
+  std::vector<HostFacts> all;
+  std::unique_lock lock(mutex_);
+  for (auto& [number, rank] : ranks_) {
+    changed_.wait_for(lock, std::chrono::duration<double>(silence_), [&one = rank] { return one.facts.has_value(); });
+    if (!rank.facts) throw std::runtime_error(fmt::format("rank {} does not answer", number));
+    all.push_back(*rank.facts);
+  }
+  return all;
+}
+
+std::shared_ptr<WorkerHost> RemoteHosts::host(int rank, int width, double memory) {
+  const std::lock_guard guard(mutex_);
+  return std::make_shared<Host>(*this, rank, ranks_.at(rank).facts.value().name, width, memory);
+}
+
+bool RemoteHosts::complete() const {
+  for (const auto& [number, rank] : ranks_)
+    if (rank.lost) return false;
+  return true;
+}
+
+}  // namespace ricochet

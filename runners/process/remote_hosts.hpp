@@ -1,0 +1,65 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "runners/process/host_messages.hpp"
+#include "runners/process/transport.hpp"
+
+namespace ricochet {
+
+/// The coordinator's side of the agents: a WorkerHost for each of the other ranks. A machine of which nothing is heard
+/// for `silence` seconds is lost, with all its workers, and is not asked again.
+class RemoteHosts {
+ public:
+  /// `lost`: told once of each machine that is.
+  RemoteHosts(Transport& transport, std::function<void(const HostFacts&)> lost, double silence = 60);
+  /// Sends the agents home. All workers of its hosts are gone before.
+  ~RemoteHosts();
+  RemoteHosts(const RemoteHosts&) = delete;
+  RemoteHosts& operator=(const RemoteHosts&) = delete;
+
+  /// The facts of all other ranks, in their order; waits for them. Throws std::runtime_error where one is silent.
+  std::vector<HostFacts> facts();
+  /// The machine of a rank, with room for so many workers.
+  std::shared_ptr<WorkerHost> host(int rank, int width, double memory);
+  /// Whether none is lost.
+  bool complete() const;
+
+ private:
+  class Host;
+  class RemoteWorker;
+  /// What is heard of one worker.
+  struct Inbox;
+  struct Rank {
+    std::optional<HostFacts> facts;
+    std::chrono::steady_clock::time_point heard;
+    std::atomic<bool> lost{false};
+    std::map<std::uint32_t, std::shared_ptr<Inbox>> workers;
+  };
+  void listen();
+  void hear(Transport::Parcel parcel);
+  void look_for_lost();
+  void tell(int rank, const HostMessage& message);
+
+  Transport& transport_;
+  const std::function<void(const HostFacts&)> lost_;
+  const double silence_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<int, Rank> ranks_;
+  std::uint32_t born_ = 0;
+  std::atomic<bool> ending_{false};
+  std::thread listener_;
+};
+
+}  // namespace ricochet
