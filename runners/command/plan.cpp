@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <ostream>
 
@@ -125,6 +126,37 @@ void print_costs(const Costs& costs, const Forecast& forecast, const AllowedProc
   if (!cores.limit.empty()) out << "cores that this process may use: " << cores.text() << "\n";
 }
 
+/// What worker processes would take, on one machine or many; only what is known of a kind's cases is said.
+void print_workers(int workers, const Costs& costs, const Forecast& forecast, std::ostream& out) {
+  if (costs.runnable == 0) return;
+  // Measured: a coordinator or a case that waits for its blocks, and a worker; rows on their way to the store.
+  constexpr double memory_of_worker = 30e6, memory_of_coordinator = 100e6, copies = 3;
+  const double work = forecast.seconds - forecast.beside;
+  const double wall = forecast.beside + std::max(work / workers, forecast.chain);
+  out << fmt::format("with {} worker{}: {}", workers, workers == 1 ? "" : "s", duration_text(wall));
+  if (forecast.chain > work / workers)
+    out << fmt::format("; the longest chain alone takes {}: more than {} worker{} shorten nothing",
+                       duration_text(forecast.chain), static_cast<long long>(std::ceil(work / forecast.chain)),
+                       std::ceil(work / forecast.chain) == 1 ? "" : "s");
+  else
+    out << fmt::format("; the longest chain takes {}, which up to {} workers shorten", duration_text(forecast.chain),
+                       static_cast<long long>(std::ceil(work / std::max(forecast.chain, 1e-9))));
+  out << "\n";
+  if (forecast.beside > 0.05 * wall)
+    out << fmt::format("  of these, {} are references and repeats, which few or one of them can do\n",
+                       duration_text(forecast.beside));
+  out << fmt::format("  memory: about {} for each worker, {} where the run was started", size_text(memory_of_worker),
+                     size_text(memory_of_coordinator + copies * forecast.bytes));
+  if (forecast.bytes > 0)
+    out << fmt::format("; store: about {}, {} a second", size_text(forecast.bytes),
+                       size_text(forecast.bytes / std::max(wall, 1e-3)));
+  out << "\n";
+  // Measured: 84 MB a second on a disk of its own; a file system that others use is slower.
+  constexpr double store_rate = 8e7;
+  if (forecast.bytes > store_rate * wall)
+    out << "  the store takes some 80 MB a second at most: fewer samples or points help more than workers\n";
+}
+
 void print_warnings(const std::vector<std::string>& warnings, std::ostream& out) {
   if (warnings.empty()) return;
   out << "\nplugins:\n";
@@ -206,6 +238,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
                                                         : std::string());
     print_axes(axes, out);
     print_costs(all.costs, costs, cores, out);
+    if (arguments.workers > 0) print_workers(arguments.workers, all.costs, costs, out);
     print_reasons(all.reasons, out);
     if (const std::string physics = physics_text(all.runnable, planner, open.registry); !physics.empty())
       out << "\nphysics:\n" << physics;

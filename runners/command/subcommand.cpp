@@ -27,6 +27,15 @@ po::options_description described(const Subcommand& command) {
         "cases that run at the same time (default: all processors that it may use)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
+  if (has("workers"))
+    add("workers", po::value<int>()->value_name("N"),
+        "also say what so many worker processes would take: wall time, what bounds it, memory and store");
+  if (has("nodes")) add("nodes", po::value<int>()->value_name("N"), "machines of the job (default: 1)");
+  if (has("time"))
+    add("time", po::value<std::string>()->value_name("T"),
+        "time limit of one start of the job, as Slurm writes it: minutes, H:M:S or D-H:M:S (required)");
+  if (has("cpus"))
+    add("cpus", po::value<int>()->value_name("N"), "processors of each machine (default: all, no other job beside)");
   if (has("cases")) add("cases", "also print a line for every case");
   if (has("isolate"))
     add("isolate",
@@ -130,6 +139,11 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.periods = count_of(values, "periods", most_samples);
   arguments.samples = count_of(values, "samples", most_samples);
   arguments.snapshots = count_of(values, "snapshots", most_snapshots);
+  constexpr int most_workers = 1000000, most_nodes = 100000;
+  arguments.workers = count_of(values, "workers", most_workers);
+  arguments.nodes = count_of(values, "nodes", most_nodes);
+  arguments.cpus = count_of(values, "cpus", most_jobs);
+  if (values.count("time")) arguments.time = values["time"].as<std::string>();
   if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
   if (values.count("start")) arguments.start = values["start"].as<std::string>();
   if (values.count("cell")) arguments.cell = values["cell"].as<std::string>();

@@ -40,6 +40,9 @@ struct Arguments {
   std::string cell;                              ///< --cell; "": none given
   int periods = 0, samples = 0;                  ///< --periods, --samples; 0: none given
   int snapshots = 0;                             ///< --snapshots; 0: none given
+  int workers = 0;                               ///< --workers; 0: none given
+  int nodes = 0, cpus = 0;                       ///< --nodes, --cpus; 0: none given
+  std::string time;                              ///< --time; "": none given
   bool help = false;
   FindHosts hosts;  ///< not a word of the command line: see run_command()
 };
@@ -69,6 +72,8 @@ Role role_called(const std::string& word);
 
 // The commands themselves; each returns its exit code.
 int command_run(const Arguments& arguments, std::ostream& out);
+int command_slurm(const Arguments& arguments, std::ostream& out);
+int command_status(const Arguments& arguments, std::ostream& out);
 int command_plan(const Arguments& arguments, std::ostream& out);
 int command_list(const Arguments& arguments, std::ostream& out);
 int command_describe(const Arguments& arguments, std::ostream& out);

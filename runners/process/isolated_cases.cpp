@@ -79,6 +79,11 @@ class IsolatedCases::Desk {
     places_.give_back(take(Where::here, [&] { return stop.load(); }).member);
   }
 
+  std::string crew() const {
+    const int workers = places_.width(), machines = places_.machines();
+    return fmt::format("{} worker{}{}", workers, workers == 1 ? "" : "s",
+                       machines > 1 ? fmt::format(" on {} machines", machines) : "");
+  }
   int cases_at_once() const {
     constexpr int held = 4;  // of each of its own workers: a case that waits for its blocks takes memory, not time
     const int all = places_.width();
@@ -294,6 +299,10 @@ class IsolatedCases::Desk {
 IsolatedCases::IsolatedCases(const RunContext& context, const IsolationOptions& options)
     : desk_(std::make_shared<Desk>(context, options)) {}
 IsolatedCases::~IsolatedCases() = default;
+
+std::string IsolatedCases::crew() const {
+  return desk_->crew();
+}
 
 int IsolatedCases::cases_at_once() const {
   return desk_->cases_at_once();

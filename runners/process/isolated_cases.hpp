@@ -26,6 +26,8 @@ class IsolatedCases {
   ~IsolatedCases();
 
   CaseRunner runner();
+  /// "4 workers on 2 machines".
+  std::string crew() const;
   /// Cases that are under way at one time: as many as there are workers, or, where they only wait for their blocks,
   /// what this machine can hold.
   int cases_at_once() const;

@@ -1,5 +1,8 @@
 #include "runners/process/worker_places.hpp"
 
+#include <set>
+#include <string>
+
 namespace ricochet {
 
 WorkerPlaces::WorkerPlaces(std::vector<std::shared_ptr<WorkerHost>> hosts) {
@@ -7,6 +10,12 @@ WorkerPlaces::WorkerPlaces(std::vector<std::shared_ptr<WorkerHost>> hosts) {
     width_ += host->width();
     places_.push_back({std::move(host)});
   }
+}
+
+int WorkerPlaces::machines() const {
+  std::set<std::string> names;
+  for (const Place& one : places_) names.insert(one.host->name());
+  return static_cast<int>(names.size());
 }
 
 WorkerPlaces::Taken WorkerPlaces::take(Where where) {

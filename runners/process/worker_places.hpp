@@ -51,6 +51,7 @@ class WorkerPlaces {
 
   /// Of all machines.
   int width() const { return width_; }
+  int machines() const;
   int width_here() const { return places_.front().host->width(); }
   /// An idle worker, or one to be started there.
   Taken take(Where where);

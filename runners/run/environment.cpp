@@ -1,7 +1,6 @@
 #include "runners/run/environment.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
 #include <oneapi/tbb/version.h>
@@ -23,6 +22,7 @@
 #include "runners/run/build_facts.hpp"
 #include "runners/store/arithmetics.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/store/run_identity.hpp"
 
 namespace ricochet {
 namespace {
@@ -105,7 +105,7 @@ Environment describe_environment(const std::vector<std::filesystem::path>& plugi
     environment.entries.emplace_back("plugin " + library.filename().string(),
                                      fmt::format("{} ({})", library.string(), file_hash(library).substr(0, digits)));
   }
-  environment.entries.emplace_back(kStarted, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
+  environment.entries.emplace_back(kStarted, utc_time());
   return environment;
 }
 

@@ -123,6 +123,9 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
     const double ratio = ratios.of(*one.study_case);
     steps[one.study_case] = ratio * modelled_step(one.plan);
     // Planned once more by the run, and prepared.
+    const double chain = one.plan.chain_seconds > 0 ? one.plan.chain_seconds : one.plan.predicted_seconds;
+    found.chain = std::max(found.chain, ratio * chain + 2 * one.plan_seconds);
+    found.bytes += one.plan.bytes;
     one.plan.predicted_seconds = ratio * one.plan.predicted_seconds + 2 * one.plan_seconds;
     found.seconds += one.plan.predicted_seconds;
     found.longest = std::max(found.longest, one.plan.predicted_seconds);
@@ -133,7 +136,8 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
                               return step == steps.end() ? 0 : step->second;
                             }};
     for (const PlannedCase& one : cases) context.cases.push_back(one.study_case);
-    found.seconds += kind.beside(context);
+    found.beside = kind.beside(context);
+    found.seconds += found.beside;
   }
   found.seconds += each_run + each_case * static_cast<double>(cases.size());
   return found;

@@ -10,6 +10,9 @@ struct Forecast {
   double seconds = 0;  ///< of the whole study
   double longest = 0;  ///< of its longest case, which bounds a run on many cores
   int measured = 0;    ///< cases of which a part was marched for it
+  double chain = 0;    ///< s: the longest part that no more processors shorten
+  double beside = 0;   ///< s of what is done before or after the cases (references, repeats)
+  double bytes = 0;    ///< of all results in the store, roughly
 };
 
 /// Marches a part of some of the cases, of as many different methods as a second or two allow, and lets the others cost

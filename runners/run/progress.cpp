@@ -13,6 +13,7 @@ namespace ricochet {
 namespace {
 
 constexpr double kLineEverySeconds = 2;
+constexpr double kElsewhereEverySeconds = 5;
 constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
 // A case in flight that should have ended is expected to take so much more of what it took.
 constexpr double kOverrun = 0.1;
@@ -97,8 +98,14 @@ std::string progress_bar(const ProgressState& state, int width) {
   return fmt::format("[{:#>{}}{:->{}}] {}", "", full, "", cells - full, text);
 }
 
-Progress::Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop)
-    : out_(out), terminal_(terminal), stop_(stop), total_(total), waiting_(predicted_seconds) {
+Progress::Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop,
+                   std::function<void(const std::string&)> elsewhere)
+    : out_(out),
+      terminal_(terminal),
+      stop_(stop),
+      total_(total),
+      waiting_(predicted_seconds),
+      elsewhere_(std::move(elsewhere)) {
   refresher_ = std::thread([this] { refresh(); });
 }
 
@@ -197,6 +204,14 @@ void Progress::refresh() {
       say(out_, "stopping: the cases in flight are given up, the others kept (once more ends at once)\n");
     }
     if (terminal_ || seconds_since(last_line_) >= 5 * kLineEverySeconds) draw();
+    if (elsewhere_ && seconds_since(told_elsewhere_) >= kElsewhereEverySeconds) {
+      told_elsewhere_ = Clock::now();
+      const std::string text = progress_text(state());
+      lock.unlock();
+      elsewhere_(text);
+      lock.lock();
+      continue;
+    }
     wake_.wait_for(lock, kRedrawEvery);
   }
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -46,7 +47,9 @@ std::string progress_bar(const ProgressState& state, int width);
 /// now and then. Safe from several threads; nothing else may print to `out` while it lives, except through note().
 class Progress {
  public:
-  Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop);
+  /// `elsewhere`: told the same every few seconds, by a thread of its own; must not throw.
+  Progress(std::FILE* out, bool terminal, int total, double predicted_seconds, const std::atomic<bool>& stop,
+           std::function<void(const std::string&)> elsewhere = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -77,7 +80,8 @@ class Progress {
   double waiting_;       // predicted s of the cases that have not begun
   double measured_ = 0;  // s that the finished ones took
   CaseCost cost_;
-  Clock::time_point begin_ = Clock::now(), last_line_ = begin_;
+  const std::function<void(const std::string&)> elsewhere_;
+  Clock::time_point begin_ = Clock::now(), last_line_ = begin_, told_elsewhere_ = begin_;
   std::map<std::string, InFlight> in_flight_;
   std::map<std::string, std::string> calls_;
   bool ended_ = false, stop_told_ = false;

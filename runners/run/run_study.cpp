@@ -34,6 +34,7 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   if (options.isolate) {
     isolated.emplace(context, IsolationOptions{options.plugins, options.hosts});
     runner.cases = isolated->runner();
+    runner.crew = isolated->crew();
     runner.plan = [&](const StudyCase& study_case) {
       CasePlan plan;
       plan.predicted_seconds = isolated->predicted_seconds(study_case);

@@ -236,8 +236,9 @@ class FolderRun {
     const std::size_t running = pending.size();
     tell(fmt::format("{}: {} case{}, {} finished before, {} to run{}", study_.name, study_.cases.size(),
                      study_.cases.size() == 1 ? "" : "s", settled_.size(), running,
-                     running > 0 ? fmt::format(" on {} thread{}", jobs_, jobs_ == 1 ? "" : "s") : ""));
+                     running > 0 ? " on " + crew() : ""));
     if (running == 0) return true;
+    store_.save_progress("planning, on " + crew());
     CaseEvents events;
     events.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
     events.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
@@ -246,11 +247,22 @@ class FolderRun {
     return pending.empty() || run_pending(std::move(pending));
   }
 
+  std::string crew() const {
+    return runner_.crew.empty() ? fmt::format("{} thread{}", jobs_, jobs_ == 1 ? "" : "s") : runner_.crew;
+  }
+
   bool run_pending(std::vector<PendingCase> pending) {
     const int running = static_cast<int>(pending.size());
     double work = 0;
     for (const PendingCase& one : pending) work += one.predicted_seconds;
-    Progress progress(runner_.messages, ::isatty(::fileno(runner_.messages)) != 0, running, work, stop_);
+    Progress progress(runner_.messages, ::isatty(::fileno(runner_.messages)) != 0, running, work, stop_,
+                      [this](const std::string& text) {
+                        try {
+                          store_.save_progress(text + ", on " + crew());
+                        } catch (const StoreError&) {
+                          // The next result that cannot be kept says so.
+                        }
+                      });
     CaseEvents events;
     events.begins = [&](const PendingCase& one) {
       store_.begins({one.study_case->id}, Store::Stage::run);
@@ -275,6 +287,7 @@ class FolderRun {
   }
 
   bool time() {
+    store_.save_progress("timing, one case at a time");
     const auto timed = std::make_shared<std::vector<CaseRecord>>();
     on_one_thread([this, timed] {
       std::vector<CaseRecord> records = time_cases(

@@ -19,6 +19,7 @@ struct StudyRunner {
   std::function<std::vector<std::filesystem::path>(const StudyCase&)>
       libraries;  ///< of its three methods; "" when in-process
   std::function<Environment()> environment;
+  std::string crew;        ///< who marches: "4 workers on 2 machines"; "": so many threads
   std::string arithmetic;  ///< digest of this process's, kept with each case; "": not known
   RenderReport render;
   std::FILE* out = stdout;       ///< the summary

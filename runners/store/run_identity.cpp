@@ -39,12 +39,16 @@ RunIdentity RunIdentity::from_json(const std::string& json) {
   return found;
 }
 
+std::string utc_time() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
 RunIdentity this_run() {
   RunIdentity run;
   std::array<char, 128> host{};
   run.host = ::gethostname(host.data(), host.size() - 1) == 0 ? host.data() : "?";
   run.process = ::getpid();
-  run.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  run.started = utc_time();
   if (const char* job = std::getenv("SLURM_JOB_ID")) run.job = job;
   if (const char* restart = std::getenv("SLURM_RESTART_COUNT")) run.restart = std::atoi(restart);
   return run;

@@ -21,6 +21,9 @@ struct RunIdentity {
   static RunIdentity from_json(const std::string& json);
 };
 
+/// Now: "2026-05-01T12:00:00Z".
+std::string utc_time();
+
 /// This process, now.
 RunIdentity this_run();
 

@@ -3,7 +3,6 @@
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <bit>
@@ -18,6 +17,7 @@
 #include "runners/store/number_rows.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/run_identity.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/store/views.hpp"
@@ -205,8 +205,7 @@ SQLite::Statement& Store::prepared(const char* sql) {
 
 void Store::note_begin(const std::string& id, Stage stage) {
   insert(prepared("INSERT OR REPLACE INTO begun(case_id, stage, since) VALUES(?, ?, ?)"), id,
-         std::string(stage == Stage::run ? "run" : "plan"),
-         fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
+         std::string(stage == Stage::run ? "run" : "plan"), utc_time());
 }
 
 void Store::begins(const std::vector<std::string>& ids, Stage stage) {
@@ -238,7 +237,18 @@ std::set<std::string> Store::failed() const {
 
 void Store::nothing_under_way() {
   const std::lock_guard guard(mutex_);
-  write_alone([&] { database_->exec("DELETE FROM begun"); });
+  write_alone([&] {
+    database_->exec("DELETE FROM begun");
+    database_->exec("DELETE FROM study WHERE key = 'progress'");
+  });
+}
+
+void Store::save_progress(const std::string& text) {
+  const std::lock_guard guard(mutex_);
+  write(text.size(), [&] {
+    SQLite::Statement state(*database_, "INSERT OR REPLACE INTO study(key, value) VALUES(?, ?)");
+    insert(state, "progress", text_of(Json{{"text", text}, {"at", utc_time()}}));
+  });
 }
 
 void Store::save(std::span<const CaseRecord> records, const std::string& next) {

@@ -70,6 +70,9 @@ class Store {
   /// No case is under way any more: the run ends in order.
   void nothing_under_way();
 
+  /// How far the run is, in words, and now: for who looks from elsewhere (read_status.hpp).
+  void save_progress(const std::string& text);
+
   /// Adds finished cases, which are no longer under way; in the same transaction `next` begins, unless it is "".
   /// Measures that are not finite are left out, with a note. May be called from several threads.
   void save(std::span<const CaseRecord> records, const std::string& next = "");

@@ -48,4 +48,15 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / hour, whole % hour / minute);
 }
 
+std::string size_text(double bytes) {
+  constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB", "PB"};
+  constexpr double thousand = 1000, two_digits = 9.95;
+  std::size_t unit = 0;
+  while (bytes >= thousand - 0.5 && unit + 1 < std::size(units)) {
+    bytes /= thousand;
+    ++unit;
+  }
+  return fmt::format("{:.{}f} {}", bytes, unit > 0 && bytes < two_digits ? 1 : 0, units[unit]);
+}
+
 }  // namespace ricochet

@@ -26,4 +26,7 @@ class TextTable {
 /// s", "2 h 10 min".
 std::string duration_text(double seconds);
 
+/// A number of bytes in two digits: "950 B", "25 kB", "1.2 GB".
+std::string size_text(double bytes);
+
 }  // namespace ricochet

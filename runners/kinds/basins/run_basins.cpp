@@ -293,6 +293,14 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   const double steps = periods * study_case.steps_per_period * static_cast<double>(cells);
   out.steps = static_cast<long long>(steps);
   out.predicted_seconds = steps * scenes.scenes().predicted_step_seconds(0, 8) / 8;
+  // The last block of each round of refinement: blocks of the coarse grid are halved until nothing is between.
+  const double rounds =
+      refine ? 1 + std::log2(std::max(1.0, std::sqrt(static_cast<double>(columns * rows) / static_cast<double>(first))))
+             : 1;
+  out.chain_seconds = rounds * periods * study_case.steps_per_period * scenes.scenes().predicted_step_seconds(0, 8);
+  // Measured: what is said of a cell, and its points on the section.
+  constexpr double bytes_of_cell = 1000, bytes_of_point = 32;
+  out.bytes = static_cast<double>(cells) * (bytes_of_cell + bytes_of_point * settings.at("keep").get<double>());
   return out;
 }
 

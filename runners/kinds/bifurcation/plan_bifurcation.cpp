@@ -72,6 +72,15 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   const Refined more = refined(values, settings.value("refine", Json(nullptr)));
   out.steps += static_cast<long long>(orbit * more.orbits * (chains + singles));
   out.predicted_seconds += orbit * more.orbits * (chains + singles) * lanes(more.abreast);
+  // Chains march abreast, through all values; the others in blocks. Refined values wait for both.
+  const double alone = contact_share * scenes.predicted_step_seconds(0, 1);
+  const double block = contact_share * scenes.predicted_step_seconds(0, 8);
+  const double rounds = more.orbits > 0 ? more.orbits / more.abreast : 0;
+  out.chain_seconds =
+      orbit * (chains > 0 ? count * alone : block) + orbit * rounds * (chains + singles > 0 ? block : 0);
+  // Measured: 220 bytes for each kept period, and as much again for what is said of the orbit.
+  constexpr double bytes_of_period = 220, bytes_of_orbit = 2000;
+  out.bytes = (count + more.orbits) * (chains + singles) * (bytes_of_orbit + bytes_of_period * kept);
   // The orbit again, one column more than exponents, and the twin.
   if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
   return out;
