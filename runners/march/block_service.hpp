@@ -16,6 +16,7 @@ struct BlockNews {
   };
   What what = What::so_far;
   std::string content;
+  int share = 0;  ///< see BlockService, from now on; 0: as before
 };
 
 /// Marches blocks of cases in other processes. May be used from any thread.
@@ -24,7 +25,7 @@ class BlockService {
   virtual ~BlockService() = default;
   /// Blocks that are marched at one time, over the whole run.
   virtual int width() const = 0;
-  /// Of these, those that a case may count on: fewer where other cases are under way or wait.
+  /// Of these, those that a case may count on: fewer where other cases are under way or wait. Changes as they end.
   virtual int share() const = 0;
   /// Begins a block of a case and returns its number. `heard` is told what it has so far, and in the end, once, what
   /// became of it; by another thread.

@@ -42,4 +42,27 @@ T from_bytes(const std::string& bytes, const std::string& mark) {
   return value;
 }
 
+/// The same for another process of this program that is told now: what comes through a pipe comes whole, and needs no
+/// hash.
+template <class T>
+std::string packed(const T& value, const std::string& mark) {
+  std::ostringstream stream;
+  stream << mark;
+  cereal::BinaryOutputArchive archive(stream);
+  archive(value);
+  return std::move(stream).str();
+}
+
+/// The value that packed() was given. Throws std::runtime_error for bytes of another mark or cut short.
+template <class T>
+T unpacked(const std::string& bytes, const std::string& mark) {
+  if (!bytes.starts_with(mark)) throw std::runtime_error("a message is of another version than " + mark);
+  std::istringstream stream(bytes);
+  stream.seekg(static_cast<std::streamoff>(mark.size()));
+  cereal::BinaryInputArchive archive(stream);
+  T value;
+  archive(value);
+  return value;
+}
+
 }  // namespace ricochet

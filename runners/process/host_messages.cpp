@@ -40,10 +40,10 @@ std::string to_bytes(const HostMessage& message) {
   return bytes + message.message.content;
 }
 std::string to_bytes(const HostFacts& facts) {
-  return to_bytes(facts, host_mark);
+  return packed(facts, host_mark);
 }
 std::string to_bytes(const WorkerEnd& end) {
-  return to_bytes(end, host_mark);
+  return packed(end, host_mark);
 }
 HostMessage host_message(const std::string& bytes) {
   HostHead head;
@@ -54,10 +54,10 @@ HostMessage host_message(const std::string& bytes) {
   return message;
 }
 HostFacts host_facts(const std::string& bytes) {
-  return from_bytes<HostFacts>(bytes, host_mark);
+  return unpacked<HostFacts>(bytes, host_mark);
 }
 WorkerEnd worker_end(const std::string& bytes) {
-  return from_bytes<WorkerEnd>(bytes, host_mark);
+  return unpacked<WorkerEnd>(bytes, host_mark);
 }
 
 }  // namespace ricochet

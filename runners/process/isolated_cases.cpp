@@ -96,13 +96,12 @@ class IsolatedCases::Desk {
     const Limit limit = limit_of(study_case);
     const auto stopping = [&] { return stop.load(); };
     // Each pending case was planned before the first one ran.
-    if (word == Word::plan) ++pending_;
-    const int width = places_.width();
-    const int left = word == Word::run ? pending_-- : 1, share = width / std::clamp(left, 1, width);
+    if (word == Word::plan) ++open_;
+    const OpenCase open(open_, word == Word::run);
     for (int attempt = 1;;) {
       const Taken taken = take(place_of(word), stopping);
       const int number = taken.member->number;
-      Reply reply = talk(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share})}, stopping,
+      Reply reply = talk(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})}, stopping,
                          2 * after_stop);
       claims_.release(number);
       pool_.forget(number);
@@ -128,6 +127,27 @@ class IsolatedCases::Desk {
   /// machine.
   Where place_of(Word word) const {
     return word == Word::time || (word == Word::run && kind_.block) ? Where::here : Where::anywhere;
+  }
+
+  /// A case that runs is open until it has.
+  class OpenCase {
+   public:
+    OpenCase(std::atomic<int>& open, bool counts) : open_(open), counts_(counts) {}
+    ~OpenCase() {
+      if (counts_) --open_;
+    }
+    OpenCase(const OpenCase&) = delete;
+    OpenCase& operator=(const OpenCase&) = delete;
+
+   private:
+    std::atomic<int>& open_;
+    const bool counts_;
+  };
+
+  /// Workers for each case that is left.
+  int share() const {
+    const int width = places_.width();
+    return width / std::clamp(open_.load(), 1, width);
   }
 
   /// How long a call of a plugin's function may last for a case.
@@ -274,9 +294,11 @@ class IsolatedCases::Desk {
       if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
       if (shelf_.show) shelf_.show(record);
     } else if (message.word == Word::march) {
-      pool_.begin({message.content, member->number, message.about, [member, about = message.about](BlockNews news) {
-                     member->worker->send({Word::block_news, to_bytes(news), about});
-                   }});
+      pool_.begin(
+          {message.content, member->number, message.about, [this, member, about = message.about](BlockNews news) {
+             news.share = share();
+             member->worker->send({Word::block_news, to_bytes(news), about});
+           }});
     } else if (message.word == Word::cancel) {
       pool_.stop(member->number, message.about);
     } else {
@@ -291,7 +313,7 @@ class IsolatedCases::Desk {
   WorkerStudy opening_;
   MotionShelf shelf_;
   KeyClaims claims_;
-  std::atomic<int> pending_{0};
+  std::atomic<int> open_{0};  // cases that were planned and have not run to their end
   WorkerPlaces places_;
   BlockPool pool_;  // last: its threads use all of the above
 };

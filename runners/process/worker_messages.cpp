@@ -94,7 +94,7 @@ void serialize(Archive& archive, BlockRequest& message) {
 
 template <class Archive>
 void serialize(Archive& archive, BlockNews& message) {
-  archive(message.what, message.content);
+  archive(message.what, message.content, message.share);
 }
 
 template <class Archive>
@@ -113,36 +113,36 @@ void serialize(Archive& archive, ShelfMessage& message) {
 }
 
 std::string to_bytes(const WorkerStudy& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const WorkerReady& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const CaseOrder& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const BlockRequest& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const BlockNews& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const CaseAnswer& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const GivenUp& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const ShelfMessage& message) {
-  return to_bytes(message, message_mark);
+  return packed(message, message_mark);
 }
 std::string to_bytes(const CaseRecord& record) {
-  return to_bytes(record, message_mark);
+  return packed(record, message_mark);
 }
 
 template <class T>
 T message_from(const std::string& bytes) {
-  return from_bytes<T>(bytes, message_mark);
+  return unpacked<T>(bytes, message_mark);
 }
 template WorkerStudy message_from(const std::string&);
 template WorkerReady message_from(const std::string&);

@@ -127,6 +127,7 @@ class WorkerService : public BlockService {
       heard = found->second;
       if (news.what != BlockNews::What::so_far) heard_.erase(found);
     }
+    if (news.share > 0) share_ = news.share;
     heard(std::move(news));
   }
 
@@ -294,7 +295,8 @@ class WorkerService : public BlockService {
   std::map<std::uint32_t, std::promise<std::string>> questions_;
   std::map<std::uint32_t, std::function<void(BlockNews)>> heard_;  // of blocks that others march for this one
   std::uint32_t asked_ = 0;
-  int width_ = 1, share_ = 1;
+  int width_ = 1;
+  std::atomic<int> share_{1};
 };
 
 }  // namespace

@@ -42,8 +42,8 @@ void serialize(Archive& archive, OrderedOrbit& orbit) {
 
 template <class Archive>
 void serialize(Archive& archive, BlockOrder& order) {
-  archive(order.scenes, order.section, order.lanes, order.lean, order.interval, order.orbits, order.marched,
-          order.exponents, order.sawtooth);
+  archive(order.scenes, order.section, order.lanes, order.leave, order.lean, order.interval, order.orbits,
+          order.marched, order.exponents, order.sawtooth);
 }
 
 template <class Archive>
@@ -52,16 +52,16 @@ void serialize(Archive& archive, BlockAnswer& answer) {
 }
 
 std::string to_bytes(const BlockOrder& order) {
-  return to_bytes(order, order_mark);
+  return packed(order, order_mark);
 }
 std::string to_bytes(const BlockAnswer& answer) {
-  return to_bytes(answer, answer_mark);
+  return packed(answer, answer_mark);
 }
 BlockOrder block_order(const std::string& bytes) {
-  return from_bytes<BlockOrder>(bytes, order_mark);
+  return unpacked<BlockOrder>(bytes, order_mark);
 }
 BlockAnswer block_answer(const std::string& bytes) {
-  return from_bytes<BlockAnswer>(bytes, answer_mark);
+  return unpacked<BlockAnswer>(bytes, answer_mark);
 }
 
 int BlockOrders::place(int scene) {
@@ -128,9 +128,12 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
     answer.exponents = measure_exponents(*kept.all, task, order.section, answer.seconds, stop);
     return to_bytes(answer);
   }
-  OrbitScheduler scheduler(
-      *kept.all,
-      {.section = order.section, .workers = 1, .lanes = order.lanes, .interval = order.interval, .lean = order.lean});
+  OrbitScheduler scheduler(*kept.all, {.section = order.section,
+                                       .workers = 1,
+                                       .lanes = order.lanes,
+                                       .leave = order.leave,
+                                       .interval = order.interval,
+                                       .lean = order.lean});
   for (const OrderedOrbit& orbit : order.orbits)
     scheduler.add({scenes.at(static_cast<std::size_t>(orbit.scene)), lane_of(orbit), -1, -1});
   scheduler.restore(std::move(order.marched));
@@ -141,8 +144,8 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
     answer.lane_periods = scheduler.lane_periods();
     so_far(to_bytes(answer));
   });
-  // All orbits have been told.
-  answer.marched = {};
+  // What has ended has been told.
+  answer.marched.finished.clear();
   return to_bytes(answer);
 }
 

@@ -28,6 +28,7 @@ struct BlockOrder {
   std::vector<SceneVariant> scenes;  ///< the one that chose the operator first
   SectionPlan section;
   int lanes = 8;
+  int leave = 0;  ///< see ScheduleOptions
   bool lean = false;
   double interval = 5;  ///< s between two tellings of what would be lost
   std::vector<OrderedOrbit> orbits;
@@ -36,7 +37,7 @@ struct BlockOrder {
   bool sawtooth = false;  ///< see MarginalRoots
 };
 
-/// What of it is new since the last answer.
+/// What of it is new since the last answer. The last one holds the orbits that are left to others.
 struct BlockAnswer {
   MarchedOrbits marched;
   std::vector<OrbitExponents> exponents;

@@ -24,8 +24,8 @@ class BlocksUnderWay {
   int begin(const std::string& order);
   /// Blocks of which there is still something to hear.
   std::size_t count() const { return under_way_.size(); }
-  /// Whether another one may begin: one more than is marched waits for each process.
-  bool room() const { return count() < 2 * static_cast<std::size_t>(service_.width()); }
+  /// Whether another one may begin: one more than this case may count on waits for a process that is free.
+  bool room() const { return count() <= static_cast<std::size_t>(service_.share()); }
   /// The next news, of the block of this number; nothing where so many seconds brought none.
   std::optional<std::pair<int, BlockNews>> next(double seconds);
   void stop();

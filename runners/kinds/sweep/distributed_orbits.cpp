@@ -51,6 +51,8 @@ void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
   block.running = std::move(batch.orbits);
   orders.order().lanes = options_.lanes;
   orders.order().lean = options_.lean;
+  // The last ones of a block march in company with those of the next.
+  if (!alone && queue_.ready() > 0 && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
   // One that is suspected tells each of its periods.
   orders.order().interval = alone ? 0 : options_.interval;
   blocks_[service_.begin(to_bytes(orders.order()))] = std::move(block);
@@ -68,8 +70,11 @@ void DistributedOrbits::fill() {
       else
         batch.orbits.push_back(std::move(orbit));
     } else {
-      batch.orbits = queue_.resume(options_.lanes);
-      if (batch.empty()) batch = queue_.take(-1, block_size());
+      // Where the share is under way, the last few wait for those that come back.
+      if (queue_.waiting() < options_.lanes && static_cast<int>(service_.count()) >= options_.blocks->share()) return;
+      const int most = block_size();
+      batch = queue_.go_on(options_.lanes, most);
+      if (batch.empty()) batch = queue_.take(-1, most);
     }
     if (batch.empty()) return;
     send(std::move(batch), alone);
@@ -146,7 +151,9 @@ void DistributedOrbits::run(const std::atomic<bool>& stop,
       if (news.what != What::so_far) {
         const auto ended = blocks_.extract(number);
         if (news.what == What::lost && !ending) lose(std::move(ended.mapped()), news.content);
-        if (news.what == What::interrupted || (news.what == What::lost && ending))
+        if (news.what == What::done && !ending) queue_.give_back(std::move(ended.mapped().running));
+        if (news.what == What::interrupted || (news.what == What::done && ending) ||
+            (news.what == What::lost && ending))
           interrupted.push_back(std::move(ended.mapped()));
       }
     }

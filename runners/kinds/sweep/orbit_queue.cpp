@@ -1,7 +1,6 @@
 #include "runners/kinds/sweep/orbit_queue.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace ricochet {
 
@@ -75,10 +74,21 @@ std::vector<Orbit> OrbitQueue::resume(int most) {
   return orbits;
 }
 
-OrbitQueue::Batch OrbitQueue::take(int wanted, int most) {
+OrbitQueue::Batch OrbitQueue::go_on(int lanes, int most) {
+  Batch batch{resume(lanes), {}};
+  if (batch.empty() || chained(batch.orbits.front().task)) return batch;
+  Batch more = take(group(batch.orbits.front().task), most - static_cast<int>(batch.orbits.size()), false);
+  batch.fresh = std::move(more.fresh);
+  return batch;
+}
+
+void OrbitQueue::give_back(std::vector<Orbit> orbits) {
+  for (Orbit& orbit : orbits) resumed_.push_back(std::move(orbit));
+}
+
+OrbitQueue::Batch OrbitQueue::take(int wanted, int most, std::optional<bool> chains) {
   Batch batch;
   int taken = 0;
-  std::optional<bool> chains;
   for (auto it = ready_.begin(); it != ready_.end() && taken < most;) {
     const int number = *it;
     if (wanted < 0) wanted = group(number);

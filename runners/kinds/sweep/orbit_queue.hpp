@@ -1,5 +1,6 @@
 #pragma once
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
@@ -33,6 +34,8 @@ class OrbitQueue {
   bool finished(int number) const { return done_[static_cast<std::size_t>(number)]; }
   /// Whether a task goes on from the end of another; one that stopped in its own first period left none.
   bool follows(int number) const;
+  /// Whether it follows another one or is followed.
+  bool chained(int number) const { return task(number).follower >= 0 || task(number).after >= 0; }
   int group(int number) const { return scenes_[task(number).scene].group; }
 
   /// Takes back what an interrupted run had marched.
@@ -40,6 +43,8 @@ class OrbitQueue {
   /// Makes everything that is not finished ready, chains first.
   void open();
   int open_tasks() const { return open_; }
+  /// Orbits that may begin or go on.
+  int waiting() const { return ready() + static_cast<int>(resumed_.size()); }
   int ready() const { return static_cast<int>(ready_.size()); }
 
   /// Orbits that march together.
@@ -50,9 +55,14 @@ class OrbitQueue {
   };
   /// Orbits of one group that an interrupted run had on their way.
   std::vector<Orbit> resume(int most);
+  /// Orbits on their way that nobody marches, at most so many lanes of them, and beside single ones others of their
+  /// group that may begin, up to `most` together; empty where there are none on their way.
+  Batch go_on(int lanes, int most);
+  /// Orbits on their way that are marched no further where they were.
+  void give_back(std::vector<Orbit> orbits);
   /// Tasks of one group that may begin now; group −1: of the group of the first one. A batch holds either chains or
   /// single orbits: chains are long, and fastest in narrow blocks.
-  Batch take(int group, int most);
+  Batch take(int group, int most, std::optional<bool> chains = {});
 
   /// An orbit has completed or stopped.
   void finish(Orbit orbit);
@@ -60,7 +70,6 @@ class OrbitQueue {
   MarchedOrbits stock(const std::vector<std::vector<Orbit>>& marching);
 
  private:
-  bool chained(int number) const { return task(number).follower >= 0 || task(number).after >= 0; }
   Orbit begin(int number) const;
 
   const ForcedScenes& scenes_;

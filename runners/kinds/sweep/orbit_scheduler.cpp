@@ -47,11 +47,11 @@ class OrbitScheduler::Shared {
     std::unique_lock lock(mutex_);
     if (queue_.open_tasks() == 0 || ended_) return {};
     const int lanes = owner_.options_.lanes, workers = owner_.options_.workers;
-    OrbitQueue::Batch batch{queue_.resume(lanes), {}};
+    const int fair = std::clamp((queue_.ready() + workers - 1) / workers, 1, lanes);
+    OrbitQueue::Batch batch = queue_.go_on(lanes, fair);
     snapshots_[static_cast<std::size_t>(worker)] = batch.orbits;  // not lost before their first period
     if (!batch.empty()) return batch;
-    const int fair = (queue_.ready() + workers - 1) / workers;
-    batch = queue_.take(-1, std::clamp(fair, 1, lanes));
+    batch = queue_.take(-1, fair);
     if (batch.empty()) changed_.wait(lock);
     return batch;
   }
@@ -91,6 +91,12 @@ class OrbitScheduler::Shared {
       checkpoint_(queue_.stock(snapshots_));
     }
     return !ended_;
+  }
+
+  /// Whether these orbits are left to others, and nothing else is to be done.
+  bool leaves(const std::vector<Orbit>& orbits) {
+    const std::lock_guard guard(mutex_);
+    return !orbits.empty() && static_cast<int>(orbits.size()) <= owner_.options_.leave && queue_.ready() == 0;
   }
 
   /// The orbits that a worker leaves a block with.
@@ -199,7 +205,10 @@ void OrbitScheduler::work(Shared& shared, int worker) {
   double counted = thread_seconds();
   while (shared.going()) {
     std::vector<Orbit> orbits = begin(shared, shared.next(worker));
-    while (!orbits.empty() && shared.going()) orbits = march_block(shared, worker, std::move(orbits), counted);
+    while (!orbits.empty() && shared.going()) {
+      orbits = march_block(shared, worker, std::move(orbits), counted);
+      if (shared.leaves(orbits)) return;
+    }
   }
 }
 
