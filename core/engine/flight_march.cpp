@@ -104,6 +104,7 @@ long long Marcher::fly(long long most, StepObserver* observer) {
   skipped.works = flight.fly(k, column_slots_, past_, observer != nullptr);
   scatter_columns();
   step_ += k;
+  if (!held_.empty()) left_out_held_ += k;
   skipped.to = time();
   skipped.held = held_;
   for (const StageProgram& stage : program_.stages) skipped.instants += stage.closes_instant ? 1 : 0;

@@ -32,6 +32,8 @@ class Marcher {
   long long march(long long steps, StepObserver* observer = nullptr);
   /// Steps that were marched, and not left out.
   long long steps_visited() const { return visited_; }
+  /// Steps that were left out while a point was closed.
+  long long steps_held() const { return left_out_held_; }
 
   /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
   /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
@@ -172,7 +174,7 @@ class Marcher {
   int held_steps_ = 0;
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
-  long long step_ = 0, visited_ = 0;
+  long long step_ = 0, visited_ = 0, left_out_held_ = 0;
   int quiet_ = 0, quiet_after_ = 0;         // steps without contact, and how many until nothing of it acts any more
   std::vector<HeldPoint> held_;             // closed points, where flights ask for them
   std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before

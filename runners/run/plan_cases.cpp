@@ -23,9 +23,16 @@ std::array<Method, 3> methods_of(const StudyCase& study_case) {
 }
 
 std::string to_text(const CasePlan& plan) {
-  return Json{{"refusal", plan.refusal},           {"operator", plan.operator_name}, {"steps", plan.steps},
-              {"seconds", plan.predicted_seconds}, {"left_out", plan.left_out},      {"notes", plan.notes},
-              {"coarsest", plan.coarsest_step},    {"finest", plan.finest_step}}
+  return Json{{"refusal", plan.refusal},
+              {"operator", plan.operator_name},
+              {"steps", plan.steps},
+              {"seconds", plan.predicted_seconds},
+              {"left_out", plan.left_out},
+              {"notes", plan.notes},
+              {"coarsest", plan.coarsest_step},
+              {"finest", plan.finest_step},
+              {"chain", plan.chain_seconds},
+              {"bytes", plan.bytes}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -40,6 +47,8 @@ CasePlan from_text(const Json& json) {
   json.at("notes").get_to(plan.notes);
   json.at("coarsest").get_to(plan.coarsest_step);
   json.at("finest").get_to(plan.finest_step);
+  if (json.at("chain").is_number()) json.at("chain").get_to(plan.chain_seconds);
+  if (json.at("bytes").is_number()) json.at("bytes").get_to(plan.bytes);
   return plan;
 }
 
