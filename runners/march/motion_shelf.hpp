@@ -6,6 +6,7 @@
 
 #include "runners/march/block_service.hpp"
 #include "runners/march/case_watch.hpp"
+#include "runners/march/thread_seats.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
@@ -41,7 +42,7 @@ std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*re
 struct CaseDesk {
   MotionShelf shelf;               ///< bytes by key; empty bytes forget a key
   std::string key;                 ///< of this case and everything its bits depend on
-  int workers = 1;                 ///< threads that this case may use
+  ThreadSeats* seats = nullptr;    ///< of threads that may work for it; null: the one that runs it alone
   BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
 

@@ -86,7 +86,7 @@ class BasinsRun {
     if (tasks.empty()) return ends;
     describe_methods();
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
-                                                .workers = desk_.workers,
+                                                .seats = desk_.seats,
                                                 .budget = budget_of(case_) - record_.run_seconds,
                                                 .lean = true,
                                                 .blocks = desk_.blocks,

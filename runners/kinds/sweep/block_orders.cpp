@@ -129,7 +129,6 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
     return to_bytes(answer);
   }
   OrbitScheduler scheduler(*kept.all, {.section = order.section,
-                                       .workers = 1,
                                        .lanes = order.lanes,
                                        .leave = order.leave,
                                        .interval = order.interval,

@@ -123,11 +123,14 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     return found;
   }
   std::atomic<std::size_t> next{0};
-  seconds += run_workers(task.workers, [&](int) {
+  CaseWorkers workers(task.seats);
+  seconds += workers.run([&](CaseWorker& worker) {
     for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
       if (recall_batch(i)) continue;
+      workers.call(static_cast<int>(batches.size() - i) - 1);
       measure(batches[i]);
       keep_batch(i);
+      if (worker.gives_way()) return;
     }
   });
   if (stop) throw Interrupted{};

@@ -8,6 +8,7 @@
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/march/block_service.hpp"
+#include "runners/march/thread_seats.hpp"
 
 namespace ricochet {
 
@@ -31,7 +32,7 @@ struct ExponentTask {
   std::vector<int> groups;         ///< of each orbit
   std::vector<bool> sawtooth;      ///< per group: see MarginalRoots
   int count = 1;                   ///< exponents
-  int workers = 1;                 ///< threads
+  ThreadSeats* seats = nullptr;    ///< of threads that may measure; null: the caller alone
   BlockService* blocks = nullptr;  ///< other processes that measure; null: threads of this one
   std::string case_id = {};        ///< for them
   std::vector<int> scenes = {};    ///< of each orbit, for them

@@ -26,13 +26,28 @@ class OrbitScheduler::Shared {
  public:
   Shared(OrbitScheduler& owner, const std::atomic<bool>& stop,
          const std::function<void(const MarchedOrbits&)>& checkpoint)
-      : owner_(owner),
-        queue_(owner.queue_),
-        stop_(stop),
-        checkpoint_(checkpoint),
-        snapshots_(static_cast<std::size_t>(owner.options_.workers)),
-        shown_(snapshots_.size(), 0) {
+      : owner_(owner), queue_(owner.queue_), stop_(stop), checkpoint_(checkpoint), workers_(owner.options_.seats) {
     queue_.open();
+  }
+
+  CaseWorkers& workers() { return workers_; }
+
+  /// A place for what a worker has on its way, until it leaves it.
+  int enter() {
+    const std::lock_guard guard(mutex_);
+    std::size_t place = 0;
+    while (place < taken_.size() && taken_[place]) ++place;
+    if (place == taken_.size()) {
+      taken_.push_back(true);
+      snapshots_.emplace_back();
+      shown_.push_back(0);
+    }
+    taken_[place] = true;
+    return static_cast<int>(place);
+  }
+  void exit(int place) {
+    const std::lock_guard guard(mutex_);
+    taken_[static_cast<std::size_t>(place)] = false;
   }
 
   /// Whether there is more to do.
@@ -41,18 +56,20 @@ class OrbitScheduler::Shared {
     return queue_.open_tasks() > 0 && !ended_;
   }
 
-  /// What a worker marches next: orbits that an interrupted run had on their way, else new ones. Empty after it has
-  /// waited for other workers, where none was ready.
-  OrbitQueue::Batch next(int worker) {
+  /// What a worker marches next: orbits on their way that nobody marches, else new ones. Where none is ready: empty,
+  /// for a worker that joined at once, for the other one after it has waited for those that march.
+  OrbitQueue::Batch next(const CaseWorker& worker, int place) {
     std::unique_lock lock(mutex_);
     if (queue_.open_tasks() == 0 || ended_) return {};
-    const int lanes = owner_.options_.lanes, workers = owner_.options_.workers;
+    const int lanes = owner_.options_.lanes, workers = std::max(1, workers_.could_work());
     const int fair = std::clamp((queue_.ready() + workers - 1) / workers, 1, lanes);
     OrbitQueue::Batch batch = queue_.go_on(lanes, fair);
-    snapshots_[static_cast<std::size_t>(worker)] = batch.orbits;  // not lost before their first period
-    if (!batch.empty()) return batch;
-    batch = queue_.take(-1, fair);
-    if (batch.empty()) changed_.wait(lock);
+    snapshots_[static_cast<std::size_t>(place)] = batch.orbits;  // not lost before their first period
+    if (batch.empty()) batch = queue_.take(-1, fair);
+    if (!batch.empty())
+      workers_.call(queue_.waiting());
+    else if (!worker.joined())
+      workers_.without_seat([&] { changed_.wait(lock); });
     return batch;
   }
 
@@ -77,12 +94,12 @@ class OrbitScheduler::Shared {
 
   /// Between two periods of a block: stops everyone where that is asked for, and saves what is due. Whether the block
   /// goes on.
-  bool look_around(int worker, const SectionMarch& block) {
+  bool look_around(int place, const SectionMarch& block) {
     const std::lock_guard guard(mutex_);
     const bool due = since(last_) > owner_.options_.interval, spent = spent_ > owner_.options_.budget;
-    long long& shown = shown_[static_cast<std::size_t>(worker)];
+    long long& shown = shown_[static_cast<std::size_t>(place)];
     if (due) ++wanted_;
-    if (wanted_ != shown) snapshots_[static_cast<std::size_t>(worker)] = block.running();
+    if (wanted_ != shown) snapshots_[static_cast<std::size_t>(place)] = block.running();
     shown = wanted_;
     owner_.over_budget_ = owner_.over_budget_ || spent;
     ended_ = ended_ || spent || stop_;
@@ -90,6 +107,7 @@ class OrbitScheduler::Shared {
       last_ = Clock::now();
       checkpoint_(queue_.stock(snapshots_));
     }
+    if (!ended_) workers_.call(queue_.waiting());
     return !ended_;
   }
 
@@ -100,9 +118,17 @@ class OrbitScheduler::Shared {
   }
 
   /// The orbits that a worker leaves a block with.
-  void leave(int worker, const std::vector<Orbit>& orbits) {
+  void leave(int place, const std::vector<Orbit>& orbits) {
     const std::lock_guard guard(mutex_);
-    snapshots_[static_cast<std::size_t>(worker)] = orbits;
+    snapshots_[static_cast<std::size_t>(place)] = orbits;
+  }
+
+  /// Those of a worker that gives way: others march them on.
+  void give_back(int place, std::vector<Orbit> orbits) {
+    const std::lock_guard guard(mutex_);
+    snapshots_[static_cast<std::size_t>(place)].clear();
+    queue_.give_back(std::move(orbits));
+    changed_.notify_all();
   }
 
   /// A worker is done; one that failed stops the others.
@@ -126,11 +152,13 @@ class OrbitScheduler::Shared {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool ended_ = false;
-  std::vector<std::vector<Orbit>> snapshots_;  // per worker, what is on its way
+  std::vector<bool> taken_;                    // places of workers
+  std::vector<std::vector<Orbit>> snapshots_;  // per place, what is on its way
   Clock::time_point last_ = Clock::now();
   long long wanted_ = 0;          // snapshots asked for so far
-  std::vector<long long> shown_;  // and given, per worker
+  std::vector<long long> shown_;  // and given, per place
   double spent_ = 0;
+  CaseWorkers workers_;
 };
 
 OrbitScheduler::OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options)
@@ -174,7 +202,8 @@ std::vector<Orbit> OrbitScheduler::begin(Shared& shared, OrbitQueue::Batch batch
 
 // Marches a block of these orbits, and of others that take the places of those that end, until all have ended or the
 // block is half empty: what is left is returned, for a narrower one. `counted`: processor time told so far.
-std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, int worker, std::vector<Orbit> orbits, double& counted) {
+std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, CaseWorker& worker, int place, std::vector<Orbit> orbits,
+                                               double& counted) {
   const int group = queue_.group(orbits.front().task);
   int running = 0;
   const std::vector<LaneSpec> places(static_cast<std::size_t>(lane_width(static_cast<int>(orbits.size()))),
@@ -194,22 +223,28 @@ std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, int worker, std::
       more.pop_back();
       ++running;
     }
-    if (!shared.look_around(worker, block) || 2 * running <= block.places()) break;
+    if (!shared.look_around(place, block) || worker.gives_way() || 2 * running <= block.places()) break;
   }
   std::vector<Orbit> left = block.running();
-  shared.leave(worker, left);
+  shared.leave(place, left);
   return left;
 }
 
-void OrbitScheduler::work(Shared& shared, int worker) {
+void OrbitScheduler::work(Shared& shared, CaseWorker& worker) {
   double counted = thread_seconds();
-  while (shared.going()) {
-    std::vector<Orbit> orbits = begin(shared, shared.next(worker));
+  const int place = shared.enter();
+  while (shared.going() && !worker.gives_way()) {
+    std::vector<Orbit> orbits = begin(shared, shared.next(worker, place));
+    if (orbits.empty() && worker.joined()) break;
     while (!orbits.empty() && shared.going()) {
-      orbits = march_block(shared, worker, std::move(orbits), counted);
+      orbits = march_block(shared, worker, place, std::move(orbits), counted);
       if (shared.leaves(orbits)) return;
+      if (!worker.gives_way()) continue;
+      shared.give_back(place, std::move(orbits));
+      break;
     }
   }
+  shared.exit(place);
 }
 
 long long OrbitScheduler::marched_periods(int number) const {
@@ -235,8 +270,8 @@ void OrbitScheduler::run(const std::atomic<bool>& stop, const std::function<void
     return count();
   }
   Shared shared(*this, stop, checkpoint);
-  // A worker waits only for orbits that another one is marching: fewer threads than workers make no difference.
-  seconds_ += run_workers(options_.workers, [&](int worker) {
+  // A worker waits only for orbits that another one is marching.
+  seconds_ += shared.workers().run([&](CaseWorker& worker) {
     try {
       work(shared, worker);
     } catch (const Refusal& refusal) {

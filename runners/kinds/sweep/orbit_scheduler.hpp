@@ -6,14 +6,17 @@
 
 #include "runners/kinds/sweep/orbit_queue.hpp"
 #include "runners/march/block_service.hpp"
+#include "runners/march/thread_seats.hpp"
 
 namespace ricochet {
+
+class CaseWorker;
 
 /// How a set of orbits is marched.
 struct ScheduleOptions {
   SectionPlan section;
-  int workers = 1;
-  int lanes = 8;  ///< most lanes of a block
+  ThreadSeats* seats = nullptr;  ///< of threads that may march; null: the caller alone
+  int lanes = 8;                 ///< most lanes of a block
   /// Where no orbit is ready any more, so many or fewer that still run are left as they are: somebody marches them in
   /// company.
   int leave = 0;
@@ -24,8 +27,9 @@ struct ScheduleOptions {
   std::string case_id = {};        ///< for them
 };
 
-/// Marches orbits in blocks of lanes, on threads that take from one queue: chains (orbits that follow each other) first
-/// and in narrow blocks of their own, the others beside them. An orbit's bits depend on its task alone.
+/// Marches orbits in blocks of lanes, on threads that take from one queue and come and go with the seats: chains
+/// (orbits that follow each other) first and in narrow blocks of their own, the others beside them. An orbit's bits
+/// depend on its task alone.
 class OrbitScheduler {
  public:
   OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options);
@@ -53,9 +57,10 @@ class OrbitScheduler {
 
  private:
   class Shared;
-  void work(Shared& shared, int worker);
+  void work(Shared& shared, CaseWorker& worker);
   std::vector<Orbit> begin(Shared& shared, OrbitQueue::Batch batch);
-  std::vector<Orbit> march_block(Shared& shared, int worker, std::vector<Orbit> orbits, double& counted);
+  std::vector<Orbit> march_block(Shared& shared, CaseWorker& worker, int place, std::vector<Orbit> orbits,
+                                 double& counted);
   std::vector<Orbit> start(const std::vector<int>& numbers);
 
   const ForcedScenes& scenes_;

@@ -20,12 +20,13 @@ Kind sweep_kind(RunSweep run) {
   kind.format.check_cases = check_values;
   kind.start = [run](const RunContext& context) {
     const auto shelf = std::make_shared<MotionShelf>();
-    const int workers = std::max(1, context.jobs / static_cast<int>(context.study.cases.size()));
+    const auto seats = std::make_shared<ThreadSeats>(context.jobs);
     CaseRunner runner;
     runner.open = [shelf](MotionShelf opened, const std::atomic<bool>&) { *shelf = std::move(opened); };
-    runner.run = [run, shelf, workers, blocks = context.blocks, key = context.key, &registry = context.registry](
+    runner.run = [run, shelf, seats, blocks = context.blocks, key = context.key, &registry = context.registry](
                      const StudyCase& study_case, const std::atomic<bool>& stop) {
-      return run(study_case, registry, CaseDesk{*shelf, key(study_case), workers, blocks}, stop);
+      const ThreadSeats::Seat seat(*seats);
+      return run(study_case, registry, CaseDesk{*shelf, key(study_case), seats.get(), blocks}, stop);
     };
     runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](
                        const StudyCase& study_case, const std::string& order,

@@ -43,7 +43,7 @@ struct Opened {
   Registry registry;
   Study study;
   explicit Opened(const Json& text) : study(parse_study(text.dump(1), catalogue, registry)) {}
-  CaseRecord run(const CaseDesk& desk = {{}, "key", 1}) const {
+  CaseRecord run(const CaseDesk& desk = {{}, "key"}) const {
     const std::atomic<bool> stop = false;
     return run_basins(study.cases.front(), registry, desk, stop);
   }

@@ -84,7 +84,9 @@ const std::function<void(const MarchedOrbits&)> nowhere = [](const MarchedOrbits
 
 std::vector<std::string> marched(const Sweep& sweep, int workers, int lanes) {
   ScheduleOptions options = sweep.options;
-  options.workers = workers;
+  ThreadSeats seats(workers);
+  const ThreadSeats::Seat seat(seats);
+  options.seats = &seats;
   options.lanes = lanes;
   OrbitScheduler scheduler(sweep.scenes, options);
   add_all(scheduler, sweep);
@@ -99,7 +101,9 @@ std::vector<std::string> interrupted(const Sweep& sweep, int workers, int lanes,
   stops = 0;
   for (;;) {
     ScheduleOptions options = sweep.options;
-    options.workers = workers;
+    ThreadSeats seats(workers);
+    const ThreadSeats::Seat seat(seats);
+    options.seats = &seats;
     options.lanes = lanes;
     options.interval = 0;  // after every period of any block
     OrbitScheduler scheduler(sweep.scenes, options);

@@ -120,7 +120,9 @@ inline std::string bits_of(const CaseRecord& record) {
 inline CaseRecord run_sweep(const Json& text, int workers = 1) {
   const OpenedSweep opened = opened_sweep(text);
   CaseDesk desk;
-  desk.workers = workers;
+  ThreadSeats seats(workers);
+  const ThreadSeats::Seat seat(seats);
+  desk.seats = &seats;
   const std::atomic<bool> stop = false;
   return run_bifurcation(opened.first(), *opened.registry, desk, stop);
 }
