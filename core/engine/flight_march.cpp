@@ -12,6 +12,7 @@ bool Marcher::contact_set() {
   const bool closed = std::any_of(stage_states_.begin(), stage_states_.end(),
                                   [](const auto& stage) { return (stage->contact_lanes & 1U) != 0; });
   quiet_ = closed ? 0 : quiet_ + 1;
+  if (closed) ++closed_visits_;
   if (!program_.contact) return true;
   if (!closed) {
     if (quiet_ < quiet_after_) return false;
@@ -104,7 +105,7 @@ long long Marcher::fly(long long most, StepObserver* observer) {
   skipped.works = flight.fly(k, column_slots_, past_, observer != nullptr);
   scatter_columns();
   step_ += k;
-  if (!held_.empty()) left_out_held_ += k;
+  if (!held_.empty()) held_left_out_ += k;
   skipped.to = time();
   skipped.held = held_;
   for (const StageProgram& stage : program_.stages) skipped.instants += stage.closes_instant ? 1 : 0;

@@ -32,8 +32,9 @@ class Marcher {
   long long march(long long steps, StepObserver* observer = nullptr);
   /// Steps that were marched, and not left out.
   long long steps_visited() const { return visited_; }
-  /// Steps that were left out while a point was closed.
-  long long steps_held() const { return left_out_held_; }
+  /// Where steps are left out: those that were while a point was closed, and all that were made then.
+  long long steps_held() const { return held_left_out_; }
+  long long steps_closed() const { return held_left_out_ + closed_visits_; }
 
   /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
   /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
@@ -174,7 +175,7 @@ class Marcher {
   int held_steps_ = 0;
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
-  long long step_ = 0, visited_ = 0, left_out_held_ = 0;
+  long long step_ = 0, visited_ = 0, held_left_out_ = 0, closed_visits_ = 0;
   int quiet_ = 0, quiet_after_ = 0;         // steps without contact, and how many until nothing of it acts any more
   std::vector<HeldPoint> held_;             // closed points, where flights ask for them
   std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before

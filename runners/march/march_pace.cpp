@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
+#include <ricochet/engine/flight/flight.hpp>
 #include <vector>
 
 #include "runners/march/prepare_case.hpp"
@@ -16,61 +16,52 @@ constexpr long long few_steps = 400, first_steps = 16, chunk = 32;
 // A step that sees less of the support's motion meets other contacts.
 constexpr double steps_per_period = 200;
 // Contacts of a coarse step take a larger share of the steps: where there is time for so many times as many, they are
-// made. A march that leaves out steps is tried on ever finer ones, to see how its visits grow.
-constexpr double worth_refining = 4, refinement = 8;
-constexpr int most_parts = 5;
-// Visits that only look ahead grow with the number n of steps as n^p, as measured from 1e2 to 1e6 steps per flight.
-constexpr double looking_growth = 0.17;
+// made. A march that leaves out steps is tried on finer ones, and on its own.
+constexpr double worth_refining = 4, refinement = 16;
+// What a step that is left out in contact costs of one that is visited, where none was met.
+constexpr double share_of_visit = 0.2;
+constexpr long long enough_contact = 500;  // steps
 
 struct Part {
   double seconds = 0;
   long long steps = 0, of = 0;      ///< marched, and those of the whole
   long long visited = 0, held = 0;  ///< of those marched: not left out; left out in contact
+  long long closed = 0;             ///< marched in contact, visited or not
   bool standing = false;            ///< no lane stopped on the way
   bool flies = false;               ///< steps are left out
+  bool marginal = false;            ///< see Prepared
+  /// In contact they are composed; made without a search; visited.
+  enum class Contact { composed, held, visited } contact = Contact::visited;
+
   bool whole() const { return standing && steps == of; }
+  /// Hardly a step is left out: a finer one would leave out more.
+  bool visits_most() const { return 2 * visited > steps; }
+  /// Contact changes too often to leave out steps of it.
+  bool visits_contact() const { return closed > enough_contact && 2 * (closed - held) > closed; }
+  double step_seconds() const { return seconds / static_cast<double>(steps); }
+  double contact_share() const { return static_cast<double>(closed) / static_cast<double>(steps); }
 };
 
-/// p n^looking_growth + q n.
-struct VisitGrowth {
-  double p = 0, q = 0;
-  double at(double n) const { return p * std::pow(n, looking_growth) + q * n; }
-};
-
-VisitGrowth growth_through(const Part& coarse, const Part& fine) {
-  const auto m = static_cast<double>(coarse.of), n = static_cast<double>(fine.of);
-  const auto u = static_cast<double>(coarse.visited), v = static_cast<double>(fine.visited);
-  const double mp = std::pow(m, looking_growth), np = std::pow(n, looking_growth);
-  const double determinant = mp * n - np * m;
-  VisitGrowth found{(u * n - v * m) / determinant, (v * mp - u * np) / determinant};
-  if (found.p < 0) found = {0, v / n};
-  if (found.q < 0) found = {v / np, 0};
-  return found;
-}
-
-/// Seconds of a visit, and of a step that is left out in contact.
-struct Costs {
-  double visit = 0, held = 0;
-};
-
-// Least squares of the relative misfit, weighed with the time that each part took.
-Costs costs_of(const std::vector<Part>& parts) {
+// Seconds of a step that is left out in contact: least squares of the relative misfit over whole marches, weighed with
+// the time that each took, of visits and such steps. A visit costs more where flights are longer, that step does not.
+double cost_of_held(const std::vector<Part>& parts) {
+  const double plain = parts.front().step_seconds();
   double vv = 0, vh = 0, hh = 0, vt = 0, ht = 0;
+  int met = 0;
   for (const Part& part : parts) {
-    if (part.seconds <= 0) continue;
+    if (!part.whole() || part.seconds <= 0 || part.held == 0) continue;
     const auto v = static_cast<double>(part.visited), h = static_cast<double>(part.held);
     vv += v * v / part.seconds;
     vh += v * h / part.seconds;
     hh += h * h / part.seconds;
     vt += v;
     ht += h;
+    ++met;
   }
-  const Costs visits{vv > 0 ? vt / vv : 0, 0};
+  if (met == 0) return share_of_visit * plain;
   const double determinant = vv * hh - vh * vh;
-  if (determinant <= 1e-9 * vv * hh) return visits;
-  const Costs both{(vt * hh - ht * vh) / determinant, (ht * vv - vt * vh) / determinant};
-  if (both.held < 0) return visits;
-  return both.visit < 0 ? Costs{0, ht / hh} : both;
+  const double visit = met > 1 && determinant > 1e-9 * vv * hh ? (vt * hh - ht * vh) / determinant : plain;
+  return std::max(0.0, (ht - std::max(visit, plain) * vh) / hh);
 }
 
 class Pace {
@@ -88,16 +79,15 @@ class Pace {
     if (coarse > case_.step && (!part || !part->standing)) part = march(case_.step);
     if (!part) return std::nullopt;
     std::vector<Part> parts{*part};
-    while (parts.size() < most_parts && part->of < steps_ && part->seconds < long_enough_) {
+    while (part->of < steps_ && part->seconds < long_enough_) {
       const double finer = part->flies ? refinement : long_enough_ / part->seconds;
       if (finer < worth_refining) break;
-      part = march(std::max(case_.step, case_.duration / (finer * static_cast<double>(part->of))));
-      if (!part || !part->standing) break;
-      parts.push_back(*part);
-      if (!part->flies) break;
+      if (!add(case_.duration / (finer * static_cast<double>(part->of)), parts) || !part->flies) break;
+      part = parts.back();
     }
-    const Part& last = parts.back();
-    return last.flies ? flown(parts) : last.seconds / static_cast<double>(last.steps);
+    if (!parts.back().flies) return parts.back().step_seconds();
+    if (parts.back().of < steps_) add(case_.step, parts);
+    return flown(parts);
   }
 
  private:
@@ -108,20 +98,31 @@ class Pace {
     return pulsation > 0 ? std::min(few, 2 * std::numbers::pi / (pulsation * steps_per_period)) : few;
   }
 
-  /// A step of the case, where steps are left out: by its visits and its steps in contact, whose numbers the finest
-  /// marches of the whole duration tell. A march that was cut off may not have seen the contact that comes later: it
-  /// tells what they cost.
+  /// Marches on a finer step; whether its lanes stand.
+  bool add(double step, std::vector<Part>& parts) const {
+    const std::optional<Part> part = march(std::max(case_.step, step));
+    if (!part || !part->standing) return false;
+    parts.push_back(*part);
+    return true;
+  }
+
+  /// A step of the case, where steps are left out. The finest march tells what flights between contacts cost. Where it
+  /// was cut off, it may not have seen the contact that comes later: how long that is, a coarser march of the whole
+  /// duration tells.
   double flown(const std::vector<Part>& parts) const {
-    const auto n = static_cast<double>(steps_);
-    std::vector<Part> whole;
-    std::copy_if(parts.begin(), parts.end(), std::back_inserter(whole), [](const Part& part) { return part.whole(); });
-    if (whole.empty()) return parts.back().seconds / static_cast<double>(parts.back().steps);
-    const Part& finest = whole.back();
-    const double longer = n / static_cast<double>(finest.of);
-    const double visited = whole.size() > 1 ? growth_through(whole[whole.size() - 2], finest).at(n)
-                                            : longer * static_cast<double>(finest.visited);
-    const Costs costs = costs_of(parts);
-    return (costs.visit * visited + costs.held * longer * static_cast<double>(finest.held)) / n;
+    const Part& finest = parts.back();
+    const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& part) { return part.whole(); });
+    if (finest.visits_most() || whole == parts.rbegin() || whole == parts.rend()) return finest.step_seconds();
+    // What is disturbed once is visited from then on.
+    if (whole->marginal && whole->visits_most()) return whole->step_seconds();
+    if (finest.contact == Part::Contact::composed && !whole->visits_contact()) return finest.step_seconds();
+    const double plain = parts.front().step_seconds(), held = cost_of_held(parts);
+    const bool held_in_contact = finest.contact == Part::Contact::held && !whole->visits_contact();
+    const double in_contact = held_in_contact ? held : plain;
+    const auto met = static_cast<double>(held_in_contact ? finest.held : finest.closed);
+    const double between = std::max(0.0, finest.seconds - in_contact * met) / (static_cast<double>(finest.steps) - met);
+    const double share = whole->contact_share();
+    return (1 - share) * between + share * in_contact;
   }
 
   /// As much of the march on this step as is long enough. Its operator is chosen by the steps of the whole case.
@@ -135,7 +136,14 @@ class Pace {
     marcher.start(observer.get());
     Part part;
     part.of = prepared.steps;
-    part.flies = marcher.program().flight != nullptr;
+    part.marginal = prepared.marginal;
+    if (const auto& flight = marcher.program().flight) {
+      part.flies = true;
+      if (flight->held_cause().empty())
+        part.contact = Part::Contact::composed;
+      else if (flight->steps_cause().empty())
+        part.contact = Part::Contact::held;
+    }
     if (prepared.steps > few_steps / 2 && !part.flies) marcher.march(first_steps, observer.get());
     // Flights end where the case is sampled.
     const long long few = part.flies ? std::max(chunk, prepared.steps / std::max(1, case_.samples)) : chunk;
@@ -151,6 +159,7 @@ class Pace {
     part.steps = marcher.step() - before;
     part.visited = marcher.steps_visited();
     part.held = marcher.steps_held();
+    part.closed = marcher.steps_closed();
     part.seconds = now - start;
     return part;
   }

@@ -27,13 +27,11 @@ long long whole_steps(const StudyCase& study_case, std::vector<std::string>& not
 }
 
 // What has no mass and no viscosity is known to a step as the highest frequencies are.
-void say_marginal(const SemiDiscrete& problem, const StepPlan& plan, std::vector<std::string>& notes) {
-  if (problem.inertia.kernel_dimension == 0 || problem.damping.stiffness != 0) return;
+bool is_marginal(const SemiDiscrete& problem, const StepPlan& plan) {
+  if (problem.inertia.kernel_dimension == 0 || problem.damping.stiffness != 0) return false;
   constexpr double round_off = 1e-6;  // roots that coincide are known to its square root or less
-  if (const auto root = root_at_infinity(plan); root && std::abs(*root - 1) < round_off)
-    notes.push_back(
-        "marginal: a step leaves all of the highest frequencies (ρ∞ = 1), and what has no mass here has no viscosity "
-        "either: once disturbed it goes on from step to step; use a scheme that damps them, or a stiffness damping");
+  const auto root = root_at_infinity(plan);
+  return root && std::abs(*root - 1) < round_off;
 }
 
 template <class Found>
@@ -98,7 +96,11 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry, lon
     return prepared;
   }
   const StepPlan& steps = std::get<StepPlan>(plan);
-  say_marginal(*prepared.problem, steps, prepared.notes);
+  prepared.marginal = is_marginal(*prepared.problem, steps);
+  if (prepared.marginal)
+    prepared.notes.push_back(
+        "marginal: a step leaves all of the highest frequencies (ρ∞ = 1), and what has no mass here has no viscosity "
+        "either: once disturbed it goes on from step to step; use a scheme that damps them, or a stiffness damping");
   const double asked = thread_seconds();
   prepared.refusal = beyond_explicit_limit(prepared.problem, steps, study_case.step, [&](double h) {
     return scheme->plan(h, problem_facts(*prepared.problem, *law));

@@ -18,6 +18,8 @@ struct Prepared {
   std::string refusal;
   long long steps = 0;  ///< whole steps within the duration
   std::vector<std::string> notes;
+  /// A step leaves all of the highest frequencies, and what has no mass has no viscosity either.
+  bool marginal = false;
   double aside_seconds = 0;  ///< processor time of looking for the limit of an explicit step: no part of the method
 };
 

@@ -151,7 +151,11 @@ TEST_CASE("Cells behind a stop are refused one by one") {
 TEST_CASE("Threads, interruptions and damage to what was stored do not change the bits of basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());
-  for (int run = 0; run < 3; ++run) CHECK((bits(opened.run({{}, "key", 2})) == wanted));
+  for (int run = 0; run < 3; ++run) {
+    ThreadSeats seats(2);
+    const ThreadSeats::Seat seat(seats);
+    CHECK((bits(opened.run({{}, "key", &seats})) == wanted));
+  }
 
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
