@@ -18,50 +18,50 @@ constexpr double steps_per_period = 200;
 // Contacts of a coarse step take a larger share of the steps: where there is time for so many times as many, they are
 // made. A march that leaves out steps is tried on finer ones, and on its own.
 constexpr double worth_refining = 4, refinement = 16;
-// What a step that is left out in contact costs of one that is visited, where none was met.
+constexpr double long_parts = 2;  // one that is cut off, and that on the case's own step
+// What a step that is left out in contact costs of one that is visited, where that is not seen.
 constexpr double share_of_visit = 0.2;
 constexpr long long enough_contact = 500;  // steps
 
 struct Part {
-  double seconds = 0;
+  double seconds = 0, once = 0;     ///< of the steps below; of what came before, beyond that of such steps
   long long steps = 0, of = 0;      ///< marched, and those of the whole
   long long visited = 0, held = 0;  ///< of those marched: not left out; left out in contact
   long long closed = 0;             ///< marched in contact, visited or not
   bool standing = false;            ///< no lane stopped on the way
+  bool whole = false;               ///< and its end was reached
   bool flies = false;               ///< steps are left out
+  bool leaves_contact = false;      ///< in contact too
   bool marginal = false;            ///< see Prepared
-  /// In contact they are composed; made without a search; visited.
-  enum class Contact { composed, held, visited } contact = Contact::visited;
 
-  bool whole() const { return standing && steps == of; }
   /// Hardly a step is left out: a finer one would leave out more.
   bool visits_most() const { return 2 * visited > steps; }
   /// Contact changes too often to leave out steps of it.
-  bool visits_contact() const { return closed > enough_contact && 2 * (closed - held) > closed; }
+  bool visits_contact() const { return !visits_most() && closed > enough_contact && 2 * (closed - held) > closed; }
   double step_seconds() const { return seconds / static_cast<double>(steps); }
   double contact_share() const { return static_cast<double>(closed) / static_cast<double>(steps); }
 };
 
 // Seconds of a step that is left out in contact: least squares of the relative misfit over whole marches, weighed with
 // the time that each took, of visits and such steps. A visit costs more where flights are longer, that step does not.
+// Where such steps are no large part of any march, what they cost is not seen.
 double cost_of_held(const std::vector<Part>& parts) {
-  const double plain = parts.front().step_seconds();
   double vv = 0, vh = 0, hh = 0, vt = 0, ht = 0;
-  int met = 0;
   for (const Part& part : parts) {
-    if (!part.whole() || part.seconds <= 0 || part.held == 0) continue;
+    if (!part.whole || part.seconds <= 0) continue;
     const auto v = static_cast<double>(part.visited), h = static_cast<double>(part.held);
     vv += v * v / part.seconds;
     vh += v * h / part.seconds;
     hh += h * h / part.seconds;
     vt += v;
     ht += h;
-    ++met;
   }
-  if (met == 0) return share_of_visit * plain;
   const double determinant = vv * hh - vh * vh;
-  const double visit = met > 1 && determinant > 1e-9 * vv * hh ? (vt * hh - ht * vh) / determinant : plain;
-  return std::max(0.0, (ht - std::max(visit, plain) * vh) / hh);
+  const double found = determinant > 1e-9 * vv * hh ? std::max(0.0, (ht * vv - vt * vh) / determinant) : 0;
+  const bool seen = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.whole && 2 * found * static_cast<double>(part.held) > part.seconds;
+  });
+  return seen ? found : share_of_visit * parts.front().step_seconds();
 }
 
 class Pace {
@@ -74,11 +74,15 @@ class Pace {
         steps_(std::llround(std::min(study_case.duration / study_case.step, 1e15))) {}
 
   std::optional<double> found() {
-    const double coarse = std::max(case_.step, coarsest_step());
-    std::optional<Part> part = march(coarse);
-    if (coarse > case_.step && (!part || !part->standing)) part = march(case_.step);
+    double step = std::max(case_.step, coarsest_step());
+    std::optional<Part> part = march(step);
+    while (step > case_.step && (!part || !part->standing)) {
+      step = std::max(case_.step, step / refinement);
+      part = march(step);
+    }
     if (!part) return std::nullopt;
     std::vector<Part> parts{*part};
+    if (part->flies) long_enough_ /= long_parts;
     while (part->of < steps_ && part->seconds < long_enough_) {
       const double finer = part->flies ? refinement : long_enough_ / part->seconds;
       if (finer < worth_refining) break;
@@ -87,7 +91,7 @@ class Pace {
     }
     if (!parts.back().flies) return parts.back().step_seconds();
     if (parts.back().of < steps_) add(case_.step, parts);
-    return flown(parts);
+    return flown(parts) + parts.back().once / static_cast<double>(steps_);
   }
 
  private:
@@ -111,13 +115,12 @@ class Pace {
   /// duration tells.
   double flown(const std::vector<Part>& parts) const {
     const Part& finest = parts.back();
-    const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& part) { return part.whole(); });
+    const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& part) { return part.whole; });
     if (finest.visits_most() || whole == parts.rbegin() || whole == parts.rend()) return finest.step_seconds();
     // What is disturbed once is visited from then on.
     if (whole->marginal && whole->visits_most()) return whole->step_seconds();
-    if (finest.contact == Part::Contact::composed && !whole->visits_contact()) return finest.step_seconds();
     const double plain = parts.front().step_seconds(), held = cost_of_held(parts);
-    const bool held_in_contact = finest.contact == Part::Contact::held && !whole->visits_contact();
+    const bool held_in_contact = finest.leaves_contact && !whole->visits_contact();
     const double in_contact = held_in_contact ? held : plain;
     const auto met = static_cast<double>(held_in_contact ? finest.held : finest.closed);
     const double between = std::max(0.0, finest.seconds - in_contact * met) / (static_cast<double>(finest.steps) - met);
@@ -139,15 +142,14 @@ class Pace {
     part.marginal = prepared.marginal;
     if (const auto& flight = marcher.program().flight) {
       part.flies = true;
-      if (flight->held_cause().empty())
-        part.contact = Part::Contact::composed;
-      else if (flight->steps_cause().empty())
-        part.contact = Part::Contact::held;
+      part.leaves_contact = flight->held_cause().empty() || flight->steps_cause().empty();
     }
-    if (prepared.steps > few_steps / 2 && !part.flies) marcher.march(first_steps, observer.get());
-    // Flights end where the case is sampled.
+    // Flights end where the case is sampled; the first one makes what all of them need.
     const long long few = part.flies ? std::max(chunk, prepared.steps / std::max(1, case_.samples)) : chunk;
-    const long long before = marcher.step();
+    const double begin = thread_seconds();
+    if (prepared.steps > few_steps / 2) marcher.march(part.flies ? few : first_steps, observer.get());
+    const long long before = marcher.step(), visited = marcher.steps_visited(), held = marcher.steps_held(),
+                    closed = marcher.steps_closed();
     const double start = thread_seconds();
     double now = start;
     while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough_) {
@@ -156,18 +158,20 @@ class Pace {
     }
     if (marcher.step() <= before) return std::nullopt;
     part.standing = marcher.any_running();
+    part.whole = part.standing && marcher.step() == prepared.steps;
     part.steps = marcher.step() - before;
-    part.visited = marcher.steps_visited();
-    part.held = marcher.steps_held();
-    part.closed = marcher.steps_closed();
+    part.visited = marcher.steps_visited() - visited;
+    part.held = marcher.steps_held() - held;
+    part.closed = marcher.steps_closed() - closed;
     part.seconds = now - start;
+    part.once = std::max(0.0, start - begin - part.step_seconds() * static_cast<double>(before));
     return part;
   }
 
   const StudyCase& case_;
   const Registry& registry_;
   const MakeObserver& observe_;
-  const double long_enough_;  // s
+  double long_enough_;  // s
   const long long steps_;
 };
 

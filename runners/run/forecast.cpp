@@ -24,8 +24,13 @@ constexpr double preparations = 2;                         // that measuring a c
 constexpr double each_run = 0.1, each_case = 1.5e-3;
 
 std::string group_of(const StudyCase& one) {
-  return content_of(one.contact).dump() + "/" + std::to_string(one.elements) + "/" + one.mass.name + "/" +
-         one.time.name;
+  return fmt::format("{}/{}/{}/{}", content_of(one.contact).dump(), content_of(one.mass).dump(),
+                     content_of(one.time).dump(), one.elements);
+}
+
+/// Groups that differ in parameters of mass and time.
+std::string family_of(const StudyCase& one) {
+  return fmt::format("{}/{}/{}/{}", content_of(one.contact).dump(), one.mass.name, one.time.name, one.elements);
 }
 
 /// Seconds of a step by the model, of which the measured ones are a multiple.
@@ -73,11 +78,13 @@ class Ratios {
   void add(const PlannedCase& one, double ratio) {
     own_[one.study_case] = ratio;
     groups_[group_of(*one.study_case)].add(one, ratio);
+    families_[family_of(*one.study_case)].add(one, ratio);
     all_.add(one, ratio);
   }
   double of(const StudyCase& one) const {
     if (const auto own = own_.find(&one); own != own_.end()) return own->second;
     if (const auto group = groups_.find(group_of(one)); group != groups_.end()) return group->second.ratio();
+    if (const auto family = families_.find(family_of(one)); family != families_.end()) return family->second.ratio();
     return all_.modelled > 0 ? all_.ratio() : 1;
   }
 
@@ -91,7 +98,7 @@ class Ratios {
     double ratio() const { return measured / modelled; }
   };
   std::map<const StudyCase*, double> own_;
-  std::map<std::string, Sum> groups_;
+  std::map<std::string, Sum> groups_, families_;
   Sum all_;
 };
 
