@@ -18,6 +18,8 @@ constexpr double steps_per_period = 200;
 // Contacts of a coarse step take a larger share of the steps: where there is time for so many times as many, they are
 // made. A march that leaves out steps is tried on finer ones, and on its own.
 constexpr double worth_refining = 4, refinement = 16;
+// How the time of flights grows with the number n of steps, as n^p: measured from 1e4 to 1e9 steps.
+constexpr double flight_growth = 0.4;
 constexpr double long_parts = 2;  // one that is cut off, and that on the case's own step
 // What a step that is left out in contact costs of one that is visited, where that is not seen.
 constexpr double share_of_visit = 0.2;
@@ -42,26 +44,19 @@ struct Part {
   double contact_share() const { return static_cast<double>(closed) / static_cast<double>(steps); }
 };
 
-// Seconds of a step that is left out in contact: least squares of the relative misfit over whole marches, weighed with
-// the time that each took, of visits and such steps. A visit costs more where flights are longer, that step does not.
-// Where such steps are no large part of any march, what they cost is not seen.
+// Seconds of a step that is left out in contact: what the two finest marches have in common, of visits and such steps.
+// On coarser ones a visit costs less, as flights are shorter. Where such steps are no large part of them, what they
+// cost is not seen.
 double cost_of_held(const std::vector<Part>& parts) {
-  double vv = 0, vh = 0, hh = 0, vt = 0, ht = 0;
-  for (const Part& part : parts) {
-    if (!part.whole || part.seconds <= 0) continue;
-    const auto v = static_cast<double>(part.visited), h = static_cast<double>(part.held);
-    vv += v * v / part.seconds;
-    vh += v * h / part.seconds;
-    hh += h * h / part.seconds;
-    vt += v;
-    ht += h;
-  }
-  const double determinant = vv * hh - vh * vh;
-  const double found = determinant > 1e-9 * vv * hh ? std::max(0.0, (ht * vv - vt * vh) / determinant) : 0;
-  const bool seen = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
-    return part.whole && 2 * found * static_cast<double>(part.held) > part.seconds;
-  });
-  return seen ? found : share_of_visit * parts.front().step_seconds();
+  const double unseen = share_of_visit * parts.front().step_seconds();
+  if (parts.size() < 2) return unseen;
+  const Part &fine = parts.back(), &coarse = parts[parts.size() - 2];
+  const auto v = static_cast<double>(fine.visited), h = static_cast<double>(fine.held);
+  const auto u = static_cast<double>(coarse.visited), g = static_cast<double>(coarse.held);
+  const double determinant = u * h - v * g;
+  const double found = determinant != 0 ? (u * fine.seconds - v * coarse.seconds) / determinant : 0;
+  constexpr double large = 0.3;
+  return found * h > large * fine.seconds && found * h <= fine.seconds ? found : unseen;
 }
 
 class Pace {
@@ -90,8 +85,10 @@ class Pace {
       part = parts.back();
     }
     if (!parts.back().flies) return parts.back().step_seconds();
-    if (parts.back().of < steps_) add(case_.step, parts);
-    return flown(parts) + parts.back().once / static_cast<double>(steps_);
+    const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& one) { return one.whole; });
+    const bool flown = whole != parts.rend() && !whole->visits_most();
+    if (!flown && parts.back().of < steps_) add(case_.step, parts);
+    return whole_seconds(parts) / static_cast<double>(steps_);
   }
 
  private:
@@ -110,22 +107,28 @@ class Pace {
     return true;
   }
 
-  /// A step of the case, where steps are left out. The finest march tells what flights between contacts cost. Where it
-  /// was cut off, it may not have seen the contact that comes later: how long that is, a coarser march of the whole
-  /// duration tells.
-  double flown(const std::vector<Part>& parts) const {
+  /// Of the case, where steps are left out: in contact a share of its steps, which a coarser march of the whole
+  /// duration tells; between contacts flights, whose time that march tells too, or, where it hardly left out a step,
+  /// the beginning of the case itself, which may not have seen the contact that comes later.
+  double whole_seconds(const std::vector<Part>& parts) const {
     const Part& finest = parts.back();
+    const auto n = static_cast<double>(steps_);
     const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& part) { return part.whole; });
-    if (finest.visits_most() || whole == parts.rbegin() || whole == parts.rend()) return finest.step_seconds();
+    if (whole == parts.rend() || whole->of == steps_ || finest.visits_most())
+      return finest.once + finest.step_seconds() * n;
     // What is disturbed once is visited from then on.
-    if (whole->marginal && whole->visits_most()) return whole->step_seconds();
-    const double plain = parts.front().step_seconds(), held = cost_of_held(parts);
-    const bool held_in_contact = finest.leaves_contact && !whole->visits_contact();
-    const double in_contact = held_in_contact ? held : plain;
-    const auto met = static_cast<double>(held_in_contact ? finest.held : finest.closed);
-    const double between = std::max(0.0, finest.seconds - in_contact * met) / (static_cast<double>(finest.steps) - met);
+    if (whole->marginal && whole->visits_most()) return whole->step_seconds() * n;
+    const bool leaves_contact = finest.leaves_contact && !whole->visits_contact();
+    const double in_contact = leaves_contact ? cost_of_held(parts) : parts.front().step_seconds();
+    const auto between = [&](const Part& part) {
+      const auto met = static_cast<double>(leaves_contact ? part.held : part.closed);
+      return std::max(0.0, part.seconds - in_contact * met);
+    };
     const double share = whole->contact_share();
-    return (1 - share) * between + share * in_contact;
+    const double flights = whole->visits_most()
+                               ? between(finest) * (1 - share) * n / static_cast<double>(finest.steps - finest.closed)
+                               : between(*whole) * std::pow(n / static_cast<double>(whole->of), flight_growth);
+    return whole->once + flights + share * n * in_contact;
   }
 
   /// As much of the march on this step as is long enough. Its operator is chosen by the steps of the whole case.
