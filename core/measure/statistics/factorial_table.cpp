@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/measure/statistics/factorial_table.hpp>
+#include <utility>
 
 namespace ricochet {
 namespace {
@@ -146,18 +147,23 @@ void FactorialTable::fill_pairs(std::vector<double>& values, const std::vector<c
   // Σ_{|u| ≤ 2} f_u = Σ_{i<j} f̄_ij − (d − 2) Σ_i f̄_i + (d − 1)(d − 2)/2 f̄.
   const double factor_of_size[] = {0.5 * (d - 1) * (d - 2), 2 - d, 1};
   fitted.resize(size_);
+  // Where each cell stands in the means over sets of two factors and fewer.
+  std::vector<std::pair<FactorMask, std::vector<std::size_t>>> places;
+  for (FactorMask mask = 0; mask < bit(factors()); ++mask) {
+    if (std::popcount(mask) > 2) continue;
+    std::vector<std::size_t> place(size_, 0);
+    for (std::size_t cell = 0; cell < size_; ++cell)
+      for (std::size_t k = 0; k < factors(); ++k)
+        if (mask & bit(k)) place[cell] = place[cell] * levels_[k] + level(cell, k);
+    places.emplace_back(mask, std::move(place));
+  }
   for (int round = 0; round < 500; ++round) {
     const auto tensors = means(values, weights);
     std::fill(fitted.begin(), fitted.end(), 0);
-    for (FactorMask mask = 0; mask < tensors.size(); ++mask) {
-      const auto count = static_cast<std::size_t>(std::popcount(mask));
-      if (count > 2) continue;
-      for (std::size_t cell = 0; cell < size_; ++cell) {
-        std::size_t place = 0;
-        for (std::size_t k = 0; k < factors(); ++k)
-          if (mask & bit(k)) place = place * levels_[k] + level(cell, k);
-        fitted[cell] += factor_of_size[count] * tensors[mask][place];
-      }
+    for (const auto& [mask, place] : places) {
+      const double factor = factor_of_size[std::popcount(mask)];
+      const std::vector<double>& tensor = tensors[mask];
+      for (std::size_t cell = 0; cell < size_; ++cell) fitted[cell] += factor * tensor[place[cell]];
     }
     double moved = 0;
     for (std::size_t cell = 0; cell < size_; ++cell) {
