@@ -116,9 +116,8 @@ void print_costs(const Costs& costs, const Forecast& forecast, const AllowedProc
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
   out << "predicted: " << duration_text(forecast.seconds) << " on 1 core";
-  // A case runs on one core: the longest bounds the whole.
   if (cores.count > 1)
-    out << ", " << duration_text(std::max(forecast.seconds / cores.count, forecast.longest))
+    out << ", " << duration_text(std::max(forecast.seconds / cores.count, forecast.chain))
         << (cores.limit.empty() ? " on all " : " on ") << cores.count;
   if (forecast.measured > 0)
     out << fmt::format(" (a part of {} case{} marched)", forecast.measured, forecast.measured == 1 ? "" : "s");

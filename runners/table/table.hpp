@@ -7,9 +7,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "runners/table/shared_words.hpp"
 
 /// \file
 /// What every result is before it is shown: rows of typed cells under columns that say their unit and their meaning.
@@ -29,9 +32,9 @@ class Cell {
   Cell(std::floating_point auto number) {
     if (std::isfinite(number)) content_ = static_cast<double>(number);
   }
-  Cell(std::string text) : content_(std::move(text)) {}
-  Cell(const char* text) : content_(std::string(text)) {}
-  Cell(std::string_view text) : content_(std::string(text)) {}
+  Cell(std::string text) : content_(SharedWords(std::move(text))) {}
+  Cell(const char* text) : Cell(std::string(text)) {}
+  Cell(std::string_view text) : Cell(std::string(text)) {}
   /// What is absent is nothing.
   template <class Value>
   Cell(const std::optional<Value>& value) {
@@ -45,7 +48,10 @@ class Cell {
   /// Nothing for what is no whole number.
   std::optional<std::int64_t> whole() const;
   /// The words of a text; null for every other cell.
-  const std::string* words() const { return std::get_if<std::string>(&content_); }
+  const std::string* words() const {
+    const auto* shared = std::get_if<SharedWords>(&content_);
+    return shared ? &shared->text() : nullptr;
+  }
   /// As it stands in a field, not quoted: words as they are, numbers in the shortest digits that read back as the same
   /// number, "true" or "false"; "" for nothing.
   std::string text() const;
@@ -56,11 +62,19 @@ class Cell {
   /// Calls `see` with what the cell holds: std::monostate, bool, std::int64_t, double or std::string.
   template <class See>
   decltype(auto) visit(See&& see) const {
-    return std::visit(std::forward<See>(see), content_);
+    return std::visit(
+        [&](const auto& held) -> decltype(auto) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(held)>, SharedWords>)
+            return see(held.text());
+          else
+            return see(held);
+        },
+        content_);
   }
 
  private:
-  std::variant<std::monostate, bool, std::int64_t, double, std::string> content_;
+  // A table may have a million rows: no more than a number and its kind.
+  std::variant<std::monostate, bool, std::int64_t, double, SharedWords> content_;
 };
 
 using Row = std::vector<Cell>;
