@@ -20,18 +20,19 @@ constexpr int most_attempts = 2;
 }  // namespace
 
 DistributedOrbits::DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scenes, const ScheduleOptions& options)
-    : queue_(queue), scenes_(scenes), options_(options), service_(*options.blocks, options.case_id) {}
+    : queue_(queue), scenes_(scenes), options_(options), service_(*options.blocks, options.case_id) {
+  const double steps =
+      static_cast<double>(options_.section.transient + options_.section.keep) * options_.section.steps_per_period;
+  const double one = steps * scenes_.predicted_step_seconds(0, options_.lanes) / options_.lanes;
+  timed_ = static_cast<int>(std::clamp(std::ceil(block_seconds / std::max(one, 1e-12)), 1.0, 4096.0));
+}
 
 // Orbits of a block: as many as take some seconds, fewer where all processes would not have a share, and where there
 // are enough a full block of lanes.
 int DistributedOrbits::block_size() const {
   const int share = options_.blocks->share(), ready = std::max(1, queue_.ready());
   const int fair = (ready + share - 1) / share, half = (ready + 2 * share - 1) / (2 * share);
-  const double steps =
-      static_cast<double>(options_.section.transient + options_.section.keep) * options_.section.steps_per_period;
-  const double one = steps * scenes_.predicted_step_seconds(0, options_.lanes) / options_.lanes;
-  const double timed = std::clamp(std::ceil(block_seconds / std::max(one, 1e-12)), 1.0, 4096.0);
-  return std::max(std::min(options_.lanes, fair), std::min(half, static_cast<int>(timed)));
+  return std::max(std::min(options_.lanes, fair), std::min(half, timed_));
 }
 
 void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {

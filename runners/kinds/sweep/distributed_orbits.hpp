@@ -49,6 +49,7 @@ class DistributedOrbits {
   std::map<int, Block> blocks_;
   std::deque<Orbit> alone_;      // to go on, or with no period: to begin, in blocks of their own
   std::map<int, int> attempts_;  // processes that ended, by task
+  int timed_ = 1;                // orbits of a block that take some seconds
   double seconds_ = 0;
   long long lane_periods_ = 0;
   bool over_budget_ = false;
