@@ -9,6 +9,7 @@
 
 #include "runners/command/subcommand.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/part_cases.hpp"
 #include "runners/run/worker_service.hpp"
 #include "runners/store/store_error.hpp"
 
@@ -89,6 +90,9 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
   } catch (const InputError& error) {
     err << "ricochet: " << (error.pointer().empty() ? "" : "at " + error.pointer() + ": ") << error.what() << "\n";
     return exit_bad_input;
+  } catch (const PartRefused& error) {
+    err << "ricochet: " << error.what() << "\n";
+    return exit_bad_input;
   } catch (const PluginError& error) {
     err << "ricochet: " << error.what() << "\n";
     return exit_plugin;
@@ -110,18 +114,18 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
+       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
        "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
+       {"part", "out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
        command_run},
       {"plan",
-       "STUDY.json [--cases] [--workers N]",
+       "STUDY.json [--cases] [--part K/N] [--workers N]",
        "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
        1,
        1,
-       {"cases", "workers", "plugin"},
+       {"cases", "part", "workers", "plugin"},
        command_plan},
       {"status",
        "DIR…",

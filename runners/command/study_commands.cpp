@@ -39,6 +39,7 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
+    options.part = arguments.part;
     if (arguments.hosts) {
       if (arguments.threads) throw UsageError("--threads is for one machine: the ranks of a job have workers");
       options.hosts = arguments.hosts(arguments.jobs);

@@ -42,6 +42,12 @@ po::options_description described(const Subcommand& command) {
         "run in worker processes: a plugin that crashes costs what it had under way (where a plugin is not "
         "Ricochet's own, this is the default)");
   if (has("threads")) add("threads", "run in threads of this process, whoever wrote the plugins");
+  if (has("part"))
+    add("part", po::value<std::string>()->value_name("K/N"),
+        command.name == "plan"
+            ? "show what part K of N would run"
+            : "run part K of N, its share of the cases, with a folder of its own (default: results/NAME-part-K-of-N); "
+              "`ricochet merge` joins the parts");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("parameter"))
@@ -117,6 +123,14 @@ int count_of(const po::variables_map& values, const char* name, int most) {
   return count;
 }
 
+// All of the study when it is not given.
+StudyPart part_given(const po::variables_map& values) {
+  if (!values.count("part")) return {};
+  const auto& text = values["part"].as<std::string>();
+  if (const auto part = part_from(text)) return *part;
+  throw UsageError(fmt::format("--part \"{}\": expected K/N, part K of N with 1 ≤ K ≤ N, such as 3/64", text));
+}
+
 }  // namespace
 
 Arguments parse_arguments(const Subcommand& command, const std::vector<std::string>& words) {
@@ -144,6 +158,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.nodes = count_of(values, "nodes", most_nodes);
   arguments.cpus = count_of(values, "cpus", most_jobs);
   if (values.count("time")) arguments.time = values["time"].as<std::string>();
+  arguments.part = part_given(values);
   if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
   if (values.count("start")) arguments.start = values["start"].as<std::string>();
   if (values.count("cell")) arguments.cell = values["cell"].as<std::string>();

@@ -35,6 +35,10 @@ void per_case(SQLite::Database& database, std::map<std::string, CaseRecord*>& ca
   }
 }
 
+StudyPart part_of(const Json& value) {
+  return {value.at(0).get<int>(), value.at(1).get<int>()};
+}
+
 void read_study(SQLite::Database& database, StudyResults& results) {
   SQLite::Statement statement(database, "SELECT key, value FROM study");
   while (statement.executeStep()) {
@@ -50,6 +54,7 @@ void read_study(SQLite::Database& database, StudyResults& results) {
         results.axes.push_back(
             {axis.at(0).get<std::string>(), axis.at(1).get<std::string>(), axis.at(2).get<std::string>()});
     if (key == "expected_cases") results.expected_cases = value.get<int>();
+    if (key == "part") results.part = part_of(value);
   }
 }
 
@@ -73,6 +78,14 @@ void read_cases(SQLite::Database& database, StudyResults& results) {
 }
 
 }  // namespace
+
+std::optional<StudyPart> read_part(SQLite::Database& database) {
+  SQLite::Statement part(database, "SELECT value FROM study WHERE key = 'part'");
+  if (part.executeStep()) return part_of(Json::parse(part.getColumn(0).getString()));
+  // Stores of programs that knew no parts.
+  SQLite::Statement name(database, "SELECT 1 FROM study WHERE key = 'name'");
+  return name.executeStep() ? std::optional(StudyPart{}) : std::nullopt;
+}
 
 Environment read_environment(SQLite::Database& database) {
   Environment environment;

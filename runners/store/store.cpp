@@ -112,6 +112,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     for (const Column& axis : study.axes) axes.push_back({axis.name, axis.unit, axis.text});
     insert(state, "axes", text_of(axes));
     insert(state, "expected_cases", text_of(study.expected_cases));
+    insert(state, "part", text_of({study.part.number, study.part.of}));
   });
   rows_ = kept;
   return kept;
@@ -155,6 +156,13 @@ std::set<std::string> Store::settle_rows() {
   returned_ = static_cast<int>(back.size());
   kept.insert(back.begin(), back.end());
   return kept;
+}
+
+std::optional<StudyPart> Store::part() const {
+  const std::lock_guard guard(mutex_);
+  std::optional<StudyPart> part;
+  guarded(file_, database_.get(), [&] { part = read_part(*database_); });
+  return part;
 }
 
 int Store::aside() const {
