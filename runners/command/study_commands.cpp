@@ -95,6 +95,11 @@ int command_report(const Arguments& arguments, std::ostream& out) {
   return exit_done;
 }
 
+int command_merge(const Arguments& arguments, std::ostream&) {
+  if (!arguments.out) throw UsageError("merge expects --out DIR, the folder that is made");
+  return merge_folders({arguments.operands.begin(), arguments.operands.end()}, *arguments.out, arguments.plugins);
+}
+
 int command_export(const Arguments& arguments, std::ostream&) {
   if (!arguments.to) throw UsageError("export expects --to CSVDIR, the folder that receives the tables");
   return export_tables(arguments.operands.front(), *arguments.to);

@@ -20,6 +20,9 @@ po::options_description described(const Subcommand& command) {
     add("out", po::value<std::string>()->value_name("FILE"),
         "the page that lists several folders (default: index.html in the folder that holds them all); NAME.md: "
         "questions and answers in Markdown");
+  else if (has("out") && command.name == "merge")
+    add("out", po::value<std::string>()->value_name("DIR"),
+        "the folder that is made: a new or an empty one (required)");
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))

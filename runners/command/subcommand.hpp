@@ -82,6 +82,7 @@ int command_describe(const Arguments& arguments, std::ostream& out);
 int command_new(const Arguments& arguments, std::ostream& out);
 int command_check(const Arguments& arguments, std::ostream& out);
 int command_report(const Arguments& arguments, std::ostream& out);
+int command_merge(const Arguments& arguments, std::ostream& out);
 int command_compare(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
 int command_league(const Arguments& arguments, std::ostream& out);

@@ -37,6 +37,10 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
 /// Rebuilds report.html (and cases.csv, curves/) from results.sqlite. Returns the exit code.
 int rebuild_report(const std::filesystem::path& folder);
 
+/// merge_folders_with() (merge_folders.hpp), with the reports of this program.
+int merge_folders(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out,
+                  const std::vector<std::filesystem::path>& plugins);
+
 /// Writes the tables of the store as CSV into `to`. Returns the exit code.
 int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to);
 

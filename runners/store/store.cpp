@@ -345,13 +345,7 @@ void Store::save_numbers(const CaseRecord& record) {
 std::string Store::motion(const std::string& key) const {
   const std::lock_guard guard(mutex_);
   std::string content;
-  guarded(file_, database_.get(), [&] {
-    SQLite::Statement find(*database_, "SELECT content FROM motions WHERE key = ?");
-    find.bind(1, motion_key(arithmetic_, key));
-    if (!find.executeStep()) return;
-    const SQLite::Column blob = find.getColumn(0);
-    content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
-  });
+  guarded(file_, database_.get(), [&] { content = find_motion(*database_, motion_key(arithmetic_, key)); });
   return content;
 }
 
