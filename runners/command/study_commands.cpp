@@ -102,7 +102,7 @@ int command_merge(const Arguments& arguments, std::ostream&) {
 
 int command_export(const Arguments& arguments, std::ostream&) {
   if (!arguments.to) throw UsageError("export expects --to CSVDIR, the folder that receives the tables");
-  return export_tables(arguments.operands.front(), *arguments.to);
+  return export_tables(arguments.operands.front(), *arguments.to, arguments.curves);
 }
 
 int command_league(const Arguments& arguments, std::ostream& out) {

@@ -53,6 +53,8 @@ po::options_description described(const Subcommand& command) {
               "`ricochet merge` joins the parts");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
+  if (has("curves"))
+    add("curves", "all curves in one curves.csv, with the case before each sample, in place of a file for each case");
   if (has("parameter"))
     add("parameter", po::value<double>()->value_name("VALUE"), "value of a bifurcation study's parameter");
   if (has("start")) add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv");
@@ -150,6 +152,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.threads = values.count("threads") > 0;
   if (arguments.isolate && arguments.threads) throw UsageError("--isolate and --threads exclude each other");
   arguments.cases = values.count("cases") > 0;
+  arguments.curves = values.count("curves") > 0;
   arguments.study = values.count("study") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
   arguments.jobs = count_of(values, "jobs", most_jobs);

@@ -35,6 +35,7 @@ struct Arguments {
   bool cases = false;                            ///< --cases
   bool isolate = false;                          ///< --isolate
   bool threads = false;                          ///< --threads
+  bool curves = false;                           ///< --curves
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
@@ -56,7 +57,7 @@ struct Subcommand {
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
   std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell,
-                                     ///< periods, samples, study, snapshots, part
+                                     ///< periods, samples, study, snapshots, part, curves
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 

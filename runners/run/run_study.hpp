@@ -41,7 +41,7 @@ int rebuild_report(const std::filesystem::path& folder);
 int merge_folders(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out,
                   const std::vector<std::filesystem::path>& plugins);
 
-/// Writes the tables of the store as CSV into `to`. Returns the exit code.
-int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to);
+/// Writes the tables of the store as CSV into `to`, curves into one file or one for each case. Returns the exit code.
+int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file = false);
 
 }  // namespace ricochet

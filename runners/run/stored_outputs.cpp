@@ -6,6 +6,7 @@
 #include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/run/summary.hpp"
+#include "runners/store/curve_files.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 
@@ -37,10 +38,15 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
   });
 }
 
-int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to) {
+int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file) {
   return unless_unusable([&] {
-    write_tables(to, with_tables(read_store(folder)));
+    const StudyResults results = with_tables(read_store(folder, one_file ? Curves::names : Curves::whole));
+    write_tables(to, results, one_file ? folder : std::filesystem::path());
     say(stdout, fmt::format("tables: {}\n", to.string()));
+    if (!one_file && !has_curve_files(results))
+      say(stdout,
+          fmt::format("curves: not written, for more than {} cases have one; --curves writes them all into one file\n",
+                      kMostCurveFiles));
   });
 }
 

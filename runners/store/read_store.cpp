@@ -80,6 +80,14 @@ CaseRecord case_of(SQLite::Statement& row) {
   return record;
 }
 
+void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
+  per_case(database, cases, curves == Curves::whole ? "name, series" : "name, x''", "curves", "position",
+           [](CaseRecord& record, SQLite::Statement& row) {
+             record.curve.names.push_back(row.getColumn(1).getString());
+             record.curve.columns.push_back(series(row.getColumn(2)));
+           });
+}
+
 /// Reads what belongs to these cases.
 void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
   using Statement = SQLite::Statement;
@@ -94,11 +102,7 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
   });
   per_case(database, cases, "note", "notes", "position",
            [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
-  per_case(database, cases, curves == Curves::whole ? "name, series" : "name, x''", "curves", "position",
-           [](CaseRecord& record, Statement& row) {
-             record.curve.names.push_back(row.getColumn(1).getString());
-             record.curve.columns.push_back(series(row.getColumn(2)));
-           });
+  read_curves(database, cases, curves);
   per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
     const Json content = Json::parse(row.getColumn(2).getString());
@@ -174,6 +178,13 @@ std::optional<CaseRecord> read_case(SQLite::Database& database, const std::strin
   std::map<std::string, CaseRecord*> only = {{id, &record}};
   read_rows(database, only, Curves::whole);
   return record;
+}
+
+Curve read_curve(SQLite::Database& database, const std::string& id) {
+  CaseRecord record;
+  std::map<std::string, CaseRecord*> only = {{id, &record}};
+  read_curves(database, only, Curves::whole);
+  return std::move(record.curve);
 }
 
 std::string find_motion(SQLite::Database& database, const std::string& whole_key) {

@@ -29,6 +29,9 @@ std::optional<CaseRecord> read_case(SQLite::Database& database, const std::strin
 /// The part of its study that the store holds; nothing where it holds none yet.
 std::optional<StudyPart> read_part(SQLite::Database& database);
 
+/// Its curve alone.
+Curve read_curve(SQLite::Database& database, const std::string& id);
+
 /// What is kept under a whole key of the motions; "" where nothing is.
 std::string find_motion(SQLite::Database& database, const std::string& whole_key);
 
