@@ -32,7 +32,9 @@ std::vector<const StudyCase*> cases_of_part(const Study& study, const StudyPart&
   }
   std::vector<std::size_t> order(study.cases.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return costs[a] != costs[b] ? costs[a] > costs[b] : study.cases[a].id < study.cases[b].id;
+  });
   std::vector<std::size_t> own;
   const auto step = static_cast<std::size_t>(part.of);
   for (std::size_t rank = static_cast<std::size_t>(part.number) - 1; rank < order.size(); rank += step)

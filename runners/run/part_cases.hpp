@@ -21,7 +21,8 @@ void check_part(const Study& study, const StudyPart& part);
 /// The cases of one part, in the study's order: all of the study are sorted by what they are predicted to cost, the
 /// dearest first, and dealt like cards, so that the parts are disjoint, hold every case, and cost about the same.
 /// `seconds`: the predictions by case id, as plans make them; of one that is missing, 0. Three digits of them count,
-/// equals stand in the study's order, excluded cases last: every machine deals alike.
+/// and excluded cases come last: every machine deals alike. Equals stand by their ids, which are hashes: in the study's
+/// order a part would have one method alone wherever the number of parts is a multiple of theirs.
 std::vector<const StudyCase*> cases_of_part(const Study& study, const StudyPart& part,
                                             const std::map<std::string, double>& seconds);
 

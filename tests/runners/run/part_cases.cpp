@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "runners/store/fingerprint.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/run/fake_study.hpp"
 
@@ -62,6 +63,17 @@ TEST_CASE("parts: the last digits of a processor deal no other cases") {
     CHECK(here == ids_of(cases_of_part(study, {number, 4}, costs_of(study, 1e-12))));
     CHECK(here == ids_of(cases_of_part(study, {number, 4}, costs_of(study, -1e-12))));
   }
+}
+
+TEST_CASE("parts: of cases that cost the same none has those of one method alone, however many there are") {
+  Study study = fake_study(64);  // two masses in turn
+  for (StudyCase& one : study.cases) one.id = content_hash(one.id).substr(0, 10);
+  for (const int of : {2, 4, 8})
+    for (int number = 1; number <= of; ++number) {
+      std::set<std::string> masses;
+      for (const StudyCase* one : cases_of_part(study, {number, of}, {})) masses.insert(one->mass.name);
+      CHECK(masses.size() == 2);
+    }
 }
 
 TEST_CASE("parts: each has a case to run, and more parts than such cases are refused") {
