@@ -93,7 +93,7 @@ class FolderRun {
     // One whose plan ended the program costs nothing.
     if (const auto crash = read_crash_record(folder_))
       std::erase_if(all, [&](const PendingCase& one) { return one.fingerprint == crash->fingerprint; });
-    predict_cases(runner_, all, jobs_, stop_, planning());
+    unplanned_ = predict_cases(runner_, all, jobs_, stop_, planning());
     for (const PendingCase& one : all) predicted_[one.study_case->id] = one.predicted_seconds;
     cases_ = cases_of_part(study_, part_, predicted_);
     return !stop_;
@@ -111,8 +111,9 @@ class FolderRun {
     return found == cases_.end() ? nullptr : *found;
   }
 
-  /// The row of a case that was not run to its end.
+  /// The row of a case that was not run to its end; of another part's it is enough to know that it failed.
   void settle(const CaseRecord& record) {
+    if (!find_own(record.id)) return note_failure(record);
     store_.save({&record, 1});
     settled_.insert(record.id);
     fresh_.insert(record.id);
@@ -128,7 +129,7 @@ class FolderRun {
   void take_over() {
     failed_ = store_.failed();
     const auto crash = read_crash_record(folder_);
-    const StudyCase* const found = crash ? find_own(crash->case_id) : nullptr;
+    const StudyCase* const found = crash ? find_case(study_, crash->case_id) : nullptr;
     if (found && fingerprints_.at(found->id) == crash->fingerprint) {
       CaseRecord record;
       record.id = found->id;
@@ -194,13 +195,7 @@ class FolderRun {
     hooks.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
     hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
       try {
-        const StudyCase* one = find_case(study_, call.ticket->id);
-        if (!one) return;
-        const CaseRecord record = given_up_record(*one, call);
-        if (find_own(one->id))
-          settle(record);
-        else
-          note_failure(record);
+        if (const StudyCase* one = find_case(study_, call.ticket->id)) settle(given_up_record(*one, call));
       } catch (...) {
         *failure = std::current_exception();
         stop_ = true;
@@ -262,9 +257,13 @@ class FolderRun {
     if (running == 0) return true;
     store_.save_progress("planning, on " + crew());
     if (part_.whole())
-      for (const CaseRecord& record : predict_cases(runner_, pending, jobs_, stop_, planning())) settle(record);
+      unplanned_ = predict_cases(runner_, pending, jobs_, stop_, planning());
     else
       for (PendingCase& one : pending) one.predicted_seconds = predicted_[one.study_case->id];
+    for (const CaseRecord& record : unplanned_) {
+      std::erase_if(pending, [&](const PendingCase& one) { return one.study_case->id == record.id; });
+      if (settled_.count(record.id) == 0) settle(record);
+    }
     if (stop_) return false;
     return pending.empty() || run_pending(std::move(pending));
   }
@@ -360,6 +359,7 @@ class FolderRun {
   std::vector<const StudyCase*> cases_;  // of this run
   std::map<std::string, std::string> fingerprints_;
   std::map<std::string, double> predicted_;  // seconds, where cases were dealt
+  std::vector<CaseRecord> unplanned_;        // whose plan was given up
   std::set<std::string> kept_, settled_;     // rows that were there; and those that need no run any more
   std::set<std::string> fresh_;              // rows that this run made
   std::mutex failed_mutex_;
