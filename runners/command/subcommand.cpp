@@ -6,6 +6,8 @@
 #include <boost/program_options.hpp>
 #include <sstream>
 
+#include "runners/store/curve_files.hpp"
+
 namespace ricochet {
 namespace po = boost::program_options;
 namespace {
@@ -22,7 +24,10 @@ po::options_description described(const Subcommand& command) {
         "questions and answers in Markdown");
   else if (has("out") && command.name == "merge")
     add("out", po::value<std::string>()->value_name("DIR"),
-        "the folder that is made: a new or an empty one (required)");
+        "the folder that is made, whole or not at all: a new or an empty one (required). Folders that one run would "
+        "not "
+        "have left are refused: of another study, program, plugin or arithmetic, under way, or with another result of "
+        "the same case");
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
@@ -50,11 +55,14 @@ po::options_description described(const Subcommand& command) {
         command.name == "plan"
             ? "show what part K of N would run"
             : "run part K of N, its share of the cases, with a folder of its own (default: results/NAME-part-K-of-N); "
-              "`ricochet merge` joins the parts");
+              "a case is not split; `ricochet merge` joins the parts");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
   if (has("curves"))
-    add("curves", "all curves in one curves.csv, with the case before each sample, in place of a file for each case");
+    add("curves", fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file for "
+                              "each case; of more than {} cases there are no such files",
+                              kMostCurveFiles)
+                      .c_str());
   if (has("parameter"))
     add("parameter", po::value<double>()->value_name("VALUE"), "value of a bifurcation study's parameter");
   if (has("start")) add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv");
