@@ -2,13 +2,13 @@
 
 #include <iostream>
 
-#include "runners/command/case_again.hpp"
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/single_study.hpp"
 #include "runners/kinds/stored_study.hpp"
 #include "runners/march/arithmetic_digest.hpp"
+#include "runners/run/case_again.hpp"
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/number_rows.hpp"

@@ -9,6 +9,7 @@
 
 #include "runners/command/subcommand.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/part_cases.hpp"
 #include "runners/run/worker_service.hpp"
 #include "runners/store/store_error.hpp"
 
@@ -89,6 +90,9 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
   } catch (const InputError& error) {
     err << "ricochet: " << (error.pointer().empty() ? "" : "at " + error.pointer() + ": ") << error.what() << "\n";
     return exit_bad_input;
+  } catch (const PartRefused& error) {
+    err << "ricochet: " << error.what() << "\n";
+    return exit_bad_input;
   } catch (const PluginError& error) {
     err << "ricochet: " << error.what() << "\n";
     return exit_plugin;
@@ -110,18 +114,18 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
+       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
        "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
+       {"part", "out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
        command_run},
       {"plan",
-       "STUDY.json [--cases] [--workers N]",
+       "STUDY.json [--cases] [--part K/N] [--workers N]",
        "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
        1,
        1,
-       {"cases", "workers", "plugin"},
+       {"cases", "part", "workers", "plugin"},
        command_plan},
       {"status",
        "DIR…",
@@ -167,6 +171,13 @@ const std::vector<Subcommand>& subcommands() {
        1000,
        {"out"},
        command_report},
+      {"merge",
+       "DIR DIR… --out DIR",
+       "Join results folders of one study, its parts or runs that were stopped, into the folder that one run leaves.",
+       1,
+       100000,
+       {"out", "plugin"},
+       command_merge},
       {"compare",
        "A B [--table]",
        "Say what two results folders have differently: inputs, cases, results beyond round-off, answer.",
@@ -174,7 +185,13 @@ const std::vector<Subcommand>& subcommands() {
        2,
        {"table"},
        command_compare},
-      {"export", "DIR --to CSVDIR", "Write the results as plain CSV tables.", 1, 1, {"to"}, command_export},
+      {"export",
+       "DIR --to CSVDIR [--curves]",
+       "Write the results as plain CSV tables.",
+       1,
+       1,
+       {"to", "curves"},
+       command_export},
       {"league",
        "DIR…",
        "Print time schemes side by side in Markdown: what the studies of these results folders measured of each.",

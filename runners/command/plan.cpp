@@ -10,6 +10,7 @@
 #include "runners/command/study_file.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/forecast.hpp"
+#include "runners/run/part_cases.hpp"
 #include "runners/run/plan_cases.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/plain_text.hpp"
@@ -197,6 +198,17 @@ StudyPlan plan_study(const Study& study, CasePlanner& planner) {
   return all;
 }
 
+/// Leaves of the study the cases of one part.
+void keep_part(Study& study, const StudyPart& part, CasePlanner& planner) {
+  check_part(study, part);
+  std::map<std::string, double> seconds;
+  for (const StudyCase& one : study.cases)
+    if (!one.excluded) seconds[one.id] = planner.plan(one).plan.predicted_seconds;
+  std::vector<StudyCase> own;
+  for (const StudyCase* one : cases_of_part(study, part, seconds)) own.push_back(*one);
+  study.cases = std::move(own);
+}
+
 std::string table_of_plans(const Study& study, const StudyPlan& all, const std::vector<AxisValues>& axes) {
   std::vector<std::string> header = {"id"};
   for (const AxisValues& axis : axes)
@@ -224,15 +236,17 @@ std::string table_of_plans(const Study& study, const StudyPlan& all, const std::
 int command_plan(const Arguments& arguments, std::ostream& out) {
   const AllowedProcessors cores = allowed_processors();
   return with_study(arguments, [&](const OpenStudy& open) -> int {
-    const Study& study = open.study;
-    CasePlanner planner(study, open.catalogue, open.registry);
+    Study study = open.study;
+    CasePlanner planner(open.study, open.catalogue, open.registry);
+    if (!arguments.part.whole()) keep_part(study, arguments.part, planner);
     StudyPlan all = plan_study(study, planner);
     const Forecast costs = forecast(study, all.runnable, planner, open.registry);
     const std::vector<AxisValues> axes = axis_values(study);
     const auto runnable = static_cast<std::size_t>(all.costs.runnable);
 
     out << study.name << (study.question.empty() ? "" : ": " + study.question) << "\n"
-        << fmt::format("kind {}, {} case{}{}\n", study.kind, study.cases.size(), study.cases.size() == 1 ? "" : "s",
+        << fmt::format("{}kind {}, {} case{}{}\n", arguments.part.whole() ? "" : arguments.part.text() + ": ",
+                       study.kind, study.cases.size(), study.cases.size() == 1 ? "" : "s",
                        study.cases.front().duration > 0 ? fmt::format(", duration {} s", study.cases.front().duration)
                                                         : std::string());
     print_axes(axes, out);

@@ -21,7 +21,8 @@ std::string status_text(const std::string& folder, const RunStatus& status) {
     finished += count;
     kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", count, word);
   }
-  std::string text = fmt::format("{} ({}, {}): {} of {} case{} finished{}\n", folder, status.name, status.kind,
+  const std::string part = status.part.whole() ? "" : ", " + status.part.text();
+  std::string text = fmt::format("{} ({}, {}{}): {} of {} case{} finished{}\n", folder, status.name, status.kind, part,
                                  finished, status.expected, status.expected == 1 ? "" : "s", kinds);
   const std::string who = status.run ? status.run->text() : "a run";
   if (!status.progress.empty()) {

@@ -39,6 +39,7 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.jobs = arguments.jobs > 0 ? arguments.jobs : processors.count;
     options.fresh = arguments.fresh;
     options.table = arguments.table;
+    options.part = arguments.part;
     if (arguments.hosts) {
       if (arguments.threads) throw UsageError("--threads is for one machine: the ranks of a job have workers");
       options.hosts = arguments.hosts(arguments.jobs);
@@ -94,9 +95,14 @@ int command_report(const Arguments& arguments, std::ostream& out) {
   return exit_done;
 }
 
+int command_merge(const Arguments& arguments, std::ostream&) {
+  if (!arguments.out) throw UsageError("merge expects --out DIR, the folder that is made");
+  return merge_folders({arguments.operands.begin(), arguments.operands.end()}, *arguments.out, arguments.plugins);
+}
+
 int command_export(const Arguments& arguments, std::ostream&) {
   if (!arguments.to) throw UsageError("export expects --to CSVDIR, the folder that receives the tables");
-  return export_tables(arguments.operands.front(), *arguments.to);
+  return export_tables(arguments.operands.front(), *arguments.to, arguments.curves);
 }
 
 int command_league(const Arguments& arguments, std::ostream& out) {

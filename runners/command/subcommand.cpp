@@ -6,6 +6,8 @@
 #include <boost/program_options.hpp>
 #include <sstream>
 
+#include "runners/store/curve_files.hpp"
+
 namespace ricochet {
 namespace po = boost::program_options;
 namespace {
@@ -20,6 +22,12 @@ po::options_description described(const Subcommand& command) {
     add("out", po::value<std::string>()->value_name("FILE"),
         "the page that lists several folders (default: index.html in the folder that holds them all); NAME.md: "
         "questions and answers in Markdown");
+  else if (has("out") && command.name == "merge")
+    add("out", po::value<std::string>()->value_name("DIR"),
+        "the folder that is made, whole or not at all: a new or an empty one (required). Folders that one run would "
+        "not "
+        "have left are refused: of another study, program, plugin or arithmetic, under way, or with another result of "
+        "the same case");
   else if (has("out"))
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
@@ -42,8 +50,19 @@ po::options_description described(const Subcommand& command) {
         "run in worker processes: a plugin that crashes costs what it had under way (where a plugin is not "
         "Ricochet's own, this is the default)");
   if (has("threads")) add("threads", "run in threads of this process, whoever wrote the plugins");
+  if (has("part"))
+    add("part", po::value<std::string>()->value_name("K/N"),
+        command.name == "plan"
+            ? "show what part K of N would run"
+            : "run part K of N, its share of the cases, with a folder of its own (default: results/NAME-part-K-of-N); "
+              "a case is not split; `ricochet merge` joins the parts");
   if (has("to"))
     add("to", po::value<std::string>()->value_name("CSVDIR"), "folder that receives the tables (required)");
+  if (has("curves"))
+    add("curves", fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file for "
+                              "each case; of more than {} cases there are no such files",
+                              kMostCurveFiles)
+                      .c_str());
   if (has("parameter"))
     add("parameter", po::value<double>()->value_name("VALUE"), "value of a bifurcation study's parameter");
   if (has("start")) add("start", po::value<std::string>()->value_name("NAME"), "start of the orbit, as in values.csv");
@@ -117,6 +136,14 @@ int count_of(const po::variables_map& values, const char* name, int most) {
   return count;
 }
 
+// All of the study when it is not given.
+StudyPart part_given(const po::variables_map& values) {
+  if (!values.count("part")) return {};
+  const auto& text = values["part"].as<std::string>();
+  if (const auto part = part_from(text)) return *part;
+  throw UsageError(fmt::format("--part \"{}\": expected K/N, part K of N with 1 ≤ K ≤ N, such as 3/64", text));
+}
+
 }  // namespace
 
 Arguments parse_arguments(const Subcommand& command, const std::vector<std::string>& words) {
@@ -133,6 +160,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.threads = values.count("threads") > 0;
   if (arguments.isolate && arguments.threads) throw UsageError("--isolate and --threads exclude each other");
   arguments.cases = values.count("cases") > 0;
+  arguments.curves = values.count("curves") > 0;
   arguments.study = values.count("study") > 0;
   constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
   arguments.jobs = count_of(values, "jobs", most_jobs);
@@ -144,6 +172,7 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.nodes = count_of(values, "nodes", most_nodes);
   arguments.cpus = count_of(values, "cpus", most_jobs);
   if (values.count("time")) arguments.time = values["time"].as<std::string>();
+  arguments.part = part_given(values);
   if (values.count("parameter")) arguments.parameter = values["parameter"].as<double>();
   if (values.count("start")) arguments.start = values["start"].as<std::string>();
   if (values.count("cell")) arguments.cell = values["cell"].as<std::string>();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runners/command/command.hpp"
+#include "runners/study/study_part.hpp"
 
 namespace ricochet {
 
@@ -34,6 +35,7 @@ struct Arguments {
   bool cases = false;                            ///< --cases
   bool isolate = false;                          ///< --isolate
   bool threads = false;                          ///< --threads
+  bool curves = false;                           ///< --curves
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter
   std::string start;                             ///< --start; "": none given
@@ -42,6 +44,7 @@ struct Arguments {
   int snapshots = 0;                             ///< --snapshots; 0: none given
   int workers = 0;                               ///< --workers; 0: none given
   int nodes = 0, cpus = 0;                       ///< --nodes, --cpus; 0: none given
+  StudyPart part;                                ///< --part; whole: none given
   std::string time;                              ///< --time; "": none given
   bool help = false;
   FindHosts hosts;  ///< not a word of the command line: see run_command()
@@ -54,7 +57,7 @@ struct Subcommand {
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
   std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell,
-                                     ///< periods, samples, study, snapshots
+                                     ///< periods, samples, study, snapshots, part, curves
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 
@@ -80,6 +83,7 @@ int command_describe(const Arguments& arguments, std::ostream& out);
 int command_new(const Arguments& arguments, std::ostream& out);
 int command_check(const Arguments& arguments, std::ostream& out);
 int command_report(const Arguments& arguments, std::ostream& out);
+int command_merge(const Arguments& arguments, std::ostream& out);
 int command_compare(const Arguments& arguments, std::ostream& out);
 int command_export(const Arguments& arguments, std::ostream& out);
 int command_league(const Arguments& arguments, std::ostream& out);

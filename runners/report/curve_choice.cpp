@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runners/store/curve_files.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -42,6 +43,8 @@ CurveChoice::CurveChoice(const CaseView& view) {
   for (const CaseRecord* record : view.all())
     if (!record->curve.columns.empty()) drawn.push_back(record);
   with_curves_ = drawn.size();
+  files_ = has_curve_files(view.results());
+  where_ = where_curves_are(view.results());
   const std::vector<CaseGroup> groups = view.group(drawn, view.varying_without({"step"}));
   all_ = groups.size() <= most_curve_rows || drawn.size() <= most_curve_cases;
   if (all_) return;
@@ -50,11 +53,11 @@ CurveChoice::CurveChoice(const CaseView& view) {
 }
 
 std::string CurveChoice::sentence() const {
-  if (all_) return "";
+  if (all_) return files_ ? "" : fmt::format("Curves over time: {}.", where_);
   return fmt::format(
       "Curves over time: this page holds those of {} of {} cases, the extreme ones and others spread over the study; "
-      "each case has its own in curves/ID.csv.",
-      ids_.size(), with_curves_);
+      "{}.",
+      ids_.size(), with_curves_, where_);
 }
 
 }  // namespace ricochet::report

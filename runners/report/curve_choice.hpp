@@ -13,12 +13,15 @@ class CurveChoice {
  public:
   explicit CurveChoice(const CaseView& view);
   bool holds(const std::string& id) const { return all_ || ids_.count(id) > 0; }
-  /// "Curves over time: those of 70 of 912 cases …", "" where all are held.
+  /// "Curves over time: this page holds those of 70 of 912 cases …", and where the others are; "" where all are held
+  /// and each has its file.
   std::string sentence() const;
 
  private:
   bool all_ = true;
   std::size_t with_curves_ = 0;
+  bool files_ = true;
+  std::string where_;
   std::set<std::string> ids_;
 };
 

@@ -105,13 +105,13 @@ void CurveData::put_floats(const std::string& key, std::span<const double> value
   put(key, "f32", bytes);
 }
 
-std::string CurveData::thinning() const {
+std::string CurveData::thinning(bool files) const {
   if (thinned_ == 0) return "";
   return fmt::format(
       "{} series of up to {} samples are thinned to {} for this page: of each small interval the smallest and the "
       "largest sample are "
-      "kept, so no peak is lost. The full series are in the store and in curves/.",
-      thinned_, longest_, limit_);
+      "kept, so no peak is lost. The full series are in the store{}.",
+      thinned_, longest_, limit_, files ? " and in curves/" : "");
 }
 
 size_t sample_limit(size_t series) {

@@ -39,8 +39,9 @@ class CurveData {
   void put_floats(const std::string& key, std::span<const double> values);
   /// Key → base64.
   const nlohmann::ordered_json& blocks() const { return blocks_; }
-  /// Sentence on what was thinned out for display, "" when nothing was.
-  std::string thinning() const;
+  /// Sentence on what was thinned out for display, "" when nothing was. `files`: whether each case has its curve's
+  /// file.
+  std::string thinning(bool files = true) const;
 
  private:
   size_t limit_;

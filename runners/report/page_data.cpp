@@ -7,6 +7,7 @@
 #include "runners/report/curve_data.hpp"
 #include "runners/report/panel_data.hpp"
 #include "runners/report/snapshot_data.hpp"
+#include "runners/store/curve_files.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
@@ -167,11 +168,13 @@ PageData page_data(const CaseView& view, const KindPage& kind) {
   out["tables"] = tables_json(view, kind);
   out["own"] = own_json(view, kind);
   out["curves"] = curves_json(view, kind, choice, curves);
+  out["curve_files"] = has_curve_files(results);
   out["panel"] = panel_data(view, curves);
   out["snapshots"] = snapshot_data(view, curves);
   if (kind.data) out[kind.data_key] = kind.data(view, curves);
   std::string less = kind.curves.empty() ? "" : choice.sentence();
-  if (const std::string thinned = curves.thinning(); !thinned.empty()) less += (less.empty() ? "" : " ") + thinned;
+  if (const std::string thinned = curves.thinning(has_curve_files(results)); !thinned.empty())
+    less += (less.empty() ? "" : " ") + thinned;
   PageJson blocks = curves.blocks();
   share_times(out["curves"], blocks);
   return {std::move(out), std::move(blocks), std::move(less)};

@@ -20,6 +20,7 @@ struct PageData {
 ///   tables    {name: {columns: [{name, unit, text}], rows, cells}}: a column of words is {words, at}
 ///   own       {table: {case: …}}: tables of single cases, in the same form
 ///   curves    {case: {column: [block of t, block of the column]}}
+///   curve_files  whether each case with a curve has its file
 ///   and what the kind adds under its own key
 /// Nothing that figures of the kind do not read is written, but for the cases with their measures.
 PageData page_data(const CaseView& view, const KindPage& kind);

@@ -39,6 +39,9 @@ Fill banners(const StudyResults& results) {
                                : fmt::format("{} cases are still being worked on.", partial),
                   "What they have so far is shown; running the study again goes on from there.");
   const size_t have = results.cases.size(), expected = static_cast<size_t>(std::max(results.expected_cases, 0));
+  if (!results.part.whole())
+    out << banner(fmt::format("This is {} of the study.", results.part.text()),
+                  "Everything below speaks of its cases alone; `ricochet merge` joins the parts.");
   if (have < expected)
     out << banner(fmt::format("Partial results: {} of {} so far.", have, count_text(expected, "case", "cases")),
                   "Everything below speaks of these alone; running the study again adds the rest.");

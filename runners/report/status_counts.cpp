@@ -1,5 +1,7 @@
 #include "runners/report/status_counts.hpp"
 
+#include <fmt/format.h>
+
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
 
@@ -21,7 +23,9 @@ std::string statuses_text(const StudyResults& results) {
 
 std::string counts_text(const StudyResults& results) {
   const std::string statuses = statuses_text(results);
-  return count_text(results.cases.size(), "case", "cases") + (statuses.empty() ? "" : ": " + statuses) + ".";
+  const std::string part =
+      results.part.whole() ? "" : fmt::format("Part {} of {}, ", results.part.number, results.part.of);
+  return part + count_text(results.cases.size(), "case", "cases") + (statuses.empty() ? "" : ": " + statuses) + ".";
 }
 
 }  // namespace ricochet::report

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/run/curve_outputs.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/curve_files.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store_error.hpp"
@@ -16,37 +18,6 @@
 
 namespace ricochet {
 namespace {
-
-void write_curves(const std::filesystem::path& folder, const StudyResults& results,
-                  const std::set<std::string>* changed) {
-  make_folder(folder);
-  for (const CaseRecord& record : results.cases) {
-    const std::filesystem::path file = folder / (record.id + ".csv");
-    if (record.curve.names.empty()) continue;
-    if (changed != nullptr && changed->count(record.id) == 0 && std::filesystem::exists(file)) continue;
-    write_file(file, curve_csv(record.curve));
-  }
-}
-
-/// Only files named like a case: ten hexadecimal digits.
-bool is_case_file(const std::filesystem::path& file, const char* extension) {
-  constexpr std::size_t digits = 10;
-  const std::string stem = file.stem().string();
-  return file.extension() == extension && stem.size() == digits &&
-         stem.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
-void remove_stale_curves(const std::filesystem::path& folder, const StudyResults& results) {
-  std::set<std::string> wanted;
-  for (const CaseRecord& record : results.cases)
-    if (!record.curve.names.empty()) wanted.insert(record.id);
-  std::vector<std::filesystem::path> stale;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (is_case_file(entry.path(), ".csv") && wanted.count(entry.path().stem().string()) == 0)
-      stale.push_back(entry.path());
-  for (const auto& file : stale) std::filesystem::remove(file, ignored);
-}
 
 /// The tables of one folder, each written as CSV and remembered for the dictionary.
 class TableFolder {
@@ -65,15 +36,9 @@ class TableFolder {
       remember(head);
     }
   }
-  /// Curves are written one by one; their columns are those that any case has.
-  void remember_curves(const StudyResults& results) {
-    const Kind* kind = find_kind(results.kind);
-    Table curves{"curves", kind ? kind->curve.text : "", {}, {}};
-    for (const CaseRecord& record : results.cases)
-      for (const std::string& name : record.curve.names)
-        if (!find_column(curves.columns, name)) curves.columns.push_back({name, "", ""});
-    if (kind) describe(curves, kind->curve);
-    if (!curves.columns.empty()) remember(curves);
+  /// A table that was written elsewhere; one without columns is none.
+  void remember(const Table& table) {
+    if (!table.columns.empty()) heads_.push_back({table.name, table.text, table.columns, {}});
   }
   /// Last, when every table is known.
   void write_dictionary() {
@@ -88,16 +53,15 @@ class TableFolder {
 
  private:
   std::filesystem::path file(const Table& table) const { return folder_ / (table.name + ".csv"); }
-  void remember(const Table& table) { heads_.push_back({table.name, table.text, table.columns, {}}); }
 
   const std::filesystem::path& folder_;
   std::vector<Table> heads_;
 };
 
 /// What every results folder has beside its curves, and what an export begins with.
-void write_results(TableFolder& tables, const StudyResults& results) {
+void write_results(TableFolder& tables, const StudyResults& results, const Table& curves) {
   tables.write(cases_table(results));
-  tables.remember_curves(results);
+  tables.remember(curves);
   for (const Table& table : results.derived) tables.write(table);
   tables.write_numbers(results);
 }
@@ -137,12 +101,7 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
     wanted.insert(record.id);
     write_file(folder / (record.id + ".json"), study.dump(indent, ' ', false, replace) + '\n');
   }
-  std::vector<std::filesystem::path> stale;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (is_case_file(entry.path(), ".json") && wanted.count(entry.path().stem().string()) == 0)
-      stale.push_back(entry.path());
-  for (const auto& file : stale) std::filesystem::remove(file, ignored);
+  remove_stale(folder, ".json", wanted);
 }
 
 }  // namespace
@@ -150,23 +109,31 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
 void write_outputs(const std::filesystem::path& folder, const StudyResults& results, const RenderReport& render,
                    const std::set<std::string>* changed) {
   write_study(folder, results);
-  write_curves(folder / "curves", results, changed);
-  remove_stale_curves(folder / "curves", results);
+  write_curve_files(folder, results, changed);
   TableFolder tables(folder);
-  write_results(tables, results);
+  write_results(tables, results, has_curve_files(results) ? curves_head(results) : Table());
   tables.write_dictionary();
   write_failures(folder / "failures", results);
   write_file(folder / "report.html", render(results));
 }
 
-void write_tables(const std::filesystem::path& folder, const StudyResults& results) {
+void write_tables(const std::filesystem::path& folder, const StudyResults& results,
+                  const std::filesystem::path& curves_of) {
   refuse_foreign_tables(folder, results);
   make_folder(folder);
   write_study(folder, results);
-  write_curves(folder / "curves", results, nullptr);
-  remove_stale_curves(folder / "curves", results);
+  const bool one_file = !curves_of.empty();
+  Table curves;
+  if (one_file) {
+    remove_curve_files(folder);
+    curves = write_curve_table(folder, results, curves_of);
+  } else {
+    remove_curve_table(folder);
+    write_curve_files(folder, results, nullptr);
+    if (has_curve_files(results)) curves = curves_head(results);
+  }
   TableFolder tables(folder);
-  write_results(tables, results);
+  write_results(tables, results, curves);
   tables.write(measures_table());
   tables.write(left_out_table(results));
   tables.write(notes_table(results));

@@ -10,7 +10,8 @@ namespace ricochet {
 
 using RenderReport = std::function<std::string(const StudyResults&)>;
 
-/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv, dictionary.csv
+/// Writes study.json, cases.csv, the derived tables, the exported tables of numbers, curves/ID.csv (curve_outputs.hpp),
+/// dictionary.csv
 /// (what every column of these means), failures/ID.json and report.html into `folder` from the results alone, each file
 /// whole or not at all, and removes the curves of cases that are no longer in the study. `changed`: the cases whose
 /// curve must be written again; nothing means all. Throws StoreError.
@@ -18,7 +19,9 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
                    const std::set<std::string>* changed = nullptr);
 
 /// Writes study.json and the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each
-/// means), left_out, notes, environment, dictionary. Throws StoreError, also for a folder with tables of another study.
-void write_tables(const std::filesystem::path& folder, const StudyResults& results);
+/// means), left_out, notes, environment, dictionary. `curves_of`: the folder from whose store the curves are read, into
+/// one curves.csv in place of curves/ID. Throws StoreError, also for a folder with tables of another study.
+void write_tables(const std::filesystem::path& folder, const StudyResults& results,
+                  const std::filesystem::path& curves_of = {});
 
 }  // namespace ricochet

@@ -9,6 +9,7 @@
 #include "runners/report/report.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
 
 namespace ricochet {
@@ -50,6 +51,11 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   RunOptions shared = options;
   if (isolated) shared.jobs = isolated->cases_at_once();
   return run_study_with(runner, study, shared);
+}
+
+int merge_folders(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out,
+                  const std::vector<std::filesystem::path>& plugins) {
+  return merge_folders_with(render, folders, out, plugins, stdout);
 }
 
 int rebuild_report(const std::filesystem::path& folder) {

@@ -28,24 +28,25 @@ StudyResults results_header(const Study& study) {
   return results;
 }
 
-std::vector<ExpectedCase> expected_cases(const StudyRunner& runner, const Study& study) {
+std::vector<ExpectedCase> expected_cases(const FindLibraries& libraries, const Study& study) {
   Fingerprints fingerprints(study.kind, program_hash());
   std::vector<ExpectedCase> expected;
   for (const StudyCase& study_case : study.cases)
-    expected.push_back({study_case.id, fingerprints.of(study_case, runner.libraries(study_case))});
+    expected.push_back({study_case.id, fingerprints.of(study_case, libraries(study_case))});
   return expected;
 }
 
-std::set<std::string> find_missing(const Study& study, const std::map<std::string, std::string>& fingerprints,
+std::set<std::string> find_missing(const std::vector<const StudyCase*>& cases,
+                                   const std::map<std::string, std::string>& fingerprints,
                                    const std::set<std::string>& settled, std::vector<CaseRecord>& excluded,
                                    std::vector<PendingCase>& pending) {
   std::set<std::string> missing;
-  for (const StudyCase& study_case : study.cases) {
-    if (settled.count(study_case.id) != 0 || !missing.insert(study_case.id).second) continue;
-    if (study_case.excluded)
-      excluded.push_back(excluded_record(study_case));
+  for (const StudyCase* one : cases) {
+    if (settled.count(one->id) != 0 || !missing.insert(one->id).second) continue;
+    if (one->excluded)
+      excluded.push_back(excluded_record(*one));
     else
-      pending.push_back({&study_case, 0, fingerprints.at(study_case.id)});
+      pending.push_back({one, 0, fingerprints.at(one->id)});
   }
   return missing;
 }

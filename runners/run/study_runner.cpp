@@ -14,15 +14,16 @@
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
+#include "runners/run/finish_run.hpp"
+#include "runners/run/part_cases.hpp"
 #include "runners/run/progress.hpp"
+#include "runners/run/run_words.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
-#include "runners/run/summary.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/merge_environments.hpp"
-#include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/table/plain_text.hpp"
@@ -30,7 +31,7 @@
 namespace ricochet {
 namespace {
 
-constexpr int kNothingRan = 3, kStoreUnusable = 5;
+constexpr int kStoreUnusable = 5;
 
 /// What a long case has so far goes to the store, and to the report: it can be looked at while the run goes on.
 void show_partial(const StudyRunner& runner, Store& store, const std::filesystem::path& folder,
@@ -52,16 +53,22 @@ class FolderRun {
         stop_(signals_.requested()),
         store_(folder_, options.fresh),
         guard_(folder_),
+        part_(options.part),
         table_(options.table),
         jobs_(options.jobs > 0 ? options.jobs : allowed_processors().count) {
     if (options.fresh) remove_crash_record(folder_);
   }
 
   int run() {
-    const std::vector<ExpectedCase> expected = expected_cases(runner_, study_);
-    for (const ExpectedCase& one : expected) fingerprints_[one.id] = one.fingerprint;
-    kept_ = settled_ = store_.begin(results_header(study_), expected, runner_.arithmetic);
-    say_versions();
+    if (const auto held = store_.part(); held && *held != part_)
+      throw PartRefused(other_part_text(folder_, study_.name, *held, part_));
+    for (const ExpectedCase& one : expected_cases(runner_.libraries, study_)) fingerprints_[one.id] = one.fingerprint;
+    if (!deal()) return interrupted();
+    StudyResults header = results_header(study_);
+    header.expected_cases = static_cast<int>(cases_.size());
+    header.part = part_;
+    kept_ = settled_ = store_.begin(header, expected(), runner_.arithmetic);
+    say(runner_.messages, versions_text(store_));
     take_over();
     announce();
     if (runner_.cases.open) open();
@@ -75,28 +82,38 @@ class FolderRun {
  private:
   void tell(const std::string& line) { say(runner_.messages, line + "\n"); }
 
-  /// What became of the results of other versions of this study.
-  void say_versions() {
-    const auto results = [](int count) { return fmt::format("{} result{}", count, count == 1 ? "" : "s"); };
-    const int back = store_.returned(), aside = store_.aside();
-    if (back > 0)
-      tell(fmt::format("{} that {} kept aside {} back", results(back), back == 1 ? "was" : "were",
-                       back == 1 ? "is" : "are"));
-    if (aside > 0)
-      tell(
-          fmt::format("{} of an earlier version {} kept aside: {} back when the study (and its plugins) are again as "
-                      "they were, and {} with --fresh",
-                      results(aside), aside == 1 ? "is" : "are", aside == 1 ? "it comes" : "they come",
-                      aside == 1 ? "goes" : "go"));
-    if (const int others = store_.of_other_arithmetic(); others > 0)
-      tell(
-          fmt::format("{} case{} computed with other last digits than those of this processor and C library, and kept; "
-                      "the environment says which",
-                      others, others == 1 ? " was" : "s were"));
+  /// Finds the cases of this run: all, or those of its part, for which all are planned. False: interrupted.
+  bool deal() {
+    for (const StudyCase& one : study_.cases) cases_.push_back(&one);
+    if (part_.whole()) return true;
+    tell(fmt::format("{}: planning {} cases, to deal them into {} parts", study_.name, cases_.size(), part_.of));
+    std::vector<CaseRecord> excluded;
+    std::vector<PendingCase> all;
+    find_missing(cases_, fingerprints_, {}, excluded, all);
+    // One whose plan ended the program costs nothing.
+    if (const auto crash = read_crash_record(folder_))
+      std::erase_if(all, [&](const PendingCase& one) { return one.fingerprint == crash->fingerprint; });
+    unplanned_ = predict_cases(runner_, all, jobs_, stop_, planning());
+    for (const PendingCase& one : all) predicted_[one.study_case->id] = one.predicted_seconds;
+    cases_ = cases_of_part(study_, part_, predicted_);
+    return !stop_;
   }
 
-  /// The row of a case that was not run to its end.
+  std::vector<ExpectedCase> expected() const {
+    std::vector<ExpectedCase> cases;
+    for (const StudyCase* one : cases_) cases.push_back({one->id, fingerprints_.at(one->id)});
+    return cases;
+  }
+
+  /// The case of this run with this id; null where there is none.
+  const StudyCase* find_own(const std::string& id) const {
+    const auto found = std::find_if(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
+    return found == cases_.end() ? nullptr : *found;
+  }
+
+  /// The row of a case that was not run to its end; of another part's it is enough to know that it failed.
   void settle(const CaseRecord& record) {
+    if (!find_own(record.id)) return note_failure(record);
     store_.save({&record, 1});
     settled_.insert(record.id);
     fresh_.insert(record.id);
@@ -124,7 +141,7 @@ class FolderRun {
       tell(crash->reason() + ", before any case");
     }
     std::vector<std::string> left = store_.left_under_way();
-    std::erase_if(left, [&](const std::string& id) { return settled_.count(id) != 0 || !find_case(study_, id); });
+    std::erase_if(left, [&](const std::string& id) { return settled_.count(id) != 0 || !find_own(id); });
     if (!left.empty())
       tell(fmt::format("an earlier run ended while {} {} under way: run again", fmt::join(left, ", "),
                        left.size() == 1 ? "was" : "were"));
@@ -135,8 +152,8 @@ class FolderRun {
   /// Before any code of a plugin runs: from now on the cost of these cases is predicted, and what they share computed.
   void announce() {
     std::vector<std::string> ids;
-    for (const StudyCase& one : study_.cases)
-      if (!one.excluded && settled_.count(one.id) == 0) ids.push_back(one.id);
+    for (const StudyCase* one : cases_)
+      if (!one->excluded && settled_.count(one->id) == 0) ids.push_back(one->id);
     if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
   }
 
@@ -227,24 +244,36 @@ class FolderRun {
   bool run_missing() {
     std::vector<CaseRecord> excluded;
     std::vector<PendingCase> pending;
-    fresh_.merge(find_missing(study_, fingerprints_, settled_, excluded, pending));
+    fresh_.merge(find_missing(cases_, fingerprints_, settled_, excluded, pending));
     if (!fresh_.empty()) {
       const Environment now = runner_.environment();
       store_.save_environment(kept_.empty() ? now : merge_environments(now, store_.load().environment));
     }
     if (!excluded.empty()) store_.save(excluded);
     const std::size_t running = pending.size();
-    tell(fmt::format("{}: {} case{}, {} finished before, {} to run{}", study_.name, study_.cases.size(),
-                     study_.cases.size() == 1 ? "" : "s", settled_.size(), running,
-                     running > 0 ? " on " + crew() : ""));
+    tell(fmt::format("{}{}: {} case{}, {} finished before, {} to run{}", study_.name,
+                     part_.whole() ? "" : ", " + part_.text(), cases_.size(), cases_.size() == 1 ? "" : "s",
+                     settled_.size(), running, running > 0 ? " on " + crew() : ""));
     if (running == 0) return true;
     store_.save_progress("planning, on " + crew());
+    if (part_.whole())
+      unplanned_ = predict_cases(runner_, pending, jobs_, stop_, planning());
+    else
+      for (PendingCase& one : pending) one.predicted_seconds = predicted_[one.study_case->id];
+    for (const CaseRecord& record : unplanned_) {
+      std::erase_if(pending, [&](const PendingCase& one) { return one.study_case->id == record.id; });
+      if (settled_.count(record.id) == 0) settle(record);
+    }
+    if (stop_) return false;
+    return pending.empty() || run_pending(std::move(pending));
+  }
+
+  /// What is heard while cases are planned.
+  CaseEvents planning() {
     CaseEvents events;
     events.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
     events.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
-    for (const CaseRecord& record : predict_cases(runner_, pending, jobs_, stop_, events)) settle(record);
-    if (stop_) return false;
-    return pending.empty() || run_pending(std::move(pending));
+    return events;
   }
 
   std::string crew() const {
@@ -304,38 +333,16 @@ class FolderRun {
 
   int interrupted() {
     store_.nothing_under_way();
-    const StudyResults results = store_.load();
-    const auto under_way =
-        std::count_if(results.cases.begin(), results.cases.end(), [](const CaseRecord& one) { return one.partial; });
-    tell(fmt::format(
-        "interrupted: {} of {} cases are finished{} and kept in {}. Run the same command again to go on; \"ricochet "
-        "report {}\" shows what is there",
-        results.cases.size() - static_cast<std::size_t>(under_way), results.expected_cases,
-        under_way > 0 ? fmt::format(", {} under way,", under_way) : "", folder_.string(), folder_.string()));
+    say(runner_.messages, interrupted_text(folder_, store_.load()));
     return kInterrupted;
   }
 
   int finish() {
-    const StudyResults results = with_tables(store_.load());
-    store_.make_views(results);
-    write_outputs(folder_, results, runner_.render, &fresh_);
-    const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
-                                     [](const CaseRecord& one) { return one.status == "refused"; });
-    const int code = nothing ? kNothingRan : results_exit_code(results);
+    const StudyResults results = write_folder(store_, folder_, runner_.render, &fresh_);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    say(runner_.out,
-        fmt::format("{}{}\n{} ({} run now in {}, {} kept)\n{}report: {}\n", table_ ? case_table(results) + "\n" : "",
-                    answer_text(results), totals_text(results), fresh_.size(), duration_text(seconds), kept_.size(),
-                    extremes_text(results), (folder_ / "report.html").string()));
-    if (nothing)
-      say(runner_.out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
-    else if (code != 0)
-      say(runner_.out, std::any_of(results.cases.begin(), results.cases.end(), went_wrong)
-                           ? fmt::format("exit code {}: some cases diverged or failed, the others are usable; {} holds "
-                                         "a study of each alone\n",
-                                         code, (folder_ / "failures").string())
-                           : fmt::format("exit code {}: the methods of some cases are in error\n", code));
-    return code;
+    return tell_results(runner_.out, results, folder_,
+                        fmt::format("{} run now in {}, {} kept", fresh_.size(), duration_text(seconds), kept_.size()),
+                        table_);
   }
 
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -346,11 +353,15 @@ class FolderRun {
   std::atomic<bool>& stop_;
   Store store_;
   const CrashGuard guard_;
+  const StudyPart part_;
   const bool table_;
   const int jobs_;
+  std::vector<const StudyCase*> cases_;  // of this run
   std::map<std::string, std::string> fingerprints_;
-  std::set<std::string> kept_, settled_;  // rows that were there; and those that need no run any more
-  std::set<std::string> fresh_;           // rows that this run made
+  std::map<std::string, double> predicted_;  // seconds, where cases were dealt
+  std::vector<CaseRecord> unplanned_;        // whose plan was given up
+  std::set<std::string> kept_, settled_;     // rows that were there; and those that need no run any more
+  std::set<std::string> fresh_;              // rows that this run made
   std::mutex failed_mutex_;
   std::set<std::string> failed_;
   std::chrono::steady_clock::time_point said_waiting_;
@@ -366,10 +377,15 @@ int ended(int code) {
 
 }  // namespace
 
+std::filesystem::path default_folder(const std::string& study, const StudyPart& part) {
+  return std::filesystem::path("results") /
+         (part.whole() ? study : fmt::format("{}-part-{}-of-{}", study, part.number, part.of));
+}
+
 int run_study_with(const StudyRunner& runner, const Study& study, const RunOptions& options) {
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path("results") / study.name : options.out;
+  const std::filesystem::path folder = options.out.empty() ? default_folder(study.name, options.part) : options.out;
   try {
+    if (!options.part.whole()) check_part(study, options.part);
     const int code = FolderRun(runner, study, options, folder).run();
     return ended(code);
   } catch (const Interrupted&) {
@@ -377,32 +393,6 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
   } catch (const StoreError& error) {
     say(runner.messages, fmt::format("ricochet: {}\n", error.what()));
     return ended(kStoreUnusable);
-  }
-}
-
-int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
-  try {
-    const StudyResults results = with_tables(read_store(folder));
-    write_outputs(folder, results, render);
-    if (const auto crash = read_crash_record(folder))
-      say(stderr, fmt::format("case {}: {}; run the study again: that case is kept as failed and the others go on\n",
-                              crash->case_id, crash->reason()));
-    say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
-    return 0;
-  } catch (const StoreError& error) {
-    say(stderr, fmt::format("ricochet: {}\n", error.what()));
-    return kStoreUnusable;
-  }
-}
-
-int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to) {
-  try {
-    write_tables(to, with_tables(read_store(folder)));
-    say(stdout, fmt::format("tables: {}\n", to.string()));
-    return 0;
-  } catch (const StoreError& error) {
-    say(stderr, fmt::format("ricochet: {}\n", error.what()));
-    return kStoreUnusable;
   }
 }
 

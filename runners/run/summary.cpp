@@ -121,7 +121,8 @@ std::string totals_text(const StudyResults& results) {
                                         [](const CaseRecord& record) { return record.partial; }))
     parts.push_back(fmt::format("{} under way", number));
   const std::size_t cases = results.cases.size();
-  std::string text = fmt::format("{} case{}", cases, cases == 1 ? "" : "s");
+  std::string text =
+      fmt::format("{}{} case{}", results.part.whole() ? "" : results.part.text() + ": ", cases, cases == 1 ? "" : "s");
   if (!parts.empty()) text += fmt::format(": {}", fmt::join(parts, ", "));
   for (const auto& [wrong, number] : contradictions(results)) text += fmt::format("; in {} {}", number, wrong);
   if (const int missing = results.expected_cases - static_cast<int>(cases); missing > 0)

@@ -29,6 +29,7 @@ RunStatus read_status(const std::filesystem::path& folder) {
         status.heard = value.at("at").get<std::string>();
       }
     }
+    status.part = read_part(database).value_or(StudyPart{});
     SQLite::Statement rows(database, "SELECT status, fingerprint = '', count(*) FROM cases GROUP BY 1, 2");
     while (rows.executeStep()) {
       const int count = rows.getColumn(2).getInt();

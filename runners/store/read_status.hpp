@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runners/store/run_identity.hpp"
+#include "runners/study/study_part.hpp"
 
 namespace ricochet {
 
@@ -13,6 +14,7 @@ namespace ricochet {
 struct RunStatus {
   std::string name, question, kind;
   int expected = 0;
+  StudyPart part;                   ///< of the study, whose cases are expected
   std::map<std::string, int> rows;  ///< status → finished cases
   int partial = 0;                  ///< rows of cases under way
   struct UnderWay {

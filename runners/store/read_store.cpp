@@ -25,14 +25,23 @@ std::vector<double> series(const SQLite::Column& column) {
   return values;
 }
 
-/// Calls `row(record, statement)` for each row of `query`, whose first column is the case.
+/// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
+/// of the only one.
 template <class Row>
-void per_case(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, const char* query, Row row) {
-  SQLite::Statement statement(database, query);
+void per_case(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, const char* columns,
+              const char* table, const char* order, Row row) {
+  const bool only = cases.size() == 1;
+  SQLite::Statement statement(database, fmt::format("SELECT case_id, {} FROM {}{} ORDER BY case_id, {}", columns, table,
+                                                    only ? " WHERE case_id = ?" : "", order));
+  if (only) statement.bind(1, cases.begin()->first);
   while (statement.executeStep()) {
     const auto found = cases.find(statement.getColumn(0).getString());
     if (found != cases.end()) row(*found->second, statement);
   }
+}
+
+StudyPart part_of(const Json& value) {
+  return {value.at(0).get<int>(), value.at(1).get<int>()};
 }
 
 void read_study(SQLite::Database& database, StudyResults& results) {
@@ -50,82 +59,63 @@ void read_study(SQLite::Database& database, StudyResults& results) {
         results.axes.push_back(
             {axis.at(0).get<std::string>(), axis.at(1).get<std::string>(), axis.at(2).get<std::string>()});
     if (key == "expected_cases") results.expected_cases = value.get<int>();
+    if (key == "part") results.part = part_of(value);
   }
 }
 
-void read_cases(SQLite::Database& database, StudyResults& results) {
-  SQLite::Statement statement(database,
-                              "SELECT id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint, "
-                              "arithmetic FROM cases "
-                              "ORDER BY position");
-  while (statement.executeStep()) {
-    CaseRecord& record = results.cases.emplace_back();
-    record.id = statement.getColumn(0).getString();
-    record.status = statement.getColumn(1).getString();
-    record.reason = statement.getColumn(2).getString();
-    record.steps = statement.getColumn(3).getInt64();
-    record.setup_seconds = statement.getColumn(4).getDouble();
-    record.run_seconds = statement.getColumn(5).getDouble();
-    record.operator_name = statement.getColumn(6).getString();
-    record.partial = statement.getColumn(7).getString().empty();
-    record.arithmetic = statement.getColumn(8).getString();
-  }
+constexpr const char* kStoredCase =
+    "id, status, reason, steps, setup_seconds, run_seconds, operator, fingerprint, arithmetic";
+
+CaseRecord case_of(SQLite::Statement& row) {
+  CaseRecord record;
+  record.id = row.getColumn(0).getString();
+  record.status = row.getColumn(1).getString();
+  record.reason = row.getColumn(2).getString();
+  record.steps = row.getColumn(3).getInt64();
+  record.setup_seconds = row.getColumn(4).getDouble();
+  record.run_seconds = row.getColumn(5).getDouble();
+  record.operator_name = row.getColumn(6).getString();
+  record.partial = row.getColumn(7).getString().empty();
+  record.arithmetic = row.getColumn(8).getString();
+  return record;
 }
 
-}  // namespace
-
-Environment read_environment(SQLite::Database& database) {
-  Environment environment;
-  SQLite::Statement rows(database, "SELECT name, value FROM environment ORDER BY position");
-  while (rows.executeStep())
-    environment.entries.emplace_back(rows.getColumn(0).getString(), rows.getColumn(1).getString());
-  return environment;
-}
-
-StudyResults read_tables(SQLite::Database& database) {
-  StudyResults results;
-  SQLite::Transaction transaction(database);
-  read_study(database, results);
-  read_cases(database, results);
-  std::map<std::string, CaseRecord*> cases;
-  for (CaseRecord& record : results.cases) cases[record.id] = &record;
-
-  using Statement = SQLite::Statement;
-  per_case(database, cases, "SELECT case_id, name, value FROM axes ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
-             record.axes.emplace_back(row.getColumn(1).getString(), Json::parse(row.getColumn(2).getString()));
-           });
-  per_case(database, cases, "SELECT case_id, name, value FROM measures ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
-             record.measures.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getDouble());
-           });
-  per_case(database, cases, "SELECT case_id, item, reason FROM left_out ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
-             record.left_out.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getString());
-           });
-  per_case(database, cases, "SELECT case_id, note FROM notes ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
-  per_case(database, cases, "SELECT case_id, name, series FROM curves ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
+void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
+  per_case(database, cases, curves == Curves::whole ? "name, series" : "name, x''", "curves", "position",
+           [](CaseRecord& record, SQLite::Statement& row) {
              record.curve.names.push_back(row.getColumn(1).getString());
              record.curve.columns.push_back(series(row.getColumn(2)));
            });
-  per_case(database, cases, "SELECT case_id, name, content FROM case_tables ORDER BY case_id, position",
-           [](CaseRecord& record, Statement& row) {
-             // What the columns mean is not stored: the kind of study declares it.
-             const Json content = Json::parse(row.getColumn(2).getString());
-             Table& table = record.tables.emplace_back();
-             table.name = row.getColumn(1).getString();
-             table.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
-             for (const Json& cells : content.at("rows")) {
-               Row& one = table.rows.emplace_back();
-               for (const Json& cell : cells) one.push_back(cell_of(cell));
-             }
-           });
+}
 
-  per_case(database, cases,
-           "SELECT case_id, part, name, exported, column_name, words, series FROM case_numbers "
-           "ORDER BY case_id, position, part",
+/// Reads what belongs to these cases.
+void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
+  using Statement = SQLite::Statement;
+  per_case(database, cases, "name, value", "axes", "position", [](CaseRecord& record, Statement& row) {
+    record.axes.emplace_back(row.getColumn(1).getString(), Json::parse(row.getColumn(2).getString()));
+  });
+  per_case(database, cases, "name, value", "measures", "position", [](CaseRecord& record, Statement& row) {
+    record.measures.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getDouble());
+  });
+  per_case(database, cases, "item, reason", "left_out", "position", [](CaseRecord& record, Statement& row) {
+    record.left_out.emplace_back(row.getColumn(1).getString(), row.getColumn(2).getString());
+  });
+  per_case(database, cases, "note", "notes", "position",
+           [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
+  read_curves(database, cases, curves);
+  per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
+    // What the columns mean is not stored: the kind of study declares it.
+    const Json content = Json::parse(row.getColumn(2).getString());
+    Table& table = record.tables.emplace_back();
+    table.name = row.getColumn(1).getString();
+    table.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
+    for (const Json& cells : content.at("rows")) {
+      Row& one = table.rows.emplace_back();
+      for (const Json& cell : cells) one.push_back(cell_of(cell));
+    }
+  });
+
+  per_case(database, cases, "part, name, exported, column_name, words, series", "case_numbers", "position, part",
            [](CaseRecord& record, Statement& row) {
              if (row.getColumn(1).getInt() == 0) {
                NumberTable& table = record.numbers.emplace_back();
@@ -139,42 +129,102 @@ StudyResults read_tables(SQLite::Database& database) {
                                         Json::parse(row.getColumn(5).getString()).get<std::vector<std::string>>());
              table.values.push_back(series(row.getColumn(6)));
            });
+}
 
+}  // namespace
+
+std::optional<StudyPart> read_part(SQLite::Database& database) {
+  SQLite::Statement part(database, "SELECT value FROM study WHERE key = 'part'");
+  if (part.executeStep()) return part_of(Json::parse(part.getColumn(0).getString()));
+  // Stores of programs that knew no parts.
+  SQLite::Statement name(database, "SELECT 1 FROM study WHERE key = 'name'");
+  return name.executeStep() ? std::optional(StudyPart{}) : std::nullopt;
+}
+
+Environment read_environment(SQLite::Database& database) {
+  Environment environment;
+  SQLite::Statement rows(database, "SELECT name, value FROM environment ORDER BY position");
+  while (rows.executeStep())
+    environment.entries.emplace_back(rows.getColumn(0).getString(), rows.getColumn(1).getString());
+  return environment;
+}
+
+StudyResults read_tables(SQLite::Database& database, Curves curves) {
+  StudyResults results;
+  SQLite::Transaction transaction(database);
+  read_study(database, results);
+  SQLite::Statement rows(database, fmt::format("SELECT {} FROM cases ORDER BY position", kStoredCase));
+  while (rows.executeStep()) results.cases.push_back(case_of(rows));
+  std::map<std::string, CaseRecord*> cases;
+  for (CaseRecord& record : results.cases) cases[record.id] = &record;
+  if (!cases.empty()) read_rows(database, cases, curves);
   results.environment = read_environment(database);
   tell_arithmetics(results);
   return results;
 }
 
-void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use) {
+StudyResults read_head(SQLite::Database& database) {
+  StudyResults results;
+  read_study(database, results);
+  results.environment = read_environment(database);
+  return results;
+}
+
+std::optional<CaseRecord> read_case(SQLite::Database& database, const std::string& id) {
+  SQLite::Statement row(database, fmt::format("SELECT {} FROM cases WHERE id = ?", kStoredCase));
+  row.bind(1, id);
+  if (!row.executeStep()) return std::nullopt;
+  CaseRecord record = case_of(row);
+  std::map<std::string, CaseRecord*> only = {{id, &record}};
+  read_rows(database, only, Curves::whole);
+  return record;
+}
+
+Curve read_curve(SQLite::Database& database, const std::string& id) {
+  CaseRecord record;
+  std::map<std::string, CaseRecord*> only = {{id, &record}};
+  read_curves(database, only, Curves::whole);
+  return std::move(record.curve);
+}
+
+std::string find_motion(SQLite::Database& database, const std::string& whole_key) {
+  SQLite::Statement find(database, "SELECT content FROM motions WHERE key = ?");
+  find.bind(1, whole_key);
+  if (!find.executeStep()) return "";
+  const SQLite::Column blob = find.getColumn(0);
+  return {static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes())};
+}
+
+std::unique_ptr<SQLite::Database> open_store(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "results.sqlite";
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw StoreError(fmt::format("{}: there is no results.sqlite here{}; expected the folder of a study that was run",
                                  folder.string(), error ? " (" + error.message() + ")" : ""));
+  std::unique_ptr<SQLite::Database> database;
   guarded(file, nullptr, [&] {
     // Opened for writing where possible: a store left by a killed process is rolled back by its first reader.
     constexpr int wait_ms = 10000;
-    SQLite::Database database(file, SQLite::OPEN_READWRITE, wait_ms);
-    prepare_schema(database, file, false);
-    guarded(file, &database, [&] { use(database); });
+    database = std::make_unique<SQLite::Database>(file, SQLite::OPEN_READWRITE, wait_ms);
+    prepare_schema(*database, file, false);
   });
+  return database;
 }
 
-StudyResults read_store(const std::filesystem::path& folder) {
+void with_store(const std::filesystem::path& folder, const std::function<void(SQLite::Database&)>& use) {
+  const auto database = open_store(folder);
+  guarded(folder / "results.sqlite", database.get(), [&] { use(*database); });
+}
+
+StudyResults read_store(const std::filesystem::path& folder, Curves curves) {
   StudyResults results;
-  with_store(folder, [&](SQLite::Database& database) { results = read_tables(database); });
+  with_store(folder, [&](SQLite::Database& database) { results = read_tables(database, curves); });
   return results;
 }
 
 std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic) {
   std::string content;
-  with_store(folder, [&](SQLite::Database& database) {
-    SQLite::Statement find(database, "SELECT content FROM motions WHERE key = ?");
-    find.bind(1, motion_key(arithmetic, key));
-    if (!find.executeStep()) return;
-    const SQLite::Column blob = find.getColumn(0);
-    content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
-  });
+  with_store(folder, [&](SQLite::Database& database) { content = find_motion(database, motion_key(arithmetic, key)); });
   return content;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "runners/study/study_part.hpp"
 #include "runners/table/number_table.hpp"
 #include "runners/table/table.hpp"
 
@@ -51,6 +52,7 @@ struct StudyResults {
   std::vector<Column> axes = {};     ///< what is known of them beyond the study format: parameters of methods
   std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
+  StudyPart part = {};  ///< of which these are the cases
   Environment environment;
   std::vector<Table> derived;  ///< worked out of the cases when they are read, not stored
 };

@@ -112,6 +112,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     for (const Column& axis : study.axes) axes.push_back({axis.name, axis.unit, axis.text});
     insert(state, "axes", text_of(axes));
     insert(state, "expected_cases", text_of(study.expected_cases));
+    insert(state, "part", text_of({study.part.number, study.part.of}));
   });
   rows_ = kept;
   return kept;
@@ -155,6 +156,13 @@ std::set<std::string> Store::settle_rows() {
   returned_ = static_cast<int>(back.size());
   kept.insert(back.begin(), back.end());
   return kept;
+}
+
+std::optional<StudyPart> Store::part() const {
+  const std::lock_guard guard(mutex_);
+  std::optional<StudyPart> part;
+  guarded(file_, database_.get(), [&] { part = read_part(*database_); });
+  return part;
 }
 
 int Store::aside() const {
@@ -337,13 +345,7 @@ void Store::save_numbers(const CaseRecord& record) {
 std::string Store::motion(const std::string& key) const {
   const std::lock_guard guard(mutex_);
   std::string content;
-  guarded(file_, database_.get(), [&] {
-    SQLite::Statement find(*database_, "SELECT content FROM motions WHERE key = ?");
-    find.bind(1, motion_key(arithmetic_, key));
-    if (!find.executeStep()) return;
-    const SQLite::Column blob = find.getColumn(0);
-    content.assign(static_cast<const char*>(blob.getBlob()), static_cast<std::size_t>(blob.getBytes()));
-  });
+  guarded(file_, database_.get(), [&] { content = find_motion(*database_, motion_key(arithmetic_, key)); });
   return content;
 }
 

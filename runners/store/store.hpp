@@ -41,14 +41,16 @@ class Store {
   /// apart is then the epoch alone.
   static Store unlocked(const std::filesystem::path& folder) { return {folder, false, false}; }
 
-  /// States the study (name, question, kind, study, columns, expected_cases of `study`) and its cases. Stored cases
-  /// that are not expected with their fingerprint are set aside, those that were and are expected now come back; what
-  /// was refused or not finished is dropped. The curves/ID.csv of all these are removed. Returns the ids of the cases
-  /// that need not run. Refuses a store of another study. The store is this run's from here on: what an earlier one
-  /// that still lives would write is refused, and nothing of it changes the store (epoch.hpp). `arithmetic`: digest of
-  /// the arithmetic of this run, kept with its cases; motions are found again under the same one only.
+  /// States the study (name, question, kind, study, columns, expected_cases, part of `study`) and its cases. Stored
+  /// cases that are not expected with their fingerprint are set aside, those that were and are expected now come back;
+  /// what was refused or not finished is dropped. The curves/ID.csv of all these are removed. Returns the ids of the
+  /// cases that need not run. Refuses a store of another study. The store is this run's from here on: what an earlier
+  /// one that still lives would write is refused, and nothing of it changes the store (epoch.hpp). `arithmetic`: digest
+  /// of the arithmetic of this run, kept with its cases; motions are found again under the same one only.
   std::set<std::string> begin(const StudyResults& study, const std::vector<ExpectedCase>& expected,
                               const std::string& arithmetic = "");
+  /// The part of its study that the store holds, as the last begin() stated it; nothing where none has.
+  std::optional<StudyPart> part() const;
   /// How many of them begin() brought back.
   int returned() const { return returned_; }
   /// How many cases of earlier versions of the study are kept aside.
@@ -116,9 +118,12 @@ class Store {
   std::unique_ptr<WriteGroup> group_;  // last: it uses what stands before
 };
 
+/// What is read of curves: their names alone, with columns that are empty, where nobody asks for their samples.
+enum class Curves { whole, names };
+
 /// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. Throws
 /// StoreError.
-StudyResults read_store(const std::filesystem::path& folder);
+StudyResults read_store(const std::filesystem::path& folder, Curves curves = Curves::whole);
 
 /// What FOLDER/results.sqlite keeps under a key of Store::motion for runs of this arithmetic, "" where there is none.
 std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic);

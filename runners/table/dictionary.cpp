@@ -5,7 +5,9 @@ namespace ricochet {
 Table dictionary_of(const std::vector<Table>& tables) {
   Table dictionary{"dictionary",
                    "One column of one table of this folder, or what a row of the table stands for.",
-                   {{"table", "", "Name of the table, that of its file without .csv; curves are the files in curves/."},
+                   {{"table", "",
+                     "Name of the table, that of its file without .csv; curves are the files in curves/, or in an "
+                     "export curves.csv."},
                     {"column", "", "Name of the column; empty where the line is about the rows of the table."},
                     {"unit", "", "Its unit: SI, 1 for ratios and counts, empty for words and truth values."},
                     {"meaning", "", "What the cells mean."}},

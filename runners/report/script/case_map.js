@@ -172,7 +172,7 @@
         const used = ricochet.drawnNames(charts), legend = figure.legend.filter((entry) => used.has(entry.name) || charts.some((chart) => chart.views.some((one) => one.sources)));
         ricochet.mount({ ...figure, id: figure.id + "-row", charts, legend, choices: [] }, (section) => this.chosen.append(section));
       }
-      if (without.length) this.chosen.append(Object.assign(document.createElement("p"), { className: "fine", textContent: "Curves over time that this page does not hold: " + without.map((one) => "curves/" + one.id + ".csv").join(", ") + "." }));
+      if (without.length) this.chosen.append(Object.assign(document.createElement("p"), { className: "fine", textContent: "Curves over time that this page does not hold: " + without.map((one) => this.data.data.page.curve_files ? "curves/" + one.id + ".csv" : one.id).join(", ") + "." }));
       if (this.chosen.firstElementChild) this.chosen.firstElementChild.scrollIntoView({ block: "nearest" });
     }
   }

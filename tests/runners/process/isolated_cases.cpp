@@ -16,6 +16,7 @@
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/table/csv_text.hpp"
+#include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -92,76 +93,6 @@ Ended run(const ScratchFolder& scratch, const Json& study, const std::string& ou
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(scratch / "said"), read_text(scratch / "told")};
 }
 
-/// Measures that belong to the machine.
-bool of_the_machine(const std::string& column) {
-  static const std::set<std::string> names = {"setup_seconds", "run_seconds", "lane_steps_per_second",
-                                              "exponent_seconds", "microseconds_per_step"};
-  return names.count(column) != 0 || column.starts_with("timed_");
-}
-
-using Rows = std::vector<std::map<std::string, std::string>>;
-
-Rows rows_of(const fs::path& file) {
-  std::istringstream lines(read_text(file));
-  std::string line;
-  std::vector<std::string> names;
-  Rows rows;
-  while (std::getline(lines, line)) {
-    std::vector<std::string> cells;
-    bool quoted = false;
-    std::string cell;
-    for (const char c : line + ",") {
-      if (c == '"') quoted = !quoted;
-      if (c == ',' && !quoted) {
-        cells.push_back(cell);
-        cell.clear();
-      } else if (c != '"') {
-        cell += c;
-      }
-    }
-    if (names.empty()) {
-      names = cells;
-      continue;
-    }
-    std::map<std::string, std::string> row;
-    // A dictionary has a row for each column that is there.
-    bool wanted = true;
-    for (std::size_t i = 0; i < names.size() && i < cells.size(); ++i) {
-      if (!of_the_machine(names[i])) row[names[i]] = cells[i];
-      wanted = wanted && !(names[i] == "column" && of_the_machine(cells[i]));
-    }
-    if (wanted) rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-/// The first cell that differs; "" where none does.
-std::string difference(const Rows& a, const Rows& b) {
-  if (a.size() != b.size()) return std::to_string(a.size()) + " rows, " + std::to_string(b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] == b[i]) continue;
-    if (a[i].size() != b[i].size()) return "columns";
-    for (const auto& [column, cell] : a[i])
-      if (b[i].count(column) == 0 || b[i].at(column) != cell)
-        return "row " + std::to_string(i) + ", " + column + ": " + cell + " | " +
-               (b[i].count(column) ? b[i].at(column) : "no such column");
-  }
-  return "";
-}
-
-void check_same(const fs::path& a, const fs::path& b) {
-  int tables = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(a)) {
-    if (entry.path().extension() != ".csv") continue;
-    const fs::path name = fs::relative(entry.path(), a);
-    INFO(name);
-    REQUIRE(fs::exists(b / name));
-    CHECK(difference(rows_of(entry.path()), rows_of(b / name)) == "");
-    ++tables;
-  }
-  CHECK(tables > 2);
-}
-
 }  // namespace
 
 TEST_CASE("workers: every kind of study has in them the tables that it has in threads") {
@@ -175,7 +106,7 @@ TEST_CASE("workers: every kind of study has in them the tables that it has in th
   const Ended workers = run(scratch, study, "workers", "--isolate");
   INFO(workers.messages);
   CHECK(workers.code == 0);
-  check_same(scratch / "threads", scratch / "workers");
+  check_same_tables(scratch / "threads", scratch / "workers");
 }
 
 TEST_CASE("workers: an orbit that ends its process twice is a failed row with the reason, and no other row changes") {
@@ -199,7 +130,7 @@ TEST_CASE("workers: an orbit that ends its process twice is a failed row with th
   INFO(ended.messages << ended.out);
   CHECK(ended.code == 3);
   CHECK_THAT(ended.out, Contains("the process of an orbit ended"));
-  const Rows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
+  const TableRows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
   REQUIRE(before.size() == after.size());
   std::size_t failed = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -225,7 +156,7 @@ TEST_CASE("workers: a call that never returns costs its case the budget, in a wo
   const Ended ended = run(scratch, study, "out", "--isolate --plugin '" RICOCHET_STUMBLING "'");
   INFO(ended.messages);
   CHECK(ended.code == 3);
-  const Rows rows = rows_of(scratch / "out/cases.csv");
+  const TableRows rows = rows_of(scratch / "out/cases.csv");
   REQUIRE(rows.size() == 1);
   CHECK_THAT(rows[0].at("reason"), Contains("did not return from solve() within the budget of 1 s"));
 }
@@ -301,7 +232,7 @@ TEST_CASE("workers: one that a stranger kills costs nothing but time") {
     const std::vector<pid_t> children = running.children();
     if (!children.empty()) ::kill(children[static_cast<std::size_t>(moment) % children.size()], SIGKILL);
     CHECK(running.finish() == 0);
-    check_same(scratch / "threads", scratch / out);
+    check_same_tables(scratch / "threads", scratch / out);
   }
 }
 
@@ -329,7 +260,7 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   const Ended again = run(scratch, study, "out", "--isolate");
   INFO(again.messages);
   CHECK(again.code == 0);
-  check_same(scratch / "threads", scratch / "out");
+  check_same_tables(scratch / "threads", scratch / "out");
   // And threads go on from where workers were.
   const Ended kept = run(scratch, study, "out", "");
   CHECK_THAT(kept.messages, Contains("0 to run"));

@@ -1,9 +1,11 @@
 #include "runners/report/report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/report/html.hpp"
+#include "runners/store/curve_files.hpp"
 #include "tests/runners/report/rendered.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
@@ -51,6 +53,38 @@ TEST_CASE("a page without the library says so and keeps its tables", "[report]")
   CHECK(!page_contains(page, "<section class=\"figure\""));
   CHECK(page_contains(page, "id=\"cases\""));
   CHECK(page_contains(page, "<h2>Answer</h2>"));
+}
+
+TEST_CASE("a part of a study says that it is one, first of all", "[report]") {
+  StudyResults results = synthetic::results();
+  results.expected_cases = static_cast<int>(results.cases.size());
+  CHECK(!page_contains(synthetic::rendered(results, "", ""), "art 3 of 64"));
+  results.part = {3, 64};
+  const std::string page = synthetic::rendered(results, "", "");
+  CHECK(page_contains(page,
+                      "<p class=\"status-line\">Part 3 of 64, " + std::to_string(results.cases.size()) + " cases:"));
+  CHECK(page_contains(page, "This is part 3 of 64 of the study."));
+  CHECK(page.find("This is part 3 of 64") < page.find("<section id=\"answer\""));
+}
+
+TEST_CASE("a page of more cases than have files of their curves says where the curves are", "[report]") {
+  StudyResults results = synthetic::results();
+  const std::string few = synthetic::rendered(results, no_library, "6");
+  CHECK(page_contains(few, "\"curve_files\":true"));
+  CHECK(page_contains(few, "its file in curves/"));
+  CHECK(!page_contains(few, "--curves"));
+  const CaseRecord one = *std::find_if(results.cases.begin(), results.cases.end(),
+                                       [](const CaseRecord& record) { return !record.curve.names.empty(); });
+  while (has_curve_files(results)) {
+    results.cases.push_back(one);
+    results.cases.back().id += std::to_string(results.cases.size());
+    results.cases.back().curve.columns.assign(one.curve.names.size(), {0, 1});
+  }
+  const std::string many = synthetic::rendered(results, no_library, "6");
+  CHECK(page_contains(many, "\"curve_files\":false"));
+  CHECK(!page_contains(many, "curves/ID.csv"));
+  CHECK(!page_contains(many, "in curves/"));
+  CHECK(page_contains(many, "`ricochet export DIR --to CSVDIR --curves`"));
 }
 
 TEST_CASE("partial results are said plainly", "[report]") {

@@ -4,12 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <functional>
 #include <optional>
 #include <ricochet/contract/plugin_call.hpp>
 
+#include "runners/march/case_watch.hpp"
 #include "runners/march/crash_record.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
@@ -51,6 +53,7 @@ struct Bad {
   bool in_plugin = true;
   std::string library = "version 1";
   int jobs = 1;
+  StudyPart part = {};
 };
 
 Study nine_cases(const Bad& bad) {
@@ -81,12 +84,19 @@ int run_here(const Bad& bad, const ScratchFolder& scratch, bool fresh = false) {
     call(one, "solve");
     return fake_result(one);
   };
+  runner.cases.open = [&](const MotionShelf& shelf, const std::atomic<bool>&) {
+    const Study study = nine_cases(bad);
+    if (shelf.failed(kBad)) return;
+    const CaseScope blamed(shelf.ticket(*find_case(study, kBad)));
+    call(*find_case(study, kBad), "open");
+  };
   runner.cases.time = nullptr;
   write_text(scratch / "plugin.so", bad.library);
   runner.libraries = [&](const StudyCase&) { return std::vector<std::filesystem::path>{scratch / "plugin.so"}; };
   runner.out = std::fopen((scratch / "out.txt").c_str(), "w");
   runner.messages = stderr;
-  return run_study_with(runner, nine_cases(bad), {scratch / "out", bad.jobs, fresh});
+  return run_study_with(runner, nine_cases(bad),
+                        {.out = scratch / "out", .jobs = bad.jobs, .fresh = fresh, .part = bad.part});
 }
 
 struct Ended {
@@ -231,6 +241,31 @@ TEST_CASE("bad plugins: one that never returns is failed once the budget is spen
   CHECK(only.code == 3);
   check_only_bad_failed(scratch, "plugin contact 'crashes' (/there/contact-crashes.so) did not return from " +
                                      function + "() within the budget of 0.5 s");
+}
+
+TEST_CASE("bad plugins: a part is not kept from its cases by one of another part") {
+  const std::string function = GENERATE("plan", "open"), how = GENERATE("loop", "segv");
+  CAPTURE(function, how);
+  int without = 0;
+  for (int number = 1; number <= 3; ++number) {
+    const ScratchFolder scratch;
+    Bad bad{how, function, how == "loop" ? 0.5 : 0};
+    bad.part = {number, 3};
+    Ended ended = run(bad, scratch);
+    if (how == "segv") {
+      CHECK(ended.code == -SIGSEGV);
+      ended = run(bad, scratch);
+    }
+    INFO(ended.messages);
+    const StudyResults results = read_store(scratch / "out");
+    CHECK(results.cases.size() == kCases / 3);
+    const bool own = std::any_of(results.cases.begin(), results.cases.end(),
+                                 [](const CaseRecord& record) { return record.id == kBad; });
+    without += own ? 0 : 1;
+    for (const CaseRecord& record : results.cases) CHECK(record.status == (record.id == kBad ? "failed" : "done"));
+    CHECK(ended.code == (own ? 3 : 0));
+  }
+  CHECK(without == 2);
 }
 
 TEST_CASE("bad plugins: Ctrl-C names the call that never returns, keeps what is finished, and ends with 130") {

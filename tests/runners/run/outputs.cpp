@@ -1,7 +1,10 @@
 #include "runners/run/outputs.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 
+#include "runners/store/curve_files.hpp"
+#include "runners/store/store.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
@@ -98,4 +101,82 @@ TEST_CASE("outputs: a sweep that went wrong leaves a study of that case alone, w
     CHECK(alone.cases.front().id == record.id);
     CHECK(alone.kind == study.kind);
   }
+}
+
+namespace {
+
+/// So many cases with a curve of two samples, the last but one with a series that the others have not.
+StudyResults results_with_curves(std::size_t count) {
+  StudyResults results;
+  results.name = "many";
+  results.study = {{"name", "many"}};
+  results.kind = "trajectory";
+  results.columns = {"step"};
+  for (std::size_t i = 0; i < count; ++i) {
+    CaseRecord record;
+    char id[24];
+    std::snprintf(id, sizeof id, "%010zx", i);
+    record.id = id;
+    record.axes = {{"step", static_cast<double>(i)}};
+    record.status = "done";
+    record.curve = {{"t", "energy"}, {{0, 0.5}, {1.0 / 3, static_cast<double>(i)}}};
+    if (i + 2 == count) record.curve = {{"t", "force"}, {{0, 0.5}, {7, 8}}};
+    results.cases.push_back(std::move(record));
+  }
+  results.expected_cases = static_cast<int>(count);
+  return results;
+}
+
+std::string dictionary_in(const std::filesystem::path& folder) {
+  return read_text(folder / "dictionary.csv");
+}
+
+}  // namespace
+
+TEST_CASE("outputs: of more cases than a folder is to have files no curve is written, and none of before stays") {
+  const ScratchFolder folder;
+  const auto page = [](const StudyResults& results) { return where_curves_are(results); };
+  CHECK(has_curve_files(results_with_curves(kMostCurveFiles)));
+  CHECK_FALSE(has_curve_files(results_with_curves(kMostCurveFiles + 1)));
+  StudyResults refused = results_with_curves(kMostCurveFiles + 1);
+  refused.cases.front().curve = {};
+  CHECK(has_curve_files(refused));
+
+  write_outputs(folder.path(), results_with_curves(3), page);
+  CHECK(std::filesystem::exists(folder / "curves/0000000002.csv"));
+  CHECK_THAT(dictionary_in(folder.path()), Catch::Contains("curves,energy"));
+  CHECK(read_text(folder / "report.html") == "each case has its own in curves/ID.csv");
+  write_outputs(folder.path(), results_with_curves(kMostCurveFiles + 1), page);
+  CHECK_FALSE(std::filesystem::exists(folder / "curves"));
+  CHECK_THAT(dictionary_in(folder.path()), !Catch::Contains("curves,energy"));
+  CHECK_THAT(read_text(folder / "report.html"), Catch::Contains("ricochet export") && Catch::Contains("--curves"));
+  write_outputs(folder.path(), results_with_curves(3), page);
+  CHECK(std::filesystem::exists(folder / "curves/0000000002.csv"));
+}
+
+TEST_CASE("outputs: all curves in one table are those of the files, case by case") {
+  const ScratchFolder folder;
+  const StudyResults results = results_with_curves(4);
+  {
+    Store store(folder / "store", false);
+    std::vector<ExpectedCase> expected;
+    for (const CaseRecord& record : results.cases) expected.push_back({record.id, "f" + record.id});
+    store.begin(results, expected);
+    store.save(results.cases);
+  }
+  write_tables(folder / "csv", read_store(folder / "store"));
+  CHECK(std::filesystem::exists(folder / "csv/curves/0000000000.csv"));
+  CHECK(read_store(folder / "store", Curves::names).cases[0].curve.columns[1].empty());
+  write_tables(folder / "csv", read_store(folder / "store", Curves::names), folder / "store");
+  CHECK_FALSE(std::filesystem::exists(folder / "csv/curves"));
+  CHECK(read_text(folder / "csv/curves.csv") ==
+        "case,t,energy,force\n"
+        "0000000000,0,0.3333333333333333,\n0000000000,0.5,0,\n"
+        "0000000001,0,0.3333333333333333,\n0000000001,0.5,1,\n"
+        "0000000002,0,,7\n0000000002,0.5,,8\n"
+        "0000000003,0,0.3333333333333333,\n0000000003,0.5,3,\n");
+  CHECK_THAT(dictionary_in(folder / "csv"), Catch::Contains("curves,case") && Catch::Contains("curves,force"));
+  write_tables(folder / "csv", read_store(folder / "store"));
+  CHECK_FALSE(std::filesystem::exists(folder / "csv/curves.csv"));
+  CHECK(std::filesystem::exists(folder / "csv/curves/0000000003.csv"));
 }

@@ -1,4 +1,4 @@
-#include "runners/command/case_again.hpp"
+#include "runners/run/case_again.hpp"
 
 #include <fmt/format.h>
 
