@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
+#include <variant>
 #include <vector>
 
 #include "runners/march/prepare_case.hpp"
@@ -13,8 +15,9 @@ namespace {
 
 // Without the first ones, which meet cold caches.
 constexpr long long few_steps = 400, first_steps = 16, chunk = 32;
-// A step that sees less of the support's motion meets other contacts.
+// A step that sees less of the motion of the support, or of the slowest mode, meets other contacts.
 constexpr double steps_per_period = 200;
+constexpr int most_elements = 200;
 // Contacts of a coarse step take a larger share of the steps: where there is time for so many times as many, they are
 // made. A march that leaves out steps is tried on finer ones, and on its own.
 constexpr double worth_refining = 4, refinement = 16;
@@ -94,9 +97,18 @@ class Pace {
  private:
   /// The largest step that stands for the case's own, s.
   double coarsest_step() const {
-    const double pulsation = case_.scene.support.pulsation;
+    const double pulsation = case_.scene.support.pulsation > 0 ? case_.scene.support.pulsation : slowest_pulsation();
     const double few = case_.duration / static_cast<double>(few_steps);
     return pulsation > 0 ? std::min(few, 2 * std::numbers::pi / (pulsation * steps_per_period)) : few;
+  }
+
+  /// Of the structure, rad/s; 0 where it is not known, or finding it would cost more than it tells.
+  double slowest_pulsation() const {
+    if (case_.elements > most_elements) return 0;
+    const auto mass = registry_.mass(case_.mass.name)->make(case_.mass.parameters);
+    const auto found = structure_physics(case_.scene, case_.elements, *mass);
+    const auto* physics = std::get_if<StructurePhysics>(&found);
+    return physics && !physics->pulsations.empty() ? physics->pulsations.front() : 0;
   }
 
   /// Marches on a finer step; whether its lanes stand.

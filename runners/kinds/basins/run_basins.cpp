@@ -21,6 +21,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t largest_batch = 4096;  // cells whose orbits are in memory at one time
+constexpr std::size_t most_shown = 200000;   // of more cells nothing is shown on the way: it would be in memory twice
 
 bool refines(const StudyCase& study_case) {
   const Json& wanted = study_case.settings.at("refine");
@@ -191,7 +192,7 @@ class BasinsRun {
   }
 
   void show_partial() {
-    if (!desk_.shelf.show || !pace_.due()) return;
+    if (!desk_.shelf.show || ends_.size() > most_shown || !pace_.due()) return;
     CaseRecord partial = record_;
     write_tables(partial, false);
     partial.status = "done";
