@@ -106,9 +106,13 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
   per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
     const Json content = Json::parse(row.getColumn(2).getString());
-    Table& table = record.tables.emplace_back();
-    table.name = row.getColumn(1).getString();
-    table.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
+    const std::string name = row.getColumn(1).getString();
+    if (record.tables.empty() || record.tables.back().name != name) {
+      Table& first = record.tables.emplace_back();
+      first.name = name;
+      first.columns = named_columns(content.at("columns").get<std::vector<std::string>>());
+    }
+    Table& table = record.tables.back();
     for (const Json& cells : content.at("rows")) {
       Row& one = table.rows.emplace_back();
       for (const Json& cell : cells) one.push_back(cell_of(cell));
@@ -117,12 +121,19 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
 
   per_case(database, cases, "part, name, exported, column_name, words, series", "case_numbers", "position, part",
            [](CaseRecord& record, Statement& row) {
-             if (row.getColumn(1).getInt() == 0) {
-               NumberTable& table = record.numbers.emplace_back();
-               table.name = row.getColumn(2).getString();
-               table.exported = row.getColumn(3).getInt() != 0;
+             const auto part = static_cast<std::size_t>(row.getColumn(1).getInt());
+             const std::string name = row.getColumn(2).getString();
+             if (part == 0 && (record.numbers.empty() || record.numbers.back().name != name)) {
+               NumberTable& first = record.numbers.emplace_back();
+               first.name = name;
+               first.exported = row.getColumn(3).getInt() != 0;
              }
              NumberTable& table = record.numbers.back();
+             if (part < table.values.size()) {
+               const std::vector<double> more = series(row.getColumn(6));
+               table.values[part].insert(table.values[part].end(), more.begin(), more.end());
+               return;
+             }
              table.columns.push_back({row.getColumn(4).getString(), "", ""});
              if (!row.getColumn(5).isNull())
                table.words.emplace_back(table.columns.back().name,

@@ -84,6 +84,7 @@ CREATE TABLE aside_cases(
 
 // What version 6 adds: the run that the store belongs to (its RunIdentity, as JSON), and with each case the digest of
 // the processor's arithmetic that it was computed with, "" where that is not known.
+// In version 7 large tables lie in pieces: rows of the same name that follow each other are one table.
 constexpr const char* kEpochTable = "CREATE TABLE epoch(number INTEGER PRIMARY KEY, run TEXT NOT NULL);";
 constexpr const char* kArithmeticColumns = R"sql(
 ALTER TABLE cases ADD COLUMN arithmetic TEXT NOT NULL DEFAULT '';
@@ -111,8 +112,10 @@ void create_from(SQLite::Database& database, int version) {
     for (const char* tables : {kRowTables, kLaterRowTables, kNumberTables})
       create(database, tables, "aside_", "fingerprint");
   }
-  database.exec(kEpochTable);
-  database.exec(kArithmeticColumns);
+  if (version < 6) {
+    database.exec(kEpochTable);
+    database.exec(kArithmeticColumns);
+  }
   database.exec(fmt::format("PRAGMA user_version={};", kStoreVersion));
 }
 

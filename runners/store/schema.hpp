@@ -8,7 +8,7 @@ namespace ricochet {
 
 /// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
 constexpr int kStoreApplication = 0x5249434F;  // "RICO"
-constexpr int kStoreVersion = 6;
+constexpr int kStoreVersion = 7;
 
 /// Creates the tables in an empty database, in one transaction; checks the identity of one that is not empty. A store
 /// of an earlier version gets the tables that came later. Throws StoreError for a file of another application or

@@ -315,14 +315,19 @@ void Store::save_one(const CaseRecord& record, bool partial) {
   position = 0;
   SQLite::Statement& table = prepared("INSERT INTO case_tables VALUES(?, ?, ?, ?)");
   for (const Table& one : record.tables) {
-    Json columns = Json::array(), rows = Json::array();
+    Json columns = Json::array();
     for (const Column& column : one.columns) columns.push_back(column.name);
-    for (const Row& row : one.rows) {
-      Json& cells = rows.emplace_back(Json::array());
-      for (const Cell& cell : row) cells.push_back(json_of(cell));
+    // As JSON a row takes ten times its memory.
+    constexpr std::size_t piece = 16384;
+    for (std::size_t first = 0; first == 0 || first < one.rows.size(); first += piece) {
+      Json rows = Json::array();
+      for (std::size_t r = first; r < std::min(first + piece, one.rows.size()); ++r) {
+        Json& cells = rows.emplace_back(Json::array());
+        for (const Cell& cell : one.rows[r]) cells.push_back(json_of(cell));
+      }
+      const Json content = {{"columns", columns}, {"rows", std::move(rows)}};
+      insert(table, record.id, position++, one.name, text_of(content));
     }
-    const Json content = {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
-    insert(table, record.id, position++, one.name, text_of(content));
   }
 
   SQLite::Statement& curve = prepared("INSERT INTO curves VALUES(?, ?, ?, ?)");
@@ -331,15 +336,16 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     curve.bind(1, record.id);
     curve.bind(2, static_cast<int>(i));
     curve.bind(3, record.curve.names.at(i));
-    bind_series(curve, 4, record.curve.columns[i]);
+    bind_series(curve, 4, record.curve.columns[i].data(), record.curve.columns[i].size());
     curve.exec();
   }
   save_numbers(record);
 }
 
 void Store::save_numbers(const CaseRecord& record) {
-  for (std::size_t t = 0; t < record.numbers.size(); ++t)
-    insert_numbers(prepared(insert_numbers_sql), record.id, static_cast<int>(t), record.numbers[t]);
+  int position = 0;
+  for (const NumberTable& table : record.numbers)
+    insert_numbers(prepared(insert_numbers_sql), record.id, position, table);
 }
 
 std::string Store::motion(const std::string& key) const {

@@ -20,8 +20,8 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t largest_batch = 4096;  // cells whose orbits are in memory at one time
-constexpr std::size_t most_shown = 200000;   // of more cells nothing is shown on the way: it would be in memory twice
+constexpr std::ptrdiff_t largest_batch = 4096;  // cells
+constexpr std::size_t most_shown = 200000;  // of more cells nothing is shown on the way: it would be in memory twice
 
 bool refines(const StudyCase& study_case) {
   const Json& wanted = study_case.settings.at("refine");
@@ -48,11 +48,15 @@ class BasinsRun {
     record_.id = case_.id;
     record_.axes = case_.axes;
     for (auto wanted = refinement_.next(); !wanted.empty() && !over_budget_; wanted = refinement_.next())
-      for (std::size_t first = 0; first < wanted.size() && !over_budget_; first += largest_batch) {
-        const auto begin = wanted.begin() + static_cast<std::ptrdiff_t>(first);
-        const std::vector<std::size_t> batch(
-            begin, begin + static_cast<std::ptrdiff_t>(std::min(largest_batch, wanted.size() - first)));
-        take(batch, march(batch));
+      for (auto from = wanted.begin(); from != wanted.end() && !over_budget_;) {
+        std::vector<Batch> batches;
+        for (; from != wanted.end() && batches.size() < at_once(); ++batches_) {
+          const auto to = from + std::min<std::ptrdiff_t>(largest_batch, wanted.end() - from);
+          batches.push_back({batches_, {from, to}, {}});
+          from = to;
+        }
+        march(batches);
+        for (Batch& batch : batches) take(batch.cells, std::move(batch.ends));
       }
     finish();
     for (int batch = 0; desk_.shelf.keep && batch < batches_; ++batch) desk_.shelf.keep(batch_key(batch), "");
@@ -60,31 +64,56 @@ class BasinsRun {
   }
 
  private:
+  /// Cells that are kept together, and their ends.
+  struct Batch {
+    int number = 0;
+    std::vector<std::size_t> cells;
+    std::vector<CellEnd> ends;  ///< empty: not known
+    bool known() const { return !ends.empty(); }
+  };
+
   std::string batch_key(int batch) const { return fmt::format("cells/{}/{}", desk_.key, batch); }
 
-  // The ends of a batch of cells; batches that an interrupted run had finished are read.
-  std::vector<CellEnd> march(const std::vector<std::size_t>& batch) {
-    const int number = batches_++;
-    if (auto known = recall(desk_.shelf, batch_key(number), cell_ends); known && known->size() == batch.size()) {
-      if (scenes_.scenes().groups() == 0) prepare_some(batch);
-      return std::move(*known);
+  // Batches that are marched together: enough that those who march wait little for the longest orbit of them.
+  std::size_t at_once() const {
+    constexpr int rounds = 32, lanes = 8, most = 16;
+    const int marching = desk_.blocks ? desk_.blocks->width() : desk_.seats ? desk_.seats->count() : 1;
+    return static_cast<std::size_t>(std::clamp(rounds * lanes * marching / static_cast<int>(largest_batch), 1, most));
+  }
+
+  // The ends of these cells; batches that an interrupted run had finished are read.
+  void march(std::vector<Batch>& batches) {
+    for (Batch& batch : batches) {
+      auto found = recall(desk_.shelf, batch_key(batch.number), cell_ends);
+      if (!found || found->size() != batch.cells.size()) continue;
+      if (scenes_.scenes().groups() == 0) prepare_some(batch.cells);
+      batch.ends = std::move(*found);
     }
+    if (std::all_of(batches.begin(), batches.end(), [](const Batch& batch) { return batch.known(); })) return;
     const double begun = thread_seconds();
     scenes_.begin();
-    std::vector<CellEnd> ends(batch.size());
-    std::vector<std::size_t> places;  // of the tasks
+    // What is under way is found again by a run that marches the same batches together.
+    std::string under_way = desk_.key;
+    std::vector<CellEnd*> places;  // of the tasks
     std::vector<OrbitTask> tasks;
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      CellScenes::Prepared cell = scenes_.prepare(batch[i] % columns_, batch[i] / columns_);
-      if (cell.refusal.empty()) {
-        places.push_back(i);
-        tasks.push_back(std::move(cell.task));
-      } else {
-        ends[i] = refused_end(cell.refusal);
+    std::vector<Batch*> marched;
+    for (Batch& batch : batches) {
+      if (batch.known()) continue;
+      marched.push_back(&batch);
+      under_way += fmt::format("/{}", batch.number);
+      batch.ends.resize(batch.cells.size());
+      for (std::size_t i = 0; i < batch.cells.size(); ++i) {
+        CellScenes::Prepared cell = scenes_.prepare(batch.cells[i] % columns_, batch.cells[i] / columns_);
+        if (cell.refusal.empty()) {
+          places.push_back(&batch.ends[i]);
+          tasks.push_back(std::move(cell.task));
+        } else {
+          batch.ends[i] = refused_end(cell.refusal);
+        }
       }
     }
     record_.setup_seconds += thread_seconds() - begun;
-    if (tasks.empty()) return ends;
+    if (tasks.empty()) return;
     describe_methods();
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
                                                 .seats = desk_.seats,
@@ -93,10 +122,10 @@ class BasinsRun {
                                                 .blocks = desk_.blocks,
                                                 .case_id = case_.id});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
-    OrbitCheckpoints checkpoints(desk_.shelf, fmt::format("{}/{}", desk_.key, number));
+    OrbitCheckpoints checkpoints(desk_.shelf, under_way);
     scheduler.restore(checkpoints.find());
-    scheduler.run(stop_, [&](const MarchedOrbits& marched) {
-      checkpoints.save(marched);
+    scheduler.run(stop_, [&](const MarchedOrbits& so_far) {
+      checkpoints.save(so_far);
       show_partial();
     });
     record_.run_seconds += scheduler.seconds();
@@ -105,13 +134,13 @@ class BasinsRun {
     for (std::size_t k = 0; k < places.size(); ++k) {
       if (!over_budget_ && !scheduler.finished(static_cast<int>(k))) throw Interrupted{};
       if (scheduler.finished(static_cast<int>(k)))
-        ends[places[k]] = cell_end(scheduler.orbit(static_cast<int>(k)), section_);
+        *places[k] = cell_end(scheduler.orbit(static_cast<int>(k)), section_);
       else
-        ends[places[k]] = unmarched();
+        *places[k] = unmarched();
     }
-    if (desk_.shelf.keep && !over_budget_) desk_.shelf.keep(batch_key(number), to_bytes(ends));
+    if (desk_.shelf.keep && !over_budget_)
+      for (const Batch* batch : marched) desk_.shelf.keep(batch_key(batch->number), to_bytes(batch->ends));
     checkpoints.forget();
-    return ends;
   }
 
   CellEnd unmarched() const {

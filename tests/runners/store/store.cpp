@@ -258,7 +258,7 @@ TEST_CASE("store: another version is refused with what was found, expected and t
   SQLite::Database(folder / "results.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA user_version=99");
   using Catch::Contains;
   CHECK_THAT(open_error(folder.path()),
-             Contains("results.sqlite") && Contains("version 99") && Contains("version 6") && Contains("--fresh"));
+             Contains("results.sqlite") && Contains("version 99") && Contains("version 7") && Contains("--fresh"));
   CHECK_THROWS_AS(read_store(folder.path()), StoreError);
   CHECK(open_error(folder.path(), true).empty());
 }
@@ -266,10 +266,10 @@ TEST_CASE("store: another version is refused with what was found, expected and t
 TEST_CASE("store: what earlier versions wrote is read, and gets the tables that came later") {
   const ScratchFolder folder;
   fill(folder.path());
-  const int version = GENERATE(1, 2, 3, 4, 5);
+  const int version = GENERATE(1, 2, 3, 4, 5, 6);
   {
     SQLite::Database database(folder / "results.sqlite", SQLite::OPEN_READWRITE);
-    database.exec("DROP TABLE epoch; ALTER TABLE cases DROP COLUMN arithmetic");
+    if (version < 6) database.exec("DROP TABLE epoch; ALTER TABLE cases DROP COLUMN arithmetic");
     if (version == 5) database.exec("ALTER TABLE aside_cases DROP COLUMN arithmetic");
     for (const char* table :
          {"axes", "measures", "left_out", "notes", "curves", "case_tables", "case_numbers", "cases", "environments"})
@@ -290,6 +290,31 @@ TEST_CASE("store: what earlier versions wrote is read, and gets the tables that 
     store.save_motion("key", "content");
   }
   check_equal(read_store(folder.path()).cases[0], sample_results().cases[0]);
+}
+
+TEST_CASE("store: tables of any length come back as one table each") {
+  const ScratchFolder folder;
+  StudyResults results = sample_results();
+  CaseRecord& record = results.cases.front();
+  // Longer than what is written at once: rows of cells, and columns of numbers.
+  Table cells{"cells", "", named_columns({"x", "class"}), {}};
+  for (int i = 0; i < 40000; ++i) cells.rows.push_back({0.5 * i, i % 3 == 0 ? Cell("periodic") : Cell()});
+  record.tables = {cells, {"next", "", named_columns({"y"}), {{1.5}}}, {"empty", "", named_columns({"z"}), {}}};
+  NumberTable points = number_table("cell_points", named_columns({"cell", "tip"}));
+  for (int i = 0; i < 2500000; ++i) points.add({static_cast<double>(i / 2), 0.1 * i});
+  record.numbers.push_back(points);
+  {
+    Store store(folder.path(), false);
+    store.begin(results, kExpected);
+    store.save(results.cases);
+  }
+  const CaseRecord back = read_store(folder.path()).cases.front();
+  REQUIRE(back.tables.size() == 3);
+  CHECK(back.tables[0].rows == cells.rows);
+  CHECK(back.tables[1].rows == record.tables[1].rows);
+  CHECK(back.tables[2].rows.empty());
+  REQUIRE(back.numbers.size() == record.numbers.size());
+  CHECK(back.numbers.back().values == points.values);
 }
 
 TEST_CASE("store: a case that begins is there before it ends, and gone once its row is") {

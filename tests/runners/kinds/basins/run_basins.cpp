@@ -148,6 +148,34 @@ TEST_CASE("Cells behind a stop are refused one by one") {
   }
 }
 
+TEST_CASE("Cells marched in batches of their own or many batches together have the same bits") {
+  Json text = grid_study(96, 96, false);
+  text["transient"] = {{"periods", 4}, {"at_most", 8}};
+  text["keep"] = 16;
+  const Opened opened(text);
+  const std::string wanted = bits(opened.run());
+  // So many seats that three batches are marched at once.
+  ThreadSeats seats(64);
+  const ThreadSeats::Seat seat(seats);
+  CHECK((bits(opened.run({{}, "key", &seats})) == wanted));
+
+  // Stopped with all three under way, and gone on with one at a time: what was kept is of no batch or of whole ones.
+  std::map<std::string, std::string> kept;
+  std::atomic<bool> stop = false;
+  CaseDesk desk{{}, "key", &seats};
+  desk.shelf.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
+  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
+    kept[key] = bytes;
+    stop = true;
+  };
+  CHECK_THROWS_AS(run_basins(opened.study.cases.front(), opened.registry, desk, stop), Interrupted);
+  CHECK_FALSE(kept.empty());
+  stop = false;
+  desk.seats = nullptr;
+  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
+  CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, desk, stop)) == wanted));
+}
+
 TEST_CASE("Threads, interruptions and damage to what was stored do not change the bits of basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());

@@ -37,7 +37,7 @@ TEST_CASE("A point is marched with the bits of its diagram") {
   const Study study = parse_study(diagram().dump(1), catalogue, registry);
   const StudyCase& one = study.cases.front();
   const std::atomic<bool> stop = false;
-  const CaseRecord record = run_bifurcation(one, registry, {{}, "key", 1}, stop);
+  const CaseRecord record = run_bifurcation(one, registry, {{}, "key"}, stop);
   REQUIRE(find_table(record.numbers, "points"));
   const NumberTable& points = *find_table(record.numbers, "points");
   const auto& starts = points.words.front().second;
