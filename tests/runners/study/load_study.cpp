@@ -318,7 +318,8 @@ TEST_CASE("Every shipped study parses with the plugins of this build") {
     const Study study = load_study(item.path(), catalogue, registry);
     CHECK(study.name == item.path().stem().string());
     CHECK_FALSE(study.question.empty());
-    CHECK(study.cases.size() > 1);
+    // One grid of cells is a study; of others at least two are compared.
+    CHECK(study.cases.size() > (study.kind == "basins" ? 0 : 1));
     // Only the libraries that the study names are open.
     std::set<std::string> named;
     for (const StudyCase& one : study.cases)
