@@ -35,9 +35,8 @@ int run_rank(Transport& transport, const std::vector<std::string>& arguments, st
     (asked ? out : err) << (asked ? "" : "ricochet: ricochet-mpi expects the command run\n") << usage;
     return asked ? exit_done : exit_bad_input;
   }
-  RemoteHosts remote(transport, [&err](const HostFacts& one) {
-    err << fmt::format("ricochet: rank {} on {} does not answer any more: its work is given to others\n", one.rank,
-                       one.name)
+  RemoteHosts remote(transport, [&err](const HostFacts& one, const std::string& why) {
+    err << fmt::format("ricochet: rank {} on {} {}: its work is given to others\n", one.rank, one.name, why)
         << std::flush;
   });
   int code = exit_bug;

@@ -39,7 +39,7 @@ struct HostMessage {
 std::string to_bytes(const HostMessage& message);
 std::string to_bytes(const HostFacts& facts);
 std::string to_bytes(const WorkerEnd& end);
-/// Throw std::runtime_error for other bytes.
+/// Throw std::runtime_error for other bytes. What a Message carries is not looked at.
 HostMessage host_message(const std::string& bytes);
 HostFacts host_facts(const std::string& bytes);
 WorkerEnd worker_end(const std::string& bytes);
