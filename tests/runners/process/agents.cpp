@@ -57,10 +57,10 @@ struct Kept {
   }
 };
 
-/// A study whose cases are cut into blocks.
-Study study_in_blocks(int cases) {
+/// A study whose cases march anywhere, or one whose cases stay beside the store and have blocks marched anywhere.
+Study study_of(std::uint32_t seed, int cases = 5) {
   Study study = fake_study(cases);
-  study.kind = "bifurcation";
+  if (seed % 2 == 0) study.kind = "bifurcation";
   return study;
 }
 
@@ -106,8 +106,8 @@ void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHost>> ho
 
 ScriptedWorld& prepare(ScriptedWorld& world, const Study& study, std::uint32_t seed, double crashes) {
   static const Registry registry;
-  static std::map<std::size_t, std::string> identities;
-  std::string& identity = identities[study.cases.size()];
+  static std::map<std::pair<std::string, std::size_t>, std::string> identities;
+  std::string& identity = identities[{study.kind, study.cases.size()}];
   if (identity.empty()) identity = StudyIdentity(study, registry).of_all();
   world.identity = identity;
   world.arithmetic = arithmetic_digest();
@@ -153,28 +153,29 @@ constexpr double none = 0, some = 0.15;  // share of units whose first attempt e
 }  // namespace
 
 TEST_CASE("agents: the same rows in thousands of orders of what is said, workers ending here and there") {
-  const Study study = study_in_blocks(5);
   constexpr std::uint32_t orders = 2000;
   for (std::uint32_t seed = 0; seed < orders; ++seed) {
     CAPTURE(seed);
+    const Study study = study_of(seed);
+    const std::size_t ranks = seed / 2 % 4;
     Kept kept;
     std::atomic<bool> stop{false};
-    const Outcome outcome = run_scripts(study, seed, std::vector<Fate>(seed % 4), kept, stop, long_silence, some);
+    const Outcome outcome = run_scripts(study, seed, std::vector<Fate>(ranks), kept, stop, long_silence, some);
     check_all(study, kept);
     CHECK(outcome.lost == 0);
     // All are sent home, and no worker is left behind.
-    CHECK(outcome.left.home == static_cast<int>(seed % 4));
+    CHECK(outcome.left.home == static_cast<int>(ranks));
     CHECK(outcome.left.workers == 0);
   }
 }
 
 TEST_CASE("agents: machines that vanish cost time; what those say that come back late counts for nothing") {
-  const Study study = study_in_blocks(5);
   constexpr double silence = 0.04;
   constexpr std::uint32_t orders = 300;
   int lost = 0;
   for (std::uint32_t seed = 0; seed < orders; ++seed) {
     CAPTURE(seed);
+    const Study study = study_of(seed);
     std::mt19937 luck(seed);
     std::vector<Fate> fates(1 + luck() % 3);
     for (Fate& fate : fates) {
@@ -191,11 +192,11 @@ TEST_CASE("agents: machines that vanish cost time; what those say that come back
 }
 
 TEST_CASE("agents: one whose messages are cut or nonsense costs at most its machine") {
-  const Study study = study_in_blocks(5);
   constexpr std::uint32_t orders = 600;
   int lost = 0;
   for (std::uint32_t seed = 0; seed < orders; ++seed) {
     CAPTURE(seed);
+    const Study study = study_of(seed);
     std::mt19937 luck(seed);
     std::vector<Fate> fates(1 + luck() % 3);
     for (Fate& fate : fates) {
@@ -212,11 +213,11 @@ TEST_CASE("agents: one whose messages are cut or nonsense costs at most its mach
 }
 
 TEST_CASE("agents: a run that is stopped ends, keeps what was finished, and goes on to the same rows") {
-  const Study study = study_in_blocks(5);
   constexpr std::uint32_t orders = 300;
   int stopped_early = 0;
   for (std::uint32_t seed = 0; seed < orders; ++seed) {
     CAPTURE(seed);
+    const Study study = study_of(seed);
     Kept kept;
     std::atomic<bool> stop{false};
     std::thread somebody([&stop, wait = seed % 30] {
@@ -288,11 +289,11 @@ class CountedWorker : public ScriptedWorker {
 }  // namespace
 
 TEST_CASE("agents: the real ones pass on what workers say and how they end, and leave none when they are sent home") {
-  const Study study = study_in_blocks(7);
   constexpr std::uint32_t times = 20;
   constexpr int ranks = 4;
   for (std::uint32_t seed = 0; seed < times; ++seed) {
     CAPTURE(seed);
+    const Study study = study_of(seed, 7);
     ScriptedWorld world;
     prepare(world, study, seed, 0.2);
     Exchange exchange(ranks);
@@ -322,7 +323,7 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
 }
 
 TEST_CASE("agents: a machine whose workers cannot be started says why") {
-  const Study study = study_in_blocks(2);
+  const Study study = study_of(0, 2);
   ScriptedWorld world;
   prepare(world, study, 1, 0);
   Exchange exchange(2);

@@ -100,6 +100,8 @@ void ScriptedWorker::hear(const Message& message) {
     const auto question = questions_.extract(message.about);
     if (question.empty()) return;
     if (question.mapped() == "find" && message.content.empty()) {
+      // Others wait for what it was to keep.
+      if (ends_ == Ends::at_its_middle) return end_with("signal 11 (segmentation fault)");
       questions_[++asked_] = "keep";
       return say(Word::keep, to_bytes(ShelfMessage{shared_key, shared_content}), asked_);
     }
@@ -156,7 +158,7 @@ void ScriptedWorker::march(const Message& order) {
   const Ends ends = world_.ends(request.order);
   if (ends == Ends::at_its_beginning) return end_with("signal 9 (killed)");
   say(Word::block_news, to_bytes(BlockNews{BlockNews::What::so_far, "half"}), order.about);
-  if (ends == Ends::at_its_end) return end_with("exit code 7");
+  if (ends != Ends::never) return end_with("exit code 7");
   say(Word::block_news, to_bytes(BlockNews{BlockNews::What::done, marched(request.order)}), order.about);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -22,11 +23,11 @@ struct ScriptedWorld {
   double crashes = 0;  ///< share of the units whose first attempt ends its worker
 
   /// Where this attempt at a unit ends its worker.
-  enum class Ends { never, at_its_beginning, at_its_end };
+  enum class Ends { never, at_its_beginning, at_its_middle, at_its_end };
   Ends ends(const std::string& unit) {
     const std::lock_guard guard(mutex);
     if (!begun.insert(unit).second || !std::bernoulli_distribution(crashes)(luck)) return Ends::never;
-    return luck() % 2 == 0 ? Ends::at_its_beginning : Ends::at_its_end;
+    return std::array{Ends::at_its_beginning, Ends::at_its_middle, Ends::at_its_end}[luck() % 3];
   }
 
   std::mutex mutex;
