@@ -37,16 +37,6 @@ std::string command_line_of(const fs::path& process) {
   return text;
 }
 
-/// Parent of a process; 0 where it is gone.
-pid_t parent_of(pid_t process) {
-  const std::string text = read_text("/proc/" + std::to_string(process) + "/stat");
-  std::istringstream rest(text.substr(std::min(text.size(), text.rfind(')') + 1)));
-  char state = ' ';
-  pid_t parent = 0;
-  rest >> state >> parent;
-  return parent;
-}
-
 }  // namespace
 
 int Ended::told(const std::string& word) const {
@@ -76,6 +66,10 @@ std::string run_words(const ScratchFolder& scratch, const quick_studies::Json& s
 
 std::string program(const std::string& words) {
   return "'" RICOCHET_COMMAND "' " + words;
+}
+
+std::string ranks_program() {
+  return RICOCHET_RANKS;
 }
 
 std::string mpirun(const std::string& words) {
@@ -122,6 +116,28 @@ std::vector<pid_t> UnderWay::below(const std::string& words) const {
     return one != process_;
   });
   return found;
+}
+
+std::vector<pid_t> ranks_below(const UnderWay& run, int rank) {
+  const std::string word = "OMPI_COMM_WORLD_RANK=";
+  std::vector<pid_t> found = run.below("ricochet-mpi");
+  std::erase_if(found, [&](pid_t one) {
+    const std::string environment = read_text("/proc/" + std::to_string(one) + "/environ");
+    const std::size_t at = environment.find(word);
+    if (at == std::string::npos) return true;
+    const int number = std::atoi(environment.c_str() + at + word.size());
+    return rank < 0 ? number == 0 : number != rank;
+  });
+  return found;
+}
+
+pid_t parent_of(pid_t process) {
+  const std::string text = read_text("/proc/" + std::to_string(process) + "/stat");
+  std::istringstream rest(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  char state = ' ';
+  pid_t parent = 0;
+  rest >> state >> parent;
+  return parent;
 }
 
 std::vector<pid_t> processes(const std::string& words) {

@@ -26,6 +26,8 @@ bool without_slurm();
 std::string run_words(const ScratchFolder& scratch, const quick_studies::Json& study, const std::string& out);
 /// The program with these words.
 std::string program(const std::string& words);
+/// The file of the program that ranks are.
+std::string ranks_program();
 /// So many ranks of it on this machine; `launcher`: further words for mpirun.
 std::string ranks(int count, const std::string& words, const std::string& launcher = "");
 /// Words of mpirun, without a program.
@@ -55,7 +57,13 @@ class UnderWay {
   int status_ = 0;
 };
 
+/// The ranks below a process: a rank's number, or minus one for any but 0.
+std::vector<pid_t> ranks_below(const UnderWay& run, int rank);
+
 /// All processes with these words in their command line.
 std::vector<pid_t> processes(const std::string& words);
+
+/// 0 where it is gone.
+pid_t parent_of(pid_t process);
 
 }  // namespace launch

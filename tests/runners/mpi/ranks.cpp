@@ -90,8 +90,7 @@ TEST_CASE("ranks: one that computes other last digits is refused before anything
   constexpr const char* other = "env GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA ";
   const ScratchFolder scratch;
   const std::string words = run_words(scratch, study_of("trajectory"), "out");
-  const std::string rank = " -n 1 ", next = " : -n 1 ", ranks_program = ranks(1, words).substr(mpirun("").size());
-  const std::string alone = ranks_program.substr(ranks_program.find('\''));
+  const std::string rank = " -n 1 ", next = " : -n 1 ", alone = "'" + ranks_program() + "' " + words;
   const Ended ended = to_its_end(scratch, mpirun(rank + alone + next + other + alone));
   INFO(ended.messages);
   if (ended.code == 0) {
@@ -113,10 +112,8 @@ TEST_CASE("ranks: one beside which the program is missing, or is another build, 
   const ScratchFolder scratch;
   const std::string words = run_words(scratch, study_of("trajectory"), "out");
   const std::string line = ranks(1, words);
-  const std::string program_word =
-      line.substr(line.find('\''), line.find('\'', line.find('\'') + 1) + 1 - line.find('\''));
-  const fs::path file = program_word.substr(1, program_word.size() - 2), copy = scratch / "ricochet-mpi";
-  fs::copy_file(file, copy);
+  const fs::path copy = scratch / "ricochet-mpi";
+  fs::copy_file(ranks_program(), copy);
   const std::string second = " : -n 1 '" + copy.string() + "' " + words;
   const Ended missing = to_its_end(scratch, line + second);
   INFO(missing.messages);
