@@ -10,8 +10,15 @@ cd "$root"
 install_missing $build_commands $build_packages catch2
 # The report is looked at in a browser; RICOCHET_WITHOUT_BROWSER=1 says that this machine shall go without.
 [ "${RICOCHET_WITHOUT_BROWSER:-}" = 1 ] || install_missing chromium=chromium node=nodejs pdftotext=poppler-utils
+# Runs on several machines are tried with Open MPI and with Slurm, both on this one; RICOCHET_WITHOUT_MPI=1: neither.
+mpi=ON
+if [ "${RICOCHET_WITHOUT_MPI:-}" = 1 ]; then
+  mpi=OFF
+else
+  install_missing openmpi-bin libopenmpi-dev slurmctld slurmd slurm-client munge
+fi
 fetch_charts
 
-cmake --preset release -DRICOCHET_TESTS=ON
+cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi
 cmake --build --preset release
 exec ctest --preset release -j "$(nproc)"

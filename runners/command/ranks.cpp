@@ -25,19 +25,20 @@ int run_rank(Transport& transport, const std::vector<std::string>& arguments, st
              bool& lost) {
   const bool runs = !arguments.empty() && arguments.front() == "run";
   if (transport.rank() != 0) {
-    if (runs)
-      serve_as_agent(transport, facts_of_this_machine(transport.rank()),
-                     [] { return std::make_unique<WorkerProcess>(); });
-    return exit_done;
+    if (!runs) return exit_done;
+    const HostFacts facts = facts_of_this_machine(transport.rank());
+    if (serve_as_agent(transport, facts, [] { return std::make_unique<WorkerProcess>(); })) return exit_done;
+    err << fmt::format("ricochet: rank {} on {}: rank 0 does not answer any more\n", facts.rank, facts.name);
+    lost = true;
+    return exit_bug;
   }
   if (!runs) {
     const bool asked = !arguments.empty() && (arguments.front() == "--help" || arguments.front() == "help");
     (asked ? out : err) << (asked ? "" : "ricochet: ricochet-mpi expects the command run\n") << usage;
     return asked ? exit_done : exit_bad_input;
   }
-  RemoteHosts remote(transport, [&err](const HostFacts& one) {
-    err << fmt::format("ricochet: rank {} on {} does not answer any more: its work is given to others\n", one.rank,
-                       one.name)
+  RemoteHosts remote(transport, [&err](const HostFacts& one, const std::string& why) {
+    err << fmt::format("ricochet: rank {} on {} {}: its work is given to others\n", one.rank, one.name, why)
         << std::flush;
   });
   int code = exit_bug;

@@ -11,7 +11,6 @@ namespace {
 using What = HostMessage::What;
 
 constexpr int coordinator = 0;
-constexpr double alive_every = 2;  // s
 
 /// A worker of this machine, and the thread that listens to it.
 class Charge {
@@ -67,11 +66,11 @@ class Charge {
 
 }  // namespace
 
-void serve_as_agent(Transport& transport, const HostFacts& facts,
-                    const std::function<std::unique_ptr<Worker>()>& start_worker) {
+bool serve_as_agent(Transport& transport, const HostFacts& facts,
+                    const std::function<std::unique_ptr<Worker>()>& start_worker, double silence) {
   transport.send(coordinator, to_bytes(HostMessage{What::facts, 0, {.content = to_bytes(facts)}}));
   std::map<std::uint32_t, std::unique_ptr<Charge>> charges;
-  auto told = std::chrono::steady_clock::now();
+  auto told = std::chrono::steady_clock::now(), heard = told;
   for (;;) {
     const auto parcel = transport.receive(alive_every / 4);
     const auto now = std::chrono::steady_clock::now();
@@ -80,9 +79,11 @@ void serve_as_agent(Transport& transport, const HostFacts& facts,
       transport.send(coordinator, to_bytes(HostMessage{What::alive}));
       std::erase_if(charges, [](const auto& one) { return one.second->ended(); });
     }
+    if (parcel) heard = now;
+    if (std::chrono::duration<double>(now - heard).count() > silence) return false;
     if (!parcel) continue;
     const HostMessage said = host_message(parcel->bytes);
-    if (said.what == What::leave) return;
+    if (said.what == What::leave) return true;
     if (said.what == What::start) charges[said.worker] = std::make_unique<Charge>(transport, said.worker, start_worker);
     const auto found = charges.find(said.worker);
     if (found == charges.end()) continue;

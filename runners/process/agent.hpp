@@ -8,9 +8,9 @@
 namespace ricochet {
 
 /// The life of an agent: tells the coordinator (rank 0) what its machine is, starts workers there and passes on what
-/// they and the coordinator say, until it is sent home. It computes nothing itself: nothing that a plugin does can end
-/// it. All workers are gone when it returns.
-void serve_as_agent(Transport& transport, const HostFacts& facts,
-                    const std::function<std::unique_ptr<Worker>()>& start_worker);
+/// they and the coordinator say, until it is sent home; false where nothing was heard of the coordinator for `silence`
+/// seconds. It computes nothing itself: nothing that a plugin does can end it. All workers are gone when it returns.
+bool serve_as_agent(Transport& transport, const HostFacts& facts,
+                    const std::function<std::unique_ptr<Worker>()>& start_worker, double silence = longest_silence);
 
 }  // namespace ricochet

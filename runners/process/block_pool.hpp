@@ -7,11 +7,11 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "runners/march/block_service.hpp"
+#include "runners/process/worker_messages.hpp"
 
 namespace ricochet {
 
@@ -19,7 +19,7 @@ namespace ricochet {
 class BlockPool {
  public:
   struct Block {
-    std::string request;
+    BlockRequest request;
     int owner = 0;            ///< the worker that asked for it
     std::uint32_t about = 0;  ///< its question
     std::function<void(BlockNews)> tell;

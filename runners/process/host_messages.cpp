@@ -2,15 +2,17 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 #include "runners/march/bytes.hpp"
 
 namespace ricochet {
 namespace {
 
-constexpr const char* host_mark = "host 1";
+constexpr const char* host_mark = "host 2";
+constexpr std::string_view known_words = "f.smkel";
 
-// What stands before a message's own bytes, which are as they came: they have been checked where they were made.
+// What stands before a message's own bytes, which are as they came.
 struct HostHead {
   std::uint32_t worker = 0, about = 0;
   char what = '.', word = '.';
@@ -40,24 +42,26 @@ std::string to_bytes(const HostMessage& message) {
   return bytes + message.message.content;
 }
 std::string to_bytes(const HostFacts& facts) {
-  return packed(facts, host_mark);
+  return to_bytes(facts, host_mark);
 }
 std::string to_bytes(const WorkerEnd& end) {
-  return packed(end, host_mark);
+  return to_bytes(end, host_mark);
 }
 HostMessage host_message(const std::string& bytes) {
   HostHead head;
   if (bytes.size() < sizeof(head)) throw std::runtime_error("a message between machines is cut short");
   std::memcpy(&head, bytes.data(), sizeof(head));
+  if (known_words.find(head.what) == std::string_view::npos)
+    throw std::runtime_error("a message between machines says nothing that is known");
   HostMessage message{static_cast<HostMessage::What>(head.what), head.worker, {}};
   message.message = {static_cast<Message::Word>(head.word), bytes.substr(sizeof(head)), head.about};
   return message;
 }
 HostFacts host_facts(const std::string& bytes) {
-  return unpacked<HostFacts>(bytes, host_mark);
+  return from_bytes<HostFacts>(bytes, host_mark);
 }
 WorkerEnd worker_end(const std::string& bytes) {
-  return unpacked<WorkerEnd>(bytes, host_mark);
+  return from_bytes<WorkerEnd>(bytes, host_mark);
 }
 
 }  // namespace ricochet

@@ -9,6 +9,9 @@
 /// machine.
 namespace ricochet {
 
+/// Each side says that it is alive so often, and takes the other for lost after such a silence, s.
+constexpr double alive_every = 2, longest_silence = 60;
+
 /// The machine of an agent, told once, before anything else.
 struct HostFacts {
   std::string name;
@@ -24,7 +27,7 @@ struct HostFacts {
 struct HostMessage {
   enum class What : char {
     facts = 'f',    ///< agent: HostFacts
-    alive = '.',    ///< agent: now and then
+    alive = '.',    ///< either: now and then
     start = 's',    ///< coordinator: starts the worker of that number
     message = 'm',  ///< either: a Message to or from a worker
     kill = 'k',     ///< coordinator
@@ -39,7 +42,7 @@ struct HostMessage {
 std::string to_bytes(const HostMessage& message);
 std::string to_bytes(const HostFacts& facts);
 std::string to_bytes(const WorkerEnd& end);
-/// Throw std::runtime_error for other bytes.
+/// Throw std::runtime_error for other bytes. What a Message carries is not looked at.
 HostMessage host_message(const std::string& bytes);
 HostFacts host_facts(const std::string& bytes);
 WorkerEnd worker_end(const std::string& bytes);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <initializer_list>
 #include <mutex>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
@@ -53,6 +54,26 @@ struct Reply {
   std::optional<Lost> lost;
 };
 
+/// One that says what is no message is ended, and lost.
+Lost ended_for_nonsense(Worker& worker) {
+  worker.kill();
+  Lost lost{worker.end(), {}};
+  if (!lost.end.host_lost) lost.end.cause = "this program: what it said was no message";
+  return lost;
+}
+
+/// What a worker answered; nothing where it was lost, as it is where it says something else.
+template <class T>
+std::optional<T> answer_in(Reply& reply, std::initializer_list<Word> words, Worker& worker) {
+  if (reply.lost) return std::nullopt;
+  if (std::find(words.begin(), words.end(), reply.message.word) != words.end()) try {
+      return message_from<T>(reply.message.content);
+    } catch (const NoMessage&) {
+    }
+  reply.lost = ended_for_nonsense(worker);
+  return std::nullopt;
+}
+
 }  // namespace
 
 class IsolatedCases::Desk {
@@ -100,15 +121,15 @@ class IsolatedCases::Desk {
     const OpenCase open(open_, word == Word::run);
     for (int attempt = 1;;) {
       const Taken taken = take(place_of(word), stopping);
-      const int number = taken.member->number;
-      Reply reply = talk(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})}, stopping,
-                         2 * after_stop);
-      claims_.release(number);
-      pool_.forget(number);
-      if (!reply.lost) {
+      Reply reply =
+          talk_of_case(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})}, stopping);
+      if (!reply.lost && reply.message.word == Word::interrupted) {
         places_.give_back(taken.member);
-        if (reply.message.word == Word::interrupted) throw Interrupted{};
-        return message_from<CaseAnswer>(reply.message.content);
+        throw Interrupted{};
+      }
+      if (auto answer = answer_in<CaseAnswer>(reply, {Word::planned, Word::ran, Word::timed}, *taken.member->worker)) {
+        places_.give_back(taken.member);
+        return std::move(*answer);
       }
       if (stop) throw Interrupted{};
       if (reply.lost->end.host_lost) continue;
@@ -144,6 +165,16 @@ class IsolatedCases::Desk {
     const bool counts_;
   };
 
+  /// talk(), and what the worker claimed or began for its case is let go, however it ends.
+  Reply talk_of_case(const MemberPointer& member, Message order, const std::function<bool()>& stopping) {
+    const auto let_go = [this](const MemberPointer* one) {
+      claims_.release((*one)->number);
+      pool_.forget((*one)->number);
+    };
+    const std::unique_ptr<const MemberPointer, decltype(let_go)> in_work(&member, let_go);
+    return talk(member, std::move(order), stopping, 2 * after_stop);
+  }
+
   /// Workers for each case that is left.
   int share() const {
     const int width = places_.width();
@@ -171,7 +202,7 @@ class IsolatedCases::Desk {
       block.tell(BlockNews{what, std::move(content)});
     };
     try {
-      auto request = message_from<BlockRequest>(block.request);
+      BlockRequest request = block.request;
       const StudyCase* const study_case = find_case(context_.study, request.id);
       if (!study_case) throw std::runtime_error("a block of no case");
       const Limit limit = limit_of(*study_case);
@@ -180,9 +211,9 @@ class IsolatedCases::Desk {
       do {
         const Taken taken = take(Where::anywhere, stopping);
         reply = talk(taken.member, {Word::block, to_bytes(request)}, stopping, after_stop, block.tell);
-        if (!reply.lost) {
+        if (auto news = answer_in<BlockNews>(reply, {Word::block_news}, *taken.member->worker)) {
           places_.give_back(taken.member);
-          return block.tell(message_from<BlockNews>(reply.message.content));
+          return block.tell(std::move(*news));
         }
       } while (reply.lost->end.host_lost && !stopping());
       if (stopping()) return tell(BlockNews::What::interrupted, "");
@@ -212,9 +243,9 @@ class IsolatedCases::Desk {
       taken.member->worker = taken.member->host->start();
       WorkerStudy opening = opening_;
       opening.memory = taken.member->host->memory();
-      const Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, stopping, after_stop);
-      if (!reply.lost) {
-        check(message_from<WorkerReady>(reply.message.content), name);
+      Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, stopping, after_stop);
+      if (const auto ready = answer_in<WorkerReady>(reply, {Word::ready}, *taken.member->worker)) {
+        check(*ready, name);
         return taken;
       }
       if (stopping()) throw Interrupted{};
@@ -259,13 +290,18 @@ class IsolatedCases::Desk {
       }
       if (state != Channel::Heard::message) continue;
       heard = Clock::now();
-      if (reply.message.word == Word::given_up) {
-        given_up = message_from<GivenUp>(reply.message.content);
-      } else if (reply.message.word == Word::block_news) {
-        auto news = message_from<BlockNews>(reply.message.content);
-        if (news.what != BlockNews::What::so_far) return reply;
-        if (so_far) so_far(std::move(news));
-      } else if (reply.message.word != Word::alive && !serve(member, reply.message, stopping)) {
+      try {
+        if (reply.message.word == Word::given_up) {
+          given_up = message_from<GivenUp>(reply.message.content);
+        } else if (reply.message.word == Word::block_news) {
+          auto news = message_from<BlockNews>(reply.message.content);
+          if (news.what != BlockNews::What::so_far) return reply;
+          if (so_far) so_far(std::move(news));
+        } else if (reply.message.word != Word::alive && !serve(member, reply.message, stopping)) {
+          return reply;
+        }
+      } catch (const NoMessage&) {
+        reply.lost = ended_for_nonsense(worker);
         return reply;
       }
     }
@@ -294,11 +330,11 @@ class IsolatedCases::Desk {
       if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
       if (shelf_.show) shelf_.show(record);
     } else if (message.word == Word::march) {
-      pool_.begin(
-          {message.content, member->number, message.about, [this, member, about = message.about](BlockNews news) {
-             news.share = share();
-             member->worker->send({Word::block_news, to_bytes(news), about});
-           }});
+      pool_.begin({message_from<BlockRequest>(message.content), member->number, message.about,
+                   [this, member, about = message.about](BlockNews news) {
+                     news.share = share();
+                     member->worker->send({Word::block_news, to_bytes(news), about});
+                   }});
     } else if (message.word == Word::cancel) {
       pool_.stop(member->number, message.about);
     } else {

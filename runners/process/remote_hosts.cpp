@@ -119,7 +119,7 @@ class RemoteHosts::Host : public WorkerHost {
   const double memory_;
 };
 
-RemoteHosts::RemoteHosts(Transport& transport, std::function<void(const HostFacts&)> lost, double silence)
+RemoteHosts::RemoteHosts(Transport& transport, TellLost lost, double silence)
     : transport_(transport), lost_(std::move(lost)), silence_(silence) {
   for (int rank = 1; rank < transport.size(); ++rank) ranks_[rank].heard = SteadyClock::now();
   listener_ = std::thread([this] { listen(); });
@@ -137,53 +137,72 @@ void RemoteHosts::tell(int rank, const HostMessage& message) {
 }
 
 void RemoteHosts::listen() {
+  auto told = SteadyClock::now();
   while (!ending_) {
     if (auto parcel = transport_.receive(look_around)) hear(std::move(*parcel));
     look_for_lost();
+    if (seconds_since(told) < alive_every) continue;
+    told = SteadyClock::now();
+    for (const auto& [number, rank] : ranks_)
+      if (!rank.lost) tell(number, {What::alive, 0, {}});
   }
 }
 
 void RemoteHosts::hear(Transport::Parcel parcel) {
-  HostMessage said = host_message(parcel.bytes);
+  const auto found = ranks_.find(parcel.from);
+  if (found == ranks_.end()) return;
+  Rank& rank = found->second;
+  if (rank.lost) return;  // its work was given to others
+  rank.heard = SteadyClock::now();
+  try {
+    hear(rank, host_message(parcel.bytes));
+  } catch (const std::runtime_error&) {
+    lose(rank, "says what this program does not understand (another build?)");
+  }
+}
+
+void RemoteHosts::hear(Rank& rank, HostMessage said) {
+  if (said.what == What::facts) {
+    const std::lock_guard guard(mutex_);
+    rank.facts = host_facts(said.message.content);
+    changed_.notify_all();
+    return;
+  }
   std::shared_ptr<Inbox> inbox;
   {
     const std::lock_guard guard(mutex_);
-    Rank& rank = ranks_.at(parcel.from);
-    rank.heard = SteadyClock::now();
-    if (rank.lost) return;  // its work was given to others
-    if (said.what == What::facts) {
-      rank.facts = host_facts(said.message.content);
-      changed_.notify_all();
-    }
     const auto found = rank.workers.find(said.worker);
-    if (found != rank.workers.end()) inbox = found->second;
+    if (found == rank.workers.end()) return;
+    inbox = found->second;
   }
-  if (!inbox) return;
   if (said.what == What::message) inbox->put(std::move(said.message));
   if (said.what == What::ended) inbox->close(worker_end(said.message.content));
 }
 
 void RemoteHosts::look_for_lost() {
-  std::vector<HostFacts> lost;
+  for (auto& [number, rank] : ranks_)
+    if (!rank.lost && rank.facts && seconds_since(rank.heard) >= silence_) lose(rank, "does not answer any more");
+}
+
+void RemoteHosts::lose(Rank& rank, const std::string& why) {
   {
     const std::lock_guard guard(mutex_);
-    for (auto& [number, rank] : ranks_) {
-      if (rank.lost || !rank.facts || seconds_since(rank.heard) < silence_) continue;
-      rank.lost = true;
-      lost.push_back(*rank.facts);
-      for (const auto& [worker, inbox] : rank.workers)
-        inbox->close({.cause = "its machine is lost", .host_lost = true});
-    }
+    rank.why = why;
+    rank.lost = true;
+    for (const auto& [worker, inbox] : rank.workers) inbox->close({.cause = "its machine is lost", .host_lost = true});
+    changed_.notify_all();
   }
-  for (const HostFacts& one : lost) lost_(one);
+  if (rank.facts) lost_(*rank.facts, why);
 }
 
 std::vector<HostFacts> RemoteHosts::facts() {
   std::vector<HostFacts> all;
   std::unique_lock lock(mutex_);
   for (auto& [number, rank] : ranks_) {
-    changed_.wait_for(lock, std::chrono::duration<double>(silence_), [&one = rank] { return one.facts.has_value(); });
-    if (!rank.facts) throw std::runtime_error(fmt::format("rank {} does not answer", number));
+    changed_.wait_for(lock, std::chrono::duration<double>(silence_),
+                      [&one = rank] { return one.facts.has_value() || one.lost; });
+    if (!rank.facts)
+      throw std::runtime_error(fmt::format("rank {} {}", number, rank.lost ? rank.why : "does not answer"));
     all.push_back(*rank.facts);
   }
   return all;

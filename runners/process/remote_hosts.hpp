@@ -18,17 +18,19 @@
 namespace ricochet {
 
 /// The coordinator's side of the agents: a WorkerHost for each of the other ranks. A machine of which nothing is heard
-/// for `silence` seconds is lost, with all its workers, and is not asked again.
+/// for `silence` seconds, or which says what is no message, is lost, with all its workers, and is not asked again.
 class RemoteHosts {
  public:
-  /// `lost`: told once of each machine that is.
-  RemoteHosts(Transport& transport, std::function<void(const HostFacts&)> lost, double silence = 60);
+  /// Told once of each machine that is lost, and why: "does not answer any more".
+  using TellLost = std::function<void(const HostFacts&, const std::string& why)>;
+  RemoteHosts(Transport& transport, TellLost lost, double silence = longest_silence);
   /// Sends the agents home. All workers of its hosts are gone before.
   ~RemoteHosts();
   RemoteHosts(const RemoteHosts&) = delete;
   RemoteHosts& operator=(const RemoteHosts&) = delete;
 
-  /// The facts of all other ranks, in their order; waits for them. Throws std::runtime_error where one is silent.
+  /// The facts of all other ranks, in their order; waits for them. Throws std::runtime_error where one is silent, or
+  /// says something else.
   std::vector<HostFacts> facts();
   /// The machine of a rank, with room for so many workers.
   std::shared_ptr<WorkerHost> host(int rank, int width, double memory);
@@ -44,15 +46,18 @@ class RemoteHosts {
     std::optional<HostFacts> facts;
     std::chrono::steady_clock::time_point heard;
     std::atomic<bool> lost{false};
+    std::string why;  ///< it is lost
     std::map<std::uint32_t, std::shared_ptr<Inbox>> workers;
   };
   void listen();
   void hear(Transport::Parcel parcel);
+  void hear(Rank& rank, HostMessage said);
   void look_for_lost();
+  void lose(Rank& rank, const std::string& why);
   void tell(int rank, const HostMessage& message);
 
   Transport& transport_;
-  const std::function<void(const HostFacts&)> lost_;
+  const TellLost lost_;
   const double silence_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

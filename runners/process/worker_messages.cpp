@@ -142,7 +142,12 @@ std::string to_bytes(const CaseRecord& record) {
 
 template <class T>
 T message_from(const std::string& bytes) {
-  return unpacked<T>(bytes, message_mark);
+  try {
+    return unpacked<T>(bytes, message_mark);
+  } catch (const std::exception& error) {
+    // A length that is wrong asks for more memory than there is.
+    throw NoMessage(error.what());
+  }
 }
 template WorkerStudy message_from(const std::string&);
 template WorkerReady message_from(const std::string&);

@@ -1,4 +1,5 @@
 #pragma once
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -66,7 +67,13 @@ std::string to_bytes(const GivenUp& message);
 std::string to_bytes(const ShelfMessage& message);
 std::string to_bytes(const CaseRecord& record);
 
-/// The message that these bytes are. Throws std::runtime_error for others.
+/// Bytes that are no message: whoever sent them is not to be believed any more.
+class NoMessage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The message that these bytes are. Throws NoMessage for others.
 template <class T>
 T message_from(const std::string& bytes);
 extern template WorkerStudy message_from(const std::string&);

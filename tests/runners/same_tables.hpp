@@ -9,6 +9,12 @@
 
 #include "tests/runners/scratch_folder.hpp"
 
+/// \file
+/// Tables of two runs of one study, compared as text without what belongs to the machine.
+namespace same_tables {
+
+namespace fs = std::filesystem;
+
 /// Measures that belong to the machine.
 inline bool of_the_machine(const std::string& column) {
   static const std::set<std::string> names = {"setup_seconds", "run_seconds", "lane_steps_per_second",
@@ -16,13 +22,13 @@ inline bool of_the_machine(const std::string& column) {
   return names.count(column) != 0 || column.starts_with("timed_");
 }
 
-using TableRows = std::vector<std::map<std::string, std::string>>;
+using Rows = std::vector<std::map<std::string, std::string>>;
 
-inline TableRows rows_of(const std::filesystem::path& file) {
+inline Rows rows_of(const fs::path& file) {
   std::istringstream lines(read_text(file));
   std::string line;
   std::vector<std::string> names;
-  TableRows rows;
+  Rows rows;
   while (std::getline(lines, line)) {
     std::vector<std::string> cells;
     bool quoted = false;
@@ -53,7 +59,7 @@ inline TableRows rows_of(const std::filesystem::path& file) {
 }
 
 /// The first cell that differs; "" where none does.
-inline std::string difference(const TableRows& a, const TableRows& b) {
+inline std::string difference(const Rows& a, const Rows& b) {
   if (a.size() != b.size()) return std::to_string(a.size()) + " rows, " + std::to_string(b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i] == b[i]) continue;
@@ -66,17 +72,25 @@ inline std::string difference(const TableRows& a, const TableRows& b) {
   return "";
 }
 
-/// Whether every table of one results folder stands in the other, with the same cells but for what the machine makes
-/// of them.
-inline void check_same_tables(const std::filesystem::path& a, const std::filesystem::path& b) {
+/// `work`: the study asks what work costs, so that some of its tables and columns follow from times.
+inline void check_same(const fs::path& a, const fs::path& b, bool work = false) {
+  static const std::set<std::string> of_work = {"seconds",      "low",      "high",      "run_seconds",
+                                                "microseconds", "on_front", "near_front"};
   int tables = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(a)) {
+  for (const auto& entry : fs::recursive_directory_iterator(a)) {
     if (entry.path().extension() != ".csv") continue;
-    const std::filesystem::path name = std::filesystem::relative(entry.path(), a);
+    const fs::path name = fs::relative(entry.path(), a);
     INFO(name);
-    REQUIRE(std::filesystem::exists(b / name));
-    CHECK(difference(rows_of(entry.path()), rows_of(b / name)) == "");
+    REQUIRE(fs::exists(b / name));
+    if (work && (name == "answers.csv" || name == "precision_targets.csv")) continue;
+    Rows rows = rows_of(entry.path()), others = rows_of(b / name);
+    if (work)
+      for (Rows* all : {&rows, &others})
+        for (auto& row : *all) std::erase_if(row, [](const auto& cell) { return of_work.count(cell.first) != 0; });
+    CHECK(difference(rows, others) == "");
     ++tables;
   }
   CHECK(tables > 2);
 }
+
+}  // namespace same_tables

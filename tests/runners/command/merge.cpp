@@ -103,8 +103,8 @@ TEST_CASE("merge: three parts are what one run leaves, in every table and in the
   INFO(merged.err);
   REQUIRE(merged.code == 0);
   CHECK_THAT(merged.out, Contains("merged from 3 folders") && !Contains("in none of") && !Contains("part "));
-  check_same_tables(here / "one", here / "all/of/it");
-  check_same_tables(here / "all/of/it", here / "one");
+  same_tables::check_same(here / "one", here / "all/of/it");
+  same_tables::check_same(here / "all/of/it", here / "one");
   CHECK(read_text(here / "one/study.json") == read_text(here / "all/of/it/study.json"));
   const Said compared = say(here, "compare one all/of/it");
   CHECK_THAT(compared.out, Contains("The results are equal to the last bit.") && Contains("answer: the same lines") &&
@@ -134,11 +134,11 @@ TEST_CASE("merge: what is missing is counted, and a run in the merged folder add
   CHECK(more.code == 0);
   CHECK_THAT(more.err, Contains("6 finished before, 3 to run"));
   CHECK(say(here, "run study.json --out one").code == 0);
-  check_same_tables(here / "one", here / "all");
+  same_tables::check_same(here / "one", here / "all");
   // A whole folder beside its parts: every case is there twice, and once in what comes out.
   const Said twice = say(here, "merge one parts/2 all --out both");
   CHECK(twice.code == 0);
-  check_same_tables(here / "one", here / "both");
+  same_tables::check_same(here / "one", here / "both");
 }
 
 TEST_CASE("merge: a case that two folders have differently is named, and nothing is written") {

@@ -13,16 +13,14 @@
 #include <set>
 #include <sstream>
 
-#include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
-#include "runners/table/csv_text.hpp"
+#include "tests/runners/process/quick_studies.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
-using namespace ricochet;
+using namespace quick_studies;
+using namespace same_tables;
 using Catch::Contains;
 using Catch::Matchers::Matches;
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -32,48 +30,6 @@ constexpr bool sanitized = true;
 #else
 constexpr bool sanitized = false;
 #endif
-
-Json study_of(const std::string& kind) {
-  Json study = Json::parse(R"({
-    "name": "here", "question": "Is it the same?",
-    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2e11, "density": 8000,
-                            "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}, "damping": {"stiffness": 1e-4}},
-              "stops": {"lower": -0.1, "upper": 0.1, "at": "tip"}},
-    "mesh": {"elements": 4},
-    "methods": {"mass": ["consistent", {"name": "singular", "velocity": "P1"}], "contact": "signorini", "time": "newmark-dumont-paoli"}
-  })");
-  study["kind"] = kind;
-  Json& scene = study["scene"];
-  if (kind == "trajectory" || kind == "convergence" || kind == "work-precision")
-    scene["initial"] = {{"displacement", "0.04*x^2"}, {"velocity", "-2*x"}};
-  else
-    scene["support"] = {{"amplitude", 0.08}, {"pulsation", 10}};
-  if (kind == "trajectory") study.update(Json::parse(R"({"step": [1e-4, 5e-5], "duration": 0.3})"));
-  if (kind == "convergence")
-    study.update(Json::parse(R"({"step": [4e-4, 2e-4, 1e-4], "duration": 0.2, "reference": "self"})"));
-  if (kind == "bifurcation")
-    study.update(Json::parse(R"({
-      "parameter": {"pointer": "/scene/support/amplitude", "from": 0.07, "to": 0.1, "count": 7},
-      "steps_per_period": 200, "start": ["rest", "up", "down"], "transient": {"periods": 40, "at_most": 80}, "keep": 20,
-      "section": "strobe", "exponents": 2, "refine": 0.002})"));
-  if (kind == "basins") {
-    scene["initial"] = {{"displacement", "0.1*(x/1.501)^2"}, {"velocity", "x/1.501"}};
-    study.update(Json::parse(R"({
-      "axes": [{"pointer": "/scene/initial/displacement", "from": -1, "to": 1, "count": 9},
-               {"pointer": "/scene/initial/velocity", "from": -2, "to": 2, "count": 7}],
-      "steps_per_period": 200, "transient": {"periods": 40, "at_most": 80}, "keep": 16, "refine": true})"));
-  }
-  return study;
-}
-
-Json stumbling(const std::string& how, double beyond) {
-  Json study = study_of("bifurcation");
-  study["methods"]["mass"] = "consistent";
-  study["methods"]["contact"] = {{"name", "stumbles"}, {"how", how}, {"beyond", beyond}};
-  study["refine"] = nullptr;
-  study["exponents"] = 0;
-  return study;
-}
 
 struct Ended {
   int code = 0;
@@ -96,7 +52,8 @@ Ended run(const ScratchFolder& scratch, const Json& study, const std::string& ou
 }  // namespace
 
 TEST_CASE("workers: every kind of study has in them the tables that it has in threads") {
-  const std::string kind = GENERATE("trajectory", "convergence", "bifurcation", "basins");
+  const std::string kind =
+      GENERATE("trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins");
   CAPTURE(kind);
   const ScratchFolder scratch;
   const Json study = study_of(kind);
@@ -106,7 +63,7 @@ TEST_CASE("workers: every kind of study has in them the tables that it has in th
   const Ended workers = run(scratch, study, "workers", "--isolate");
   INFO(workers.messages);
   CHECK(workers.code == 0);
-  check_same_tables(scratch / "threads", scratch / "workers");
+  check_same(scratch / "threads", scratch / "workers", kind == "work-precision");
 }
 
 TEST_CASE("workers: an orbit that ends its process twice is a failed row with the reason, and no other row changes") {
@@ -209,14 +166,6 @@ class Running {
   pid_t process_ = -1;
   int status_ = 0;
 };
-
-/// A sweep that takes a second or two.
-Json longer() {
-  Json study = study_of("bifurcation");
-  study["parameter"]["count"] = 13;
-  study["steps_per_period"] = 4000;
-  return study;
-}
 
 }  // namespace
 

@@ -1,0 +1,139 @@
+/// kill -9 at random moments, of whatever a run on several ranks consists of: nothing that was kept is lost, and the
+/// same command goes on to the same tables. RICOCHET_KILLS=100 kills so many of each.
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <random>
+
+#include "runners/store/store.hpp"
+#include "runners/store/store_error.hpp"
+#include "tests/runners/mpi/launch.hpp"
+#include "tests/runners/same_tables.hpp"
+
+using namespace launch;
+using Catch::Contains;
+using quick_studies::Json;
+using quick_studies::study_of;
+using same_tables::check_same;
+using same_tables::rows_of;
+namespace fs = std::filesystem;
+
+namespace {
+
+int kills() {
+  const char* text = std::getenv("RICOCHET_KILLS");
+  constexpr int usual = 10;
+  return text ? std::atoi(text) : usual;
+}
+
+/// Finished cases that the store holds; 0 where there is none yet.
+int finished(const fs::path& out) {
+  try {
+    const auto cases = ricochet::read_store(out).cases;
+    return static_cast<int>(std::count_if(cases.begin(), cases.end(), [](const auto& one) { return !one.partial; }));
+  } catch (const ricochet::StoreError&) {
+    return 0;
+  }
+}
+
+void check_no_failed_row(const fs::path& out) {
+  for (const auto& row : rows_of(out / "values.csv")) CHECK(row.at("status") != "failed");
+  for (const auto& row : rows_of(out / "cases.csv")) CHECK(row.at("status") == "done");
+}
+
+/// Some seconds of orbits, in six cases.
+Json sweep() {
+  Json study = study_of("bifurcation");
+  study["steps_per_period"] = 1500;
+  study["mesh"]["elements"] = {3, 4, 5};
+  study["refine"] = nullptr;
+  return study;
+}
+
+/// Kills, again and again, one of those that `victims` finds, at a moment of which `luck` decides.
+void kill_at_random(const std::function<std::vector<pid_t>(const UnderWay&)>& victims, bool survives) {
+  const ScratchFolder scratch;
+  const Json study = sweep();
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  const auto begin = std::chrono::steady_clock::now();
+  REQUIRE(to_its_end(scratch, ranks(2, run_words(scratch, study, "undisturbed"))).code == 0);
+  const double lasts = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  int killed = 0;
+  for (int i = 0; i < kills(); ++i) {
+    std::mt19937 luck(static_cast<std::uint32_t>(i));
+    const double moment = std::uniform_real_distribution<double>(0, lasts)(luck);
+    CAPTURE(i, moment);
+    const std::string words = run_words(scratch, study, "out");
+    fs::remove_all(scratch / "out");
+    Ended ended;
+    {
+      UnderWay run(scratch, ranks(2, words));
+      ::usleep(static_cast<useconds_t>(1e6 * moment));
+      const std::vector<pid_t> found = victims(run);
+      if (!found.empty() && ::kill(found[luck() % found.size()], SIGKILL) == 0) ++killed;
+      ended = run.finish();
+    }
+    INFO(ended.messages);
+    if (!survives && ended.code != 0) {
+      const int before = finished(scratch / "out");
+      const Ended again = to_its_end(scratch, ranks(2, words));
+      INFO(again.messages);
+      CHECK_THAT(again.messages, Contains(std::to_string(before) + " finished before"));
+      ended.code = again.code;
+    }
+    CHECK(ended.code == 0);
+    check_same(scratch / "threads", scratch / "out");
+    check_no_failed_row(scratch / "out");
+  }
+  CHECK(killed > kills() / 3);
+}
+
+}  // namespace
+
+TEST_CASE("kills: a worker, here or with another rank, costs nothing but time") {
+  if (without_mpi()) return;
+  kill_at_random([](const UnderWay& run) { return run.below("ricochet worker"); }, true);
+}
+
+TEST_CASE("kills: an agent ends the run under mpirun; the next one goes on") {
+  if (without_mpi()) return;
+  kill_at_random([](const UnderWay& run) { return ranks_below(run, -1); }, false);
+}
+
+TEST_CASE("kills: rank 0 ends the run; the next one goes on") {
+  if (without_mpi()) return;
+  kill_at_random([](const UnderWay& run) { return ranks_below(run, 0); }, false);
+}
+
+TEST_CASE("kills: of two starts of one job on one folder the later one has it; the earlier one ends with 5") {
+  if (without_mpi()) return;
+  const ScratchFolder scratch;
+  const Json study = quick_studies::longer();
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  const std::string words = ranks_program() + " " + run_words(scratch, study, "out");
+  // Said behind mpirun, which asks Slurm for nodes where it sees a job of it.
+  const auto start = [&](int restart) {
+    return mpirun("-n 2 env SLURM_JOB_ID=4711 SLURM_RESTART_COUNT=" + std::to_string(restart) + " " + words);
+  };
+  UnderWay first(scratch, start(0));
+  constexpr int tries = 3000;
+  for (int i = 0; i < tries && !fs::exists(scratch / "out/results.sqlite"); ++i) ::usleep(10000);
+  ::usleep(500000);
+  REQUIRE_FALSE(first.ended());
+  const ScratchFolder elsewhere;
+  const Ended second = to_its_end(elsewhere, start(1));
+  INFO(second.messages);
+  CHECK(second.code == 0);
+  const Ended ended = first.finish();
+  INFO(ended.messages);
+  CHECK(ended.code == 5);
+  CHECK(ended.told("another run took this folder over") == 1);
+  check_same(scratch / "threads", scratch / "out");
+  CHECK_FALSE(fs::exists(scratch / "out/results.lock"));
+}

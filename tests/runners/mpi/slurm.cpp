@@ -1,0 +1,146 @@
+/// A study in jobs of Slurm on two nodes: the tables that threads make, whatever happens to the job.
+#include <signal.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <functional>
+
+#include "tests/runners/mpi/cluster.hpp"
+#include "tests/runners/same_tables.hpp"
+
+using namespace launch;
+using Catch::Contains;
+using quick_studies::Json;
+using quick_studies::study_of;
+using same_tables::check_same;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Waits for what the cluster does; gives up after some minutes, which only a hung one needs.
+bool comes_true(const std::function<bool()>& condition) {
+  constexpr int tries = 3000;
+  constexpr useconds_t between = 50000;
+  for (int i = 0; i < tries; ++i, ::usleep(between))
+    if (condition()) return true;
+  return false;
+}
+
+bool ended(const std::string& state) {
+  return state == "COMPLETED" || state == "FAILED" || state == "CANCELLED" || state == "TIMEOUT" ||
+         state == "NODE_FAIL";
+}
+
+/// A sweep that is under way for long enough to be disturbed.
+Json long_sweep() {
+  Json study = quick_studies::longer();
+  study["parameter"]["count"] = 49;
+  return study;
+}
+
+/// The job script that the command prints, for a study in OUT.json.
+std::string script(const ScratchFolder& scratch, const Json& study, const std::string& out) {
+  write_text(scratch / (out + ".json"), study.dump());
+  const Ended printed = to_its_end(scratch, program("slurm '" + (scratch / (out + ".json")).string() + "' --out '" +
+                                                    (scratch / out).string() + "' --nodes 2 --cpus 2 --time 10"));
+  INFO(printed.messages);
+  REQUIRE(printed.code == 0);
+  return printed.out;
+}
+
+/// A job of the script with the longer study, once it has kept something.
+std::string job_under_way(const Cluster& cluster, const ScratchFolder& scratch) {
+  const std::string job = cluster.submit(script(scratch, long_sweep(), "out"));
+  REQUIRE(comes_true([&] { return fs::exists(scratch / "out/results.sqlite"); }));
+  ::usleep(700000);
+  REQUIRE(cluster.of_job(job, "JobState") == "RUNNING");
+  return job;
+}
+
+/// The job, which goes back into the queue, is started again soon and not after two minutes, each time, and ends.
+void goes_on(const Cluster& cluster, const std::string& job) {
+  std::string restarts = "0";
+  REQUIRE(comes_true([&] {
+    const std::string state = cluster.of_job(job, "JobState"), now = cluster.of_job(job, "Restarts");
+    if (state == "PENDING" && now != restarts) {
+      restarts = now;
+      ::sleep(4);  // the nodes still clear away what they had of the start before
+      cluster.answer("scontrol update JobId=" + job + " StartTime=now");
+    }
+    return ended(state);
+  }));
+  CHECK(restarts != "0");
+  CHECK(cluster.of_job(job, "JobState") == "COMPLETED");
+}
+
+#define WITH_A_CLUSTER(cluster) \
+  if (without_slurm()) return;  \
+  const Cluster cluster;        \
+  INFO(cluster.failure());      \
+  REQUIRE(cluster.failure() == "")
+
+}  // namespace
+
+TEST_CASE(
+    "slurm: ranks that srun starts on two nodes make the tables that threads make; its exit code is the command's") {
+  WITH_A_CLUSTER(cluster);
+  const ScratchFolder scratch;
+  const std::string srun = "srun --mpi=pmix --kill-on-bad-exit=1 -N2 -n2 ";
+  for (const char* kind : {"trajectory", "bifurcation"}) {
+    CAPTURE(kind);
+    const std::string out = std::string("ranks-") + kind;
+    const Json study = study_of(kind);
+    REQUIRE(to_its_end(scratch, program(run_words(scratch, study, kind))).code == 0);
+    const std::string words = srun + ranks_program() + " run " + (scratch / (out + ".json")).string() +
+                              " --jobs 2 --out " + (scratch / out).string();
+    run_words(scratch, study, out);
+    const Ended done = to_its_end(scratch, cluster.line(words));
+    INFO(done.messages);
+    CHECK(done.code == 0);
+    CHECK_THAT(done.messages, Contains("4 workers on 1 machine, 2 ranks"));
+    check_same(scratch / kind, scratch / out);
+  }
+  const Ended wrong = to_its_end(scratch, cluster.line(srun + ranks_program() + " run none.json"));
+  CHECK(wrong.code == 2);
+  CHECK(wrong.told("none.json: cannot be read") == 1);
+}
+
+TEST_CASE("slurm: the script that the command prints is a job that runs to its end") {
+  WITH_A_CLUSTER(cluster);
+  const ScratchFolder scratch;
+  const Json study = study_of("basins");
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  const std::string job = cluster.submit(script(scratch, study, "out"));
+  CHECK(comes_true([&] { return ended(cluster.of_job(job, "JobState")); }));
+  INFO(read_text(cluster.job_output()));
+  CHECK(cluster.of_job(job, "JobState") == "COMPLETED");
+  CHECK_THAT(read_text(cluster.job_output()), Contains(" on 1 machine, 2 ranks"));
+  check_same(scratch / "threads", scratch / "out");
+}
+
+TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into the queue and on to the same tables") {
+  WITH_A_CLUSTER(cluster);
+  const ScratchFolder scratch;
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, long_sweep(), "threads"))).code == 0);
+  const std::string job = job_under_way(cluster, scratch);
+  cluster.answer("scancel --signal=USR1 " + job);
+  goes_on(cluster, job);
+  const std::string said = read_text(cluster.job_output());
+  INFO(said);
+  CHECK_THAT(said, Contains("interrupted: "));
+  check_same(scratch / "threads", scratch / "out");
+}
+
+TEST_CASE("slurm: a job that loses a node goes back into the queue and on to the same tables") {
+  WITH_A_CLUSTER(cluster);
+  const ScratchFolder scratch;
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, long_sweep(), "threads"))).code == 0);
+  const std::string job = job_under_way(cluster, scratch);
+  cluster.cut_off("n2");
+  REQUIRE(comes_true([&] { return cluster.of_job(job, "Restarts") == "1"; }));
+  cluster.switch_on("n2");
+  goes_on(cluster, job);
+  INFO(read_text(cluster.job_output()));
+  check_same(scratch / "threads", scratch / "out");
+}
