@@ -10,7 +10,7 @@
 namespace ricochet {
 
 /// Each side says that it is alive so often, and takes the other for lost after such a silence, s.
-constexpr double alive_every = 2, longest_silence = 60;
+constexpr double alive_every = 2, lost_after = 60;
 
 /// The machine of an agent, told once, before anything else.
 struct HostFacts {

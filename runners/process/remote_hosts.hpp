@@ -23,7 +23,7 @@ class RemoteHosts {
  public:
   /// Told once of each machine that is lost, and why: "does not answer any more".
   using TellLost = std::function<void(const HostFacts&, const std::string& why)>;
-  RemoteHosts(Transport& transport, TellLost lost, double silence = longest_silence);
+  RemoteHosts(Transport& transport, TellLost lost, double silence = lost_after);
   /// Sends the agents home. All workers of its hosts are gone before.
   ~RemoteHosts();
   RemoteHosts(const RemoteHosts&) = delete;

@@ -47,8 +47,8 @@ void out_of_memory() {
 }
 
 void limit_memory(double bytes) {
-  // An address sanitizer takes far more of them than it uses.
-#ifdef __SANITIZE_ADDRESS__
+  // A sanitizer takes far more of them than it uses.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return;
 #endif
   if (bytes <= 0) return;

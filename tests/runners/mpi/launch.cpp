@@ -101,8 +101,21 @@ bool UnderWay::ended() {
   return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
 }
 
+// mpirun waits for ever where a rank of it is killed before all are there: nothing of the program is left then.
+void UnderWay::give_up_a_launcher() {
+  if (command_line_of("/proc/" + std::to_string(process_)).find("mpirun") == std::string::npos) return;
+  constexpr int looks = 200, enough = 100;  // per look, ms
+  for (int idle = 0; !ended() && idle < looks; ::usleep(1000 * enough)) {
+    std::vector<pid_t> left = below("ricochet");
+    std::erase(left, process_);
+    idle = left.empty() ? idle + 1 : 0;
+  }
+  if (!ended()) ::kill(-process_, SIGKILL);
+}
+
 Ended UnderWay::finish(int signal) {
   if (signal != 0) ::kill(process_, signal);
+  give_up_a_launcher();
   ::waitpid(process_, &status_, 0);
   process_ = -1;
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), read_text(scratch_ / "said"),

@@ -52,6 +52,8 @@ class UnderWay {
   std::vector<pid_t> below(const std::string& words) const;
 
  private:
+  void give_up_a_launcher();
+
   const ScratchFolder& scratch_;
   pid_t process_ = -1;
   int status_ = 0;
