@@ -87,7 +87,7 @@ TEST_CASE("workers: an orbit that ends its process twice is a failed row with th
   INFO(ended.messages << ended.out);
   CHECK(ended.code == 3);
   CHECK_THAT(ended.out, Contains("the process of an orbit ended"));
-  const TableRows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
+  const Rows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
   REQUIRE(before.size() == after.size());
   std::size_t failed = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -113,7 +113,7 @@ TEST_CASE("workers: a call that never returns costs its case the budget, in a wo
   const Ended ended = run(scratch, study, "out", "--isolate --plugin '" RICOCHET_STUMBLING "'");
   INFO(ended.messages);
   CHECK(ended.code == 3);
-  const TableRows rows = rows_of(scratch / "out/cases.csv");
+  const Rows rows = rows_of(scratch / "out/cases.csv");
   REQUIRE(rows.size() == 1);
   CHECK_THAT(rows[0].at("reason"), Contains("did not return from solve() within the budget of 1 s"));
 }
@@ -181,7 +181,7 @@ TEST_CASE("workers: one that a stranger kills costs nothing but time") {
     const std::vector<pid_t> children = running.children();
     if (!children.empty()) ::kill(children[static_cast<std::size_t>(moment) % children.size()], SIGKILL);
     CHECK(running.finish() == 0);
-    check_same_tables(scratch / "threads", scratch / out);
+    check_same(scratch / "threads", scratch / out);
   }
 }
 
@@ -209,7 +209,7 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   const Ended again = run(scratch, study, "out", "--isolate");
   INFO(again.messages);
   CHECK(again.code == 0);
-  check_same_tables(scratch / "threads", scratch / "out");
+  check_same(scratch / "threads", scratch / "out");
   // And threads go on from where workers were.
   const Ended kept = run(scratch, study, "out", "");
   CHECK_THAT(kept.messages, Contains("0 to run"));
