@@ -1,6 +1,9 @@
 // Marching of sets of orbits: what they are does not depend on how they were marched.
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "runners/kinds/sweep/orbit_bytes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -163,6 +166,52 @@ TEST_CASE("orbits do not depend on threads nor on lanes") {
   CHECK(difference(marched(sweep, 1, 8), reference) == "");
   CHECK(difference(marched(sweep, 2, 8), reference) == "");
   CHECK(difference(marched(sweep, 3, 2), reference) == "");
+}
+
+TEST_CASE("seats: no more are taken than there are, but by cases, for which others give way") {
+  ThreadSeats seats(2);
+  CHECK(seats.take());
+  CHECK(seats.take());
+  CHECK_FALSE(seats.take());
+  CHECK_FALSE(seats.give_way());
+  {
+    const ThreadSeats::Seat of_a_case(seats);
+    CHECK(seats.free() == 0);
+    CHECK(seats.give_way());
+    CHECK_FALSE(seats.give_way());
+  }
+  CHECK(seats.free() == 1);
+  seats.leave();
+  CHECK(seats.free() == 2);
+}
+
+TEST_CASE("orbits do not depend on threads that come and go with the cases beside theirs") {
+  const Sweep sweep(beam_sweep({0.05, 0.06, 0.07, 0.076, 0.078, 0.08, 0.082, 0.085, 0.087, 0.09, 0.095}));
+  const auto reference = marched(sweep, 1, 8);
+  ScheduleOptions options = sweep.options;
+  ThreadSeats seats(3);
+  const ThreadSeats::Seat seat(seats);
+  options.seats = &seats;
+  OrbitScheduler scheduler(sweep.scenes, options);
+  add_all(scheduler, sweep);
+  const std::atomic<bool> stop = false;
+  // Two cases beside it, which begin and end all the time.
+  std::atomic<bool> over = false;
+  std::thread others([&] {
+    while (!over) {
+      const ThreadSeats::Seat one(seats), other(seats);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      seats.leave();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      seats.sit();
+    }
+  });
+  scheduler.run(stop, nowhere);
+  over = true;
+  others.join();
+  CHECK(difference(bits(scheduler), reference) == "");
+  // All that joined have left.
+  CHECK(seats.free() == 2);
 }
 
 TEST_CASE("a sweep that is stopped at any moment goes on with the same bits") {
