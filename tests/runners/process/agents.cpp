@@ -169,7 +169,7 @@ TEST_CASE("agents: the same rows in thousands of orders of what is said, workers
   }
 }
 
-TEST_CASE("agents: machines that vanish cost time; what those say that come back late counts for nothing") {
+TEST_CASE("agents: machines that vanish cost time, what those say that come back late counts for nothing") {
   constexpr double silence = 0.04;
   constexpr std::uint32_t orders = 300;
   int lost = 0;
