@@ -274,7 +274,8 @@ class IsolatedCases::Desk {
     Reply reply;
     std::optional<GivenUp> given_up;
     std::optional<Clock::time_point> told_to_stop;
-    Clock::time_point heard = Clock::now();
+    Clock::time_point looked = Clock::now();
+    double quiet = 0;  // s, of those in which this process was not stopped itself
     bool silent = false;
     Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
@@ -284,12 +285,14 @@ class IsolatedCases::Desk {
         worker.send({Word::stop});
       }
       if (told_to_stop && since(*told_to_stop) > patience) worker.kill();
+      quiet += std::min(since(looked), 2 * look_up);
+      looked = Clock::now();
       if (state == Channel::Heard::silence) {
-        silent = since(heard) > longest_silence;
+        silent = quiet > longest_silence;
         if (silent) worker.kill();
       }
       if (state != Channel::Heard::message) continue;
-      heard = Clock::now();
+      quiet = 0;
       try {
         if (reply.message.word == Word::given_up) {
           given_up = message_from<GivenUp>(reply.message.content);

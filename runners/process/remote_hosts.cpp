@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <stdexcept>
 #include <utility>
@@ -121,7 +122,7 @@ class RemoteHosts::Host : public WorkerHost {
 
 RemoteHosts::RemoteHosts(Transport& transport, TellLost lost, double silence)
     : transport_(transport), lost_(std::move(lost)), silence_(silence) {
-  for (int rank = 1; rank < transport.size(); ++rank) ranks_[rank].heard = SteadyClock::now();
+  for (int rank = 1; rank < transport.size(); ++rank) ranks_[rank];
   listener_ = std::thread([this] { listen(); });
 }
 
@@ -153,7 +154,7 @@ void RemoteHosts::hear(Transport::Parcel parcel) {
   if (found == ranks_.end()) return;
   Rank& rank = found->second;
   if (rank.lost) return;  // its work was given to others
-  rank.heard = SteadyClock::now();
+  rank.silent = 0;
   try {
     hear(rank, host_message(parcel.bytes));
   } catch (const std::runtime_error&) {
@@ -180,8 +181,15 @@ void RemoteHosts::hear(Rank& rank, HostMessage said) {
 }
 
 void RemoteHosts::look_for_lost() {
-  for (auto& [number, rank] : ranks_)
-    if (!rank.lost && rank.facts && seconds_since(rank.heard) >= silence_) lose(rank, "does not answer any more");
+  // Between two looks lies one receive(): what lies beyond it passed while this process was stopped, and what others
+  // said meanwhile is still to be heard.
+  const double passed = std::min({seconds_since(looked_), 2 * look_around, silence_ / 4});
+  looked_ = SteadyClock::now();
+  for (auto& [number, rank] : ranks_) {
+    if (rank.lost || !rank.facts) continue;
+    rank.silent += passed;
+    if (rank.silent >= silence_) lose(rank, "does not answer any more");
+  }
 }
 
 void RemoteHosts::lose(Rank& rank, const std::string& why) {

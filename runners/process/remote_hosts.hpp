@@ -18,7 +18,8 @@
 namespace ricochet {
 
 /// The coordinator's side of the agents: a WorkerHost for each of the other ranks. A machine of which nothing is heard
-/// for `silence` seconds, or which says what is no message, is lost, with all its workers, and is not asked again.
+/// for `silence` seconds, those not counted in which this process was stopped itself, or which says what is no message,
+/// is lost, with all its workers, and is not asked again.
 class RemoteHosts {
  public:
   /// Told once of each machine that is lost, and why: "does not answer any more".
@@ -44,7 +45,7 @@ class RemoteHosts {
   struct Inbox;
   struct Rank {
     std::optional<HostFacts> facts;
-    std::chrono::steady_clock::time_point heard;
+    double silent = 0;  ///< s, of the listener's time
     std::atomic<bool> lost{false};
     std::string why;  ///< it is lost
     std::map<std::uint32_t, std::shared_ptr<Inbox>> workers;
@@ -63,6 +64,7 @@ class RemoteHosts {
   std::condition_variable changed_;
   std::map<int, Rank> ranks_;
   std::uint32_t born_ = 0;
+  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
   std::atomic<bool> ending_{false};
   std::thread listener_;
 };

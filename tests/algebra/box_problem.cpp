@@ -428,7 +428,7 @@ TEST_CASE("nearly singular: hundreds of nodes of a cantilever between two stops"
   }
 }
 
-TEST_CASE("the plain active set can cycle; descent does not", "[box]") {
+TEST_CASE("the plain active set can cycle, descent does not", "[box]") {
   // Found by search over small integer matrices: symmetric positive definite, not an M-matrix, stop at zero below.
   struct Case {
     MatrixXd W;

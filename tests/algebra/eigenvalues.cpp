@@ -10,7 +10,7 @@ namespace eigenvalues_tests {
 // What n roundings of a backward-stable method may leave, relative to the matrix.
 constexpr double round_off = 1e-13;
 
-TEST_CASE("symmetric modes satisfy A φ = λ B φ and φᵀBφ = 1, ascending; without vectors the values are the same bits") {
+TEST_CASE("symmetric modes satisfy A φ = λ B φ and φᵀBφ = 1, ascending, without vectors the values are the same bits") {
   std::srand(7);
   const int n = 12;
   const MatrixXd X = MatrixXd::Random(n, n), Y = MatrixXd::Random(n, n);
@@ -31,7 +31,7 @@ TEST_CASE("symmetric modes satisfy A φ = λ B φ and φᵀBφ = 1, ascending; w
   }
 }
 
-TEST_CASE("general modes satisfy A φ = λ φ; the roots of a rotation are a conjugate pair on the unit circle") {
+TEST_CASE("general modes satisfy A φ = λ φ, the roots of a rotation are a conjugate pair on the unit circle") {
   const double turn = 0.3;
   MatrixXd A(2, 2);
   A << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);

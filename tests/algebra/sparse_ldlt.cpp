@@ -157,7 +157,7 @@ TEST_CASE("an ill-conditioned system is still solved backward stably", "[sparse-
   CHECK((A * x - b).cwiseAbs().maxCoeff() <= 10 * 5 * 16 * epsilon * x.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("only the upper triangle is read; uncompressed input is taken", "[sparse-ldlt]") {
+TEST_CASE("only the upper triangle is read, uncompressed input is taken", "[sparse-ldlt]") {
   Random random(4);
   const MatrixXd A = random.spd(30, 4);
   Sparse upper = sparse(A.triangularView<Eigen::Upper>());
@@ -183,7 +183,7 @@ TEST_CASE("the solution may overwrite the right-hand side", "[sparse-ldlt]") {
   CHECK(in_place == x);
 }
 
-TEST_CASE("equal matrices give equal bits; a moved object goes on", "[sparse-ldlt]") {
+TEST_CASE("equal matrices give equal bits, a moved object goes on", "[sparse-ldlt]") {
   Random random(6);
   const Sparse A = sparse(random.spd(80, 5));
   const VectorXd b = random.vector(80);

@@ -51,7 +51,7 @@ TEST_CASE("check: a crash, an exit and a loop without end are failures with a ca
   CHECK(hangs);
 }
 
-TEST_CASE("check: one failing value makes a check fail; refused values count only when nothing else was measured") {
+TEST_CASE("check: one failing value makes a check fail, refused values count only when nothing else was measured") {
   const auto look = [](std::function<Verdict()> take) { return Look{"", std::move(take)}; };
   const auto refused = []() -> Verdict { throw Refused{"beta is too small"}; };
   const Isolation here{.child = false};

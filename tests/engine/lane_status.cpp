@@ -6,7 +6,7 @@
 
 using namespace ricochet;
 
-TEST_CASE("each cause of an end has a sentence of its own; only a step that cannot be made is a failure") {
+TEST_CASE("each cause of an end has a sentence of its own, only a step that cannot be made is a failure") {
   std::set<std::string> sentences;
   for (int k = 0; k <= static_cast<int>(EndCause::process_ended); ++k) {
     const LaneEnd end{static_cast<EndCause>(k), 1, 2, 3, 4};

@@ -29,7 +29,7 @@ Eigen::VectorXd assembled(const LoadSpec& load, const FiniteElementSpace& space,
 
 }  // namespace
 
-TEST_CASE("a force at a node pushes that dof alone; between nodes its work is the force times the displacement there") {
+TEST_CASE("a force at a node pushes that dof alone, between nodes its work is the force times the displacement there") {
   const auto space = make_space(unit_beam().structure, 4);
   const Eigen::VectorXd at_node = assembled(of_terms({force_at(0.75, "-3")}), space, 0);
   for (int i = 0; i < space.dofs; ++i) CHECK(at_node[i] == (i == 4 ? -3 : 0));

@@ -47,7 +47,7 @@ Diagram with_attractors(const std::vector<std::vector<MotionClass>>& classes) {
 
 }  // namespace
 
-TEST_CASE("diagram: runs are found by value and start; values ascend over all cases") {
+TEST_CASE("diagram: runs are found by value and start, values ascend over all cases") {
   Diagram diagram = diagram_of({{once, twice}, {once}});
   CHECK(diagram.value_count() == 2);
   REQUIRE(diagram.run(0, 1, 0));
@@ -72,7 +72,7 @@ TEST_CASE("diagram: the reference is the stiffest, then the finest, of the cases
   CHECK_FALSE(reference_case(diagram_of({{{Regime::undecided}}})));
 }
 
-TEST_CASE("diagram: one attractor is one number over cases and values; agreement counts it") {
+TEST_CASE("diagram: one attractor is one number over cases and values, agreement counts it") {
   const Diagram diagram = with_attractors({{once, once, chaotic}, {once, twice, chaotic}, {once, once, {}}});
   CHECK(diagram.attractors == 3);
   CHECK(diagram.run(0, 0, 0)->attractor == diagram.run(2, 1, 0)->attractor);

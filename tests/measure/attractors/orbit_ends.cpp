@@ -29,7 +29,7 @@ SettledSection noise(std::mt19937& random, double x, Regime regime) {
 
 }  // namespace
 
-TEST_CASE("orbit ends: one orbit, or its mirror image, is one end; another orbit or class is another") {
+TEST_CASE("orbit ends: one orbit, or its mirror image, is one end, another orbit or class is another") {
   OrbitEnds ends;
   CHECK(ends.label(cycle(0.3, 0.7, -0.2, 0.4)) == 0);
   CHECK(ends.label(cycle(0.3 + 0.02, 0.7 - 0.02, -0.2, 0.4)) == 0);  // what a short transient leaves

@@ -106,7 +106,7 @@ TEST_CASE("uncertainty exponent: names, mirrors and cells not known do not matte
 }
 
 TEST_CASE(
-    "uncertainty exponent: nothing for one basin, small grids and unknown ones; refused where labels do not fit") {
+    "uncertainty exponent: nothing for one basin, small grids and unknown ones, refused where labels do not fit") {
   CHECK_FALSE(uncertainty_exponent(std::vector<int>(10000, 4), 100, 100));
   CHECK_FALSE(uncertainty_exponent(std::vector<int>(10000, -1), 100, 100));
   CHECK_FALSE(uncertainty_exponent({1}, 1, 1));

@@ -272,7 +272,7 @@ TEST_CASE("both stops of one point are told apart") {
         run.recorder.count(0));
 }
 
-TEST_CASE("a list that is full ends, and the totals go on; nothing is allocated by a step") {
+TEST_CASE("a list that is full ends, and the totals go on, nothing is allocated by a step") {
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"restitution", 1.0}}}};
   const Recorded all(marcher(bouncing(), 1, methods, 1e-3), 1.5);
   const Recorded cut(marcher(bouncing(), 1, methods, 1e-3), 1.5, 2);

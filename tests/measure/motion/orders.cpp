@@ -195,7 +195,7 @@ TEST_CASE("a range that the finest points leave refutes nothing") {
   CHECK(says(fit, "do not follow"));
 }
 
-TEST_CASE("errors that stop falling are no order; errors that never fall are") {
+TEST_CASE("errors that stop falling are no order, errors that never fall are") {
   // Two points above a plateau that nobody announced.
   const OrderFit plateau = fit_order(errors(8, 2, [](double r) { return std::max(std::pow(r, 4), 2e-6); }), {4});
   CHECK(plateau.verdict == OrderVerdict::undecided);

@@ -62,7 +62,7 @@ TEST_CASE("exponents: a complex pair is half the growth of its plane, steadier t
   CHECK(exponent_intervals(rates, 1)[0].value == Approx(-0.3).epsilon(1e-9));
 }
 
-TEST_CASE("exponents: real multipliers stay apart; a pair may follow one") {
+TEST_CASE("exponents: real multipliers stay apart, a pair may follow one") {
   Rates rates = {steady(0.4, 200)};
   for (auto& column : rates_of_pair(-0.3, 0.7, 200)) rates.push_back(std::move(column));
   const auto found = exponent_intervals(rates, 3);

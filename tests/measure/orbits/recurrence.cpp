@@ -260,7 +260,7 @@ TEST_CASE("settling: agrees with the recurrence of what follows, and a chaotic o
   CHECK(recurrence(after, 2 * tolerance).period == 8);
 }
 
-TEST_CASE("settling: a copy goes on as if it had not stopped; adding allocates nothing") {
+TEST_CASE("settling: a copy goes on as if it had not stopped, adding allocates nothing") {
   Settling whole({1.0, 3.0}, tolerance, 20), parts = whole;
   const auto row = [](int k) { return std::vector<double>{std::pow(0.7, k) + k % 6, 2.0 * (k % 3)}; };
   for (int k = 0; k < 80; ++k) {

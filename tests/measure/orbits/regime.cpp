@@ -140,7 +140,7 @@ TEST_CASE("regime: what repeats is periodic unless an exponent above zero contra
   CHECK(says(arriving, "settles every 2 forcing periods"));
 }
 
-TEST_CASE("regime: exponents decide what does not repeat; the 0–1 test where there is none") {
+TEST_CASE("regime: exponents decide what does not repeat, the 0–1 test where there is none") {
   RegimeInput input = touched();
   input.zero_one = 0.1;
   input.exponent = Interval{0.5, 0.4, 0.6};

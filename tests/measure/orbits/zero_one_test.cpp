@@ -88,7 +88,7 @@ TEST_CASE("0–1 test: the seed decides everything and hardly matters") {
   CHECK(K(series, 7) == Approx(K(series, 8)).margin(0.02));  // medians of two sets of 100 frequencies
 }
 
-TEST_CASE("0–1 test: a constant series is regular; short and broken ones have no answer") {
+TEST_CASE("0–1 test: a constant series is regular, short and broken ones have no answer") {
   CHECK(K(std::vector<double>(100, 0.3)) == 0);
   CHECK(K(std::vector<double>(100, 0.0)) == 0);
   CHECK(K(sampled(100, [](int k) { return 0.3 + 1e-16 * (k % 3); })) == 0);

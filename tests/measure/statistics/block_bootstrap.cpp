@@ -94,7 +94,7 @@ TEST_CASE("bootstrap: wider for more confidence, narrower with more readings, mo
   CHECK(mirrored.high == Approx(5 - 1e3 * one.low).epsilon(1e-9));
 }
 
-TEST_CASE("bootstrap: the seed decides everything; constants have no width; what it cannot do it refuses") {
+TEST_CASE("bootstrap: the seed decides everything, constants have no width, what it cannot do it refuses") {
   std::mt19937_64 random(4);
   const auto series = autoregressive(random, 0.5, 300);
   const Interval a = block_bootstrap_mean(series, 0.95, 1000, 3), b = block_bootstrap_mean(series, 0.95, 1000, 3);

@@ -277,7 +277,7 @@ TEST_CASE("cells that no factor tells apart are repeats") {
   CHECK(notes_say(e, "repeats"));
 }
 
-TEST_CASE("a parameter of some methods joins its method; one of all stays apart") {
+TEST_CASE("a parameter of some methods joins its method, one of all stays apart") {
   const std::vector<std::string> columns = {"mass", "mass.velocity", "time", "time.beta", "time.start", "step"};
   std::vector<std::vector<std::string>> cells;
   for (const auto& [mass, velocity] :

@@ -9,7 +9,7 @@ TEST_CASE("consistent: symmetric, positive definite") {
   for (int elements : {1, 2, 17}) check_inertia(*mass("consistent"), elements, 0);
 }
 
-TEST_CASE("consistent: the textbook element, ρSℓ/420 [156, 22ℓ, 54, −13ℓ; …]") {
+TEST_CASE("consistent: the textbook element, ρSℓ/420 [156, 22ℓ, 54, −13ℓ, …]") {
   const auto space = make_space(unit_beam().structure, 1);
   const Eigen::MatrixXd M = built(*mass("consistent"), space).mass;
   Eigen::Matrix2d expected;
@@ -61,7 +61,7 @@ TEST_CASE("consistent: point masses are added, and dofs without inertia are coun
   CHECK(built(*mass("consistent"), oscillator_space(0)).kernel_dimension == 1);
 }
 
-TEST_CASE("consistent: linear elements, ℓ/6 [2, 1; 1, 2]") {
+TEST_CASE("consistent: linear elements, ℓ/6 [2 1, 1 2]") {
   const Eigen::MatrixXd M = built(*mass("consistent"), bar_space(3)).mass;
   Eigen::Matrix3d expected;
   expected << 2, 1, 0, 1, 4, 1, 0, 1, 4;

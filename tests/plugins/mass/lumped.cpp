@@ -9,7 +9,7 @@ std::unique_ptr<MassStrategy> without_rotations() {
 }
 }  // namespace
 
-TEST_CASE("lumped: symmetric, positive; without rotations semidefinite, their number in the kernel") {
+TEST_CASE("lumped: symmetric, positive, without rotations semidefinite, their number in the kernel") {
   for (int elements : {1, 2, 17}) {
     check_inertia(*mass("lumped"), elements, 0);
     check_inertia(*without_rotations(), elements, elements);

@@ -32,7 +32,7 @@ SceneSpec stopped_beam() {
 
 }  // namespace
 
-TEST_CASE("redistributed: the free end has no mass; total mass and centre of gravity are the lumped ones") {
+TEST_CASE("redistributed: the free end has no mass, total mass and centre of gravity are the lumped ones") {
   for (const auto fixed : {BarSpec::Fixed::right, BarSpec::Fixed::left, BarSpec::Fixed::none}) {
     const FiniteElementSpace space = bar(fixed, 7);
     const Inertia moved = built(*mass("redistributed"), space), lumped = built(*mass("lumped"), space);

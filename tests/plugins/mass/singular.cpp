@@ -20,7 +20,7 @@ TEST_CASE("singular: symmetric, positive semidefinite, one kernel dimension per 
   }
 }
 
-TEST_CASE("singular: P1 comes in factors, banded node by node; P0 assembled, as sparse as K") {
+TEST_CASE("singular: P1 comes in factors, banded node by node, P0 assembled, as sparse as K") {
   const auto space = make_space(working_set().structure, 9);
   const auto p1 = built(*singular("P1"), space), p0 = built(*singular("P0"), space);
   REQUIRE(p1.factored());

@@ -101,17 +101,17 @@ TEST_CASE("kills: a worker, here or with another rank, costs nothing but time") 
   kill_at_random([](const UnderWay& run) { return run.below("ricochet worker"); }, true);
 }
 
-TEST_CASE("kills: an agent ends the run under mpirun; the next one goes on") {
+TEST_CASE("kills: an agent ends the run under mpirun, the next one goes on") {
   if (without_mpi()) return;
   kill_at_random([](const UnderWay& run) { return ranks_below(run, -1); }, false);
 }
 
-TEST_CASE("kills: rank 0 ends the run; the next one goes on") {
+TEST_CASE("kills: rank 0 ends the run, the next one goes on") {
   if (without_mpi()) return;
   kill_at_random([](const UnderWay& run) { return ranks_below(run, 0); }, false);
 }
 
-TEST_CASE("kills: of two starts of one job on one folder the later one has it; the earlier one ends with 5") {
+TEST_CASE("kills: of two starts of one job on one folder the later one has it, the earlier one ends with 5") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
   const Json study = quick_studies::longer();

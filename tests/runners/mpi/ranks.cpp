@@ -42,7 +42,7 @@ TEST_CASE("ranks: every kind of study has on one and on three ranks the tables t
   }
 }
 
-TEST_CASE("ranks: what is wrong is said once, by rank 0, with the exit code of the command; nothing is written") {
+TEST_CASE("ranks: what is wrong is said once, by rank 0, with the exit code of the command, nothing is written") {
   if (without_mpi()) return;
   const ScratchFolder scratch;
   Json wrong = study_of("trajectory");

@@ -83,7 +83,7 @@ void goes_on(const Cluster& cluster, const std::string& job) {
 }  // namespace
 
 TEST_CASE(
-    "slurm: ranks that srun starts on two nodes make the tables that threads make; its exit code is the command's") {
+    "slurm: ranks that srun starts on two nodes make the tables that threads make, its exit code is the command's") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
   const std::string srun = "srun --mpi=pmix --kill-on-bad-exit=1 -N2 -n2 ";

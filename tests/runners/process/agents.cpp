@@ -169,7 +169,7 @@ TEST_CASE("agents: the same rows in thousands of orders of what is said, workers
   }
 }
 
-TEST_CASE("agents: machines that vanish cost time; what those say that come back late counts for nothing") {
+TEST_CASE("agents: machines that vanish cost time, what those say that come back late counts for nothing") {
   constexpr double silence = 0.04;
   constexpr std::uint32_t orders = 300;
   int lost = 0;
@@ -189,6 +189,29 @@ TEST_CASE("agents: machines that vanish cost time; what those say that come back
     check_all(study, kept);
   }
   CHECK(lost > static_cast<int>(orders) / 4);
+}
+
+TEST_CASE("agents: a coordinator that was stopped for a while takes nobody for lost") {
+  const Study study = study_of(1);
+  constexpr double silence = 0.5;
+  constexpr std::uint32_t orders = 10;
+  for (std::uint32_t seed = 0; seed < orders; ++seed) {
+    CAPTURE(seed);
+    ScriptedWorld world;
+    prepare(world, study, seed, none);
+    ScriptedNetwork network(world, seed, std::vector<Fate>(3), silence / 10);
+    network.stop_rank_0(static_cast<int>(10 + seed), 2 * silence);
+    Kept kept;
+    std::atomic<bool> stop{false};
+    std::atomic<int> lost{0};
+    RemoteHosts remote(
+        network, [&](const HostFacts&, const std::string&) { ++lost; }, silence);
+    std::vector<std::shared_ptr<WorkerHost>> hosts = {std::make_shared<ScriptedHost>(world, 1)};
+    for (const HostFacts& one : remote.facts()) hosts.push_back(remote.host(one.rank, 1, 0));
+    run_missing(study, hosts, kept, stop);
+    check_all(study, kept);
+    CHECK(lost == 0);
+  }
 }
 
 TEST_CASE("agents: one whose messages are cut or nonsense costs at most its machine") {

@@ -1,5 +1,6 @@
 #include "tests/runners/process/scripted_network.hpp"
 
+#include <thread>
 #include <utility>
 
 namespace ricochet::tests {
@@ -38,6 +39,7 @@ std::optional<Transport::Parcel> ScriptedNetwork::receive(double) {
   // Nobody moves while nobody listens: a look now and then is soon enough.
   constexpr auto look_up = std::chrono::milliseconds(2);
   std::unique_lock lock(mutex_);
+  if (stop_after_ >= 0 && stop_after_-- == 0) std::this_thread::sleep_for(std::chrono::duration<double>(stop_seconds_));
   for (;;) {
     look_at_the_clock();
     std::vector<std::pair<std::size_t, bool>> moves;  // of which agent; whether it hears, or is heard

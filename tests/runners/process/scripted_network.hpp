@@ -30,6 +30,12 @@ class ScriptedNetwork : public Transport {
   /// A rank for each of the fates. `alive_every`: s.
   ScriptedNetwork(ScriptedWorld& world, std::uint32_t seed, std::vector<Fate> fates, double alive_every);
 
+  /// Rank 0 hears nothing for so many s, once, after so many parcels, as if it had been stopped; the others go on.
+  void stop_rank_0(int after, double seconds) {
+    stop_after_ = after;
+    stop_seconds_ = seconds;
+  }
+
   int rank() const override { return 0; }
   int size() const override { return static_cast<int>(agents_.size()) + 1; }
   void send(int to, std::string bytes) override;
@@ -62,6 +68,8 @@ class ScriptedNetwork : public Transport {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::mt19937 luck_;
+  int stop_after_ = -1;
+  double stop_seconds_ = 0;
   std::deque<Agent> agents_;  // of rank 1, 2, …
 };
 

@@ -54,7 +54,7 @@ TEST_CASE("stops stand where they are, each with its gap", "[report]") {
   CHECK(count(report::scene_svg(one_sided), "class=\"stop\"") == count(svg, "class=\"stop\"") / 2);
 }
 
-TEST_CASE("every structure is drawn; a study without a scene has no sketch", "[report]") {
+TEST_CASE("every structure is drawn, a study without a scene has no sketch", "[report]") {
   const Scene oscillator = Scene::parse(R"({"scene": {"structure": {"type": "oscillator", "mass": 2, "stiffness": 3,
     "force": {"amplitude": 1, "pulsation": 2.2}}, "stops": {"upper": 0.1, "at": "tip"}},
     "parameter": {"pointer": "/scene/structure/force/amplitude", "from": 0.2, "to": 1.2, "count": 6}})");

@@ -86,7 +86,7 @@ TEST_CASE("allowed processors: the quota of a control group and of those above i
   }
 }
 
-TEST_CASE("allowed processors: what Slurm allocated, the lesser of task and node; nonsense is not guessed at") {
+TEST_CASE("allowed processors: what Slurm allocated, the lesser of task and node, nonsense is not guessed at") {
   const ScratchFolder nothing;
   const Variable node("SLURM_CPUS_ON_NODE", "100000");
   {

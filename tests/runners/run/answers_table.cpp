@@ -107,7 +107,7 @@ TEST_CASE("two levels have no share, nor does what round-off explains") {
   CHECK(shares(study([](int, int, double step) { return 0.5 + 1e-10 * step; })).empty());
 }
 
-TEST_CASE("cases that gave no result are told by what sets them apart; where all are done nothing is said of it") {
+TEST_CASE("cases that gave no result are told by what sets them apart, where all are done nothing is said of it") {
   StudyResults results = study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; });
   CHECK(said(answers_table(results)).find("iverged") == std::string::npos);
   for (CaseRecord& record : results.cases)
@@ -125,7 +125,7 @@ TEST_CASE("cases that gave no result are told by what sets them apart; where all
   CHECK_THAT(said(answers_table(results)), Catch::Contains("Why: no impact measure (2); no step (1).\n"));
 }
 
-TEST_CASE("what is told from step and mesh, and below 1 %, is small and not nothing; its spread has no shares") {
+TEST_CASE("what is told from step and mesh, and below 1 %, is small and not nothing, its spread has no shares") {
   const StudyResults results = study([](int mass, int, double step) { return 0.5 + 0.004 * mass + 2 * step; });
   Table effects = effects_table(results);
   CHECK_FALSE(effects.rows.empty());

@@ -130,7 +130,7 @@ TEST_CASE("Cases go together by their ids, else by their parameters, and never t
   CHECK(found.only_a.size() == 2);
 }
 
-TEST_CASE("A comparison fills a screen at most; its table has a row for everything") {
+TEST_CASE("A comparison fills a screen at most, its table has a row for everything") {
   StudyResults a = study("a"), b = study("b");
   for (int k = 0; k < 40; ++k) {
     b.study["key " + std::to_string(k)] = k;

@@ -4,7 +4,7 @@
 
 using namespace ricochet;
 
-TEST_CASE("reasons: each once, with its cases; nothing is said of what is done or under way") {
+TEST_CASE("reasons: each once, with its cases, nothing is said of what is done or under way") {
   StudyResults results;
   const auto add = [&](const char* id, const char* status, const char* reason) -> CaseRecord& {
     CaseRecord& record = results.cases.emplace_back();

@@ -141,7 +141,7 @@ TEST_CASE("A list in the scene is an axis named by its place") {
   }
 }
 
-TEST_CASE("Positions of stops are one value; words or lists of positions are an axis") {
+TEST_CASE("Positions of stops are one value, words or lists of positions are an axis") {
   const Study one = parse(with("/scene/stops/at", {0.5, 1.5}));
   CHECK(one.cases.size() == 8);
   CHECK(one.cases.front().scene.stops.positions == std::vector<double>{0.5, 1.5});

@@ -112,7 +112,7 @@ TEST_CASE("few cases are told one by one, many by the step from which on they ag
              Contains("Fewer of the 100 classes of a, 4000 steps per period at every step") && Contains(": 40 (c)."));
 }
 
-TEST_CASE("attractors are counted by who shows them; of a single case there is nothing to compare") {
+TEST_CASE("attractors are counted by who shows them, of a single case there is nothing to compare") {
   CHECK_THAT(said(synthetic::dynamics(), "attractors"), Contains("2 attractors were met over all values") &&
                                                             Contains("common to all (1), depends on time.beta (1)"));
   StudyResults alone = agreements({500}, {{"a", {1}}});

@@ -87,7 +87,7 @@ TEST_CASE("A formula is multiplied, a formula without variables is a number") {
   CHECK(twice.scene.load.spread(1, 0.1) == Approx(10 * std::sin(1.0)));
 }
 
-TEST_CASE("A force of a list of loads is a number of the scene; a list of values of a formula is none of objects") {
+TEST_CASE("A force of a list of loads is a number of the scene, a list of values of a formula is none of objects") {
   Json study = small_sweep();
   study["scene"]["load"] = Json::parse(R"load([{"shape": "x", "time": "cos(10*t)"}, {"at": 1, "force": -2}])load");
   study["scene"]["stops"]["lower"] = {-0.1, -0.2};
