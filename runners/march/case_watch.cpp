@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <ctime>
@@ -44,9 +45,8 @@ struct Slot {
   pthread_t thread{};
   const PluginCall* call = nullptr;  // found beforehand: a handler may not be the first to ask for a thread's variable
   TicketPointer ticket, outermost;
-  unsigned asked = 0;
-  std::atomic<unsigned> answered{0};
-  Answer answer;    // the thread's own
+  std::atomic<unsigned> asked{0}, answered{0};
+  Answer answer;    // the thread's own while it owes one
   SeenThread last;  // and what is known of it
   bool known = false;
 };
@@ -61,7 +61,9 @@ constinit thread_local const CaseTicket* my_ticket = nullptr;
 
 extern "C" void on_question(int) {
   Slot* const slot = my_slot;
-  if (!slot) return;
+  // A signal that a stranger sends is no question.
+  if (!slot || slot->asked.load(std::memory_order_acquire) == slot->answered.load(std::memory_order_relaxed)) return;
+  const int error = errno;
   const PluginCall call = *slot->call;
   Answer& answer = slot->answer;
   answer.ticket = my_ticket;
@@ -76,6 +78,7 @@ extern "C" void on_question(int) {
     answer.function.set(call.function);
   }
   slot->answered.fetch_add(1, std::memory_order_release);
+  errno = error;
 }
 
 void listen_to_questions() {
@@ -130,7 +133,7 @@ void leave_thread() {
 }
 
 bool answered(const Slot& slot) {
-  return slot.answered.load(std::memory_order_acquire) == slot.asked;
+  return slot.answered.load(std::memory_order_acquire) == slot.asked.load(std::memory_order_relaxed);
 }
 
 // Takes note of an answer; what was said in an earlier case is none.
@@ -210,7 +213,7 @@ std::vector<SeenThread> look_at_threads() {
     // so loaded that a thread does not come to its turn.
     if (slot.ticket && answered(slot)) {
       note_answer(slot);
-      ++slot.asked;
+      slot.asked.fetch_add(1, std::memory_order_release);
       ::pthread_kill(slot.thread, kAsk);
     }
   const auto late = steady_clock::now() + std::chrono::milliseconds(50);

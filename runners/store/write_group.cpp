@@ -90,7 +90,8 @@ void WriteGroup::commit() {
 void WriteGroup::keep_pace(std::stop_token stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return waiting_; })) {
-    changed_.wait_until(lock, stop, due_, [this] { return !waiting_; });
+    const Clock::time_point due = due_;  // read by the waiting itself, which holds no lock
+    changed_.wait_until(lock, stop, due, [this] { return !waiting_; });
     if (stop.stop_requested()) return;
     if (!waiting_ || Clock::now() < due_) continue;
     try {

@@ -7,6 +7,8 @@ namespace ricochet {
 CaseWorkers::CaseWorkers(ThreadSeats* seats) : seats_(seats), arena_(seats ? seats->count() : 1) {}
 
 void CaseWorkers::work(CaseWorker& worker) {
+  // What the caller wrote is seen by this, and not only by what the library does to start a task.
+  static_cast<void>(at_work_.load(std::memory_order_acquire));
   const CaseScope scope(ticket_);
   const double began = thread_seconds();
   std::exception_ptr thrown;
@@ -24,12 +26,13 @@ double CaseWorkers::run(const std::function<void(CaseWorker&)>& work_of_one) {
   work_ = work_of_one;
   ticket_ = current_ticket();
   seconds_ = 0;
-  at_work_ = 1;
+  at_work_.store(1, std::memory_order_release);
   arena_.execute([&] {
     CaseWorker first;
     work(first);
     group_.wait();
   });
+  const std::lock_guard guard(mutex_);
   if (failure_) std::rethrow_exception(failure_);
   return seconds_;
 }
