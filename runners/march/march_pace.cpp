@@ -58,8 +58,9 @@ double cost_of_held(const std::vector<Part>& parts) {
   const auto u = static_cast<double>(coarse.visited), g = static_cast<double>(coarse.held);
   const double determinant = u * h - v * g;
   const double found = determinant != 0 ? (u * fine.seconds - v * coarse.seconds) / determinant : 0;
-  constexpr double large = 0.3;
-  return found * h > large * fine.seconds && found * h <= fine.seconds ? found : unseen;
+  constexpr double large = 0.3, noise = 1.2;
+  if (found * h <= large * fine.seconds || found * h > noise * fine.seconds) return unseen;
+  return std::min(found, fine.seconds / h);
 }
 
 class Pace {
