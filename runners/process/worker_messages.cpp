@@ -56,6 +56,16 @@ void serialize(Archive& archive, Table& table) {
 }
 
 template <class Archive>
+void save(Archive& archive, const Series& series) {
+  archive(series.get());
+}
+
+template <class Archive>
+void load(Archive& archive, Series& series) {
+  archive(series.own());
+}
+
+template <class Archive>
 void serialize(Archive& archive, NumberTable& table) {
   archive(table.name, table.columns, table.values, table.words, table.exported, table.text);
 }

@@ -1,5 +1,6 @@
 #include "runners/run/curve_outputs.hpp"
 
+#include <memory>
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
@@ -7,7 +8,6 @@
 #include "runners/store/curve_files.hpp"
 #include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/store/store_reader.hpp"
 #include "runners/table/csv_text.hpp"
 
 namespace ricochet {
@@ -16,17 +16,18 @@ namespace {
 /// The rows of one curve under these columns, the first of which is `case`.
 std::string curve_rows(const std::string& id, const Curve& curve, const std::vector<Column>& columns) {
   std::size_t samples = 0;
-  for (const auto& column : curve.columns) samples = std::max(samples, column.size());
-  std::vector<const std::vector<double>*> sources;
+  for (const Series& column : curve.columns) samples = std::max(samples, column.size());
+  std::vector<std::shared_ptr<const std::vector<double>>> sources;
   for (std::size_t c = 1; c < columns.size(); ++c) {
     const auto found = std::find(curve.names.begin(), curve.names.end(), columns[c].name);
-    sources.push_back(
-        found == curve.names.end() ? nullptr : &curve.columns[static_cast<std::size_t>(found - curve.names.begin())]);
+    sources.push_back(found == curve.names.end()
+                          ? nullptr
+                          : curve.columns[static_cast<std::size_t>(found - curve.names.begin())].share());
   }
   std::string text;
   for (std::size_t i = 0; i < samples; ++i) {
     text += id;
-    for (const std::vector<double>* source : sources) {
+    for (const auto& source : sources) {
       text += ',';
       if (source && i < source->size()) append_csv_number((*source)[i], text);
     }
@@ -88,15 +89,13 @@ Table curves_head(const StudyResults& results) {
   return curves;
 }
 
-Table write_curve_table(const std::filesystem::path& folder, const StudyResults& results,
-                        const std::filesystem::path& source) {
+Table write_curve_table(const std::filesystem::path& folder, const StudyResults& results) {
   Table curves = curves_head(results);
   curves.columns.insert(curves.columns.begin(), case_column());
   FileWriter file(folder / "curves.csv");
   file.write(csv_line(csv_head(curves.columns)));
-  const StoreReader store(source);
   for (const CaseRecord& record : results.cases)
-    if (!record.curve.names.empty()) file.write(curve_rows(record.id, store.curve(record.id), curves.columns));
+    if (!record.curve.names.empty()) file.write(curve_rows(record.id, record.curve, curves.columns));
   file.commit();
   return curves;
 }

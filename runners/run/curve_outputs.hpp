@@ -17,11 +17,9 @@ void write_curve_files(const std::filesystem::path& folder, const StudyResults& 
 /// `curves` without rows, with the columns that any of these cases has.
 Table curves_head(const StudyResults& results);
 
-/// curves.csv in `folder`: `case`, then the columns of `curves`, one curve below the other, in the study's order. Only
-/// the names of the results' curves are looked at: each curve is read from the store in `source` when it is written.
+/// curves.csv in `folder`: `case`, then the columns of `curves`, one curve below the other, in the study's order.
 /// Returns the table without rows. Throws StoreError.
-Table write_curve_table(const std::filesystem::path& folder, const StudyResults& results,
-                        const std::filesystem::path& source);
+Table write_curve_table(const std::filesystem::path& folder, const StudyResults& results);
 
 /// Takes away what either of these wrote.
 void remove_curve_files(const std::filesystem::path& folder);

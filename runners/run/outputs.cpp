@@ -117,16 +117,14 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   write_file(folder / "report.html", render(results));
 }
 
-void write_tables(const std::filesystem::path& folder, const StudyResults& results,
-                  const std::filesystem::path& curves_of) {
+void write_tables(const std::filesystem::path& folder, const StudyResults& results, bool one_file) {
   refuse_foreign_tables(folder, results);
   make_folder(folder);
   write_study(folder, results);
-  const bool one_file = !curves_of.empty();
   Table curves;
   if (one_file) {
     remove_curve_files(folder);
-    curves = write_curve_table(folder, results, curves_of);
+    curves = write_curve_table(folder, results);
   } else {
     remove_curve_table(folder);
     write_curve_files(folder, results, nullptr);

@@ -19,9 +19,8 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
                    const std::set<std::string>* changed = nullptr);
 
 /// Writes study.json and the tables as CSV: cases, the derived ones, those of numbers, curves/ID, measures (what each
-/// means), left_out, notes, environment, dictionary. `curves_of`: the folder from whose store the curves are read, into
-/// one curves.csv in place of curves/ID. Throws StoreError, also for a folder with tables of another study.
-void write_tables(const std::filesystem::path& folder, const StudyResults& results,
-                  const std::filesystem::path& curves_of = {});
+/// means), left_out, notes, environment, dictionary. `one_file`: all curves in one curves.csv in place of curves/ID.
+/// Throws StoreError, also for a folder with tables of another study.
+void write_tables(const std::filesystem::path& folder, const StudyResults& results, bool one_file = false);
 
 }  // namespace ricochet

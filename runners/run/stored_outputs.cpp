@@ -40,8 +40,8 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
 
 int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file) {
   return unless_unusable([&] {
-    const StudyResults results = with_tables(read_store(folder, one_file ? Curves::names : Curves::whole));
-    write_tables(to, results, one_file ? folder : std::filesystem::path());
+    const StudyResults results = with_tables(read_store(folder));
+    write_tables(to, results, one_file);
     say(stdout, fmt::format("tables: {}\n", to.string()));
     if (!one_file && !has_curve_files(results))
       say(stdout,

@@ -23,9 +23,10 @@ void bind_series(SQLite::Statement& statement, int index, const double* first, s
 void insert_numbers(SQLite::Statement& add, const std::string& case_id, int& position, const NumberTable& table) {
   using Json = nlohmann::ordered_json;
   // SQLite holds no more than a billion bytes in one place.
-  constexpr std::size_t piece = std::size_t{1} << 20;  // rows
+  constexpr std::size_t piece = numbers_in_piece;
   for (std::size_t first = 0; first == 0 || first < table.rows(); first += piece, ++position)
     for (std::size_t c = 0; c < table.values.size(); ++c) {
+      const std::vector<double>& values = table.values[c];
       const std::string& column = table.columns.at(c).name;
       add.reset();
       add.bind(1, case_id);
@@ -37,7 +38,7 @@ void insert_numbers(SQLite::Statement& add, const std::string& case_id, int& pos
       add.bind(7);
       if (const auto* words = table.words_of(column))
         add.bind(7, Json(*words).dump(-1, ' ', false, Json::error_handler_t::replace));
-      bind_series(add, 8, table.values[c].data() + first, std::min(piece, table.values[c].size() - first));
+      bind_series(add, 8, values.data() + first, std::min(piece, values.size() - first));
       add.exec();
     }
 }

@@ -13,6 +13,9 @@ namespace ricochet {
 /// Binds numbers as a blob of little-endian doubles; they stay where they are until the statement has run.
 void bind_series(SQLite::Statement& statement, int index, const double* first, std::size_t count);
 
+/// Rows of a table of numbers that lie in one place.
+inline constexpr std::size_t numbers_in_piece = std::size_t{1} << 20;
+
 /// Adds a table of numbers to the rows of a case, as its `position`th, by this statement; inside a transaction.
 inline constexpr const char* insert_numbers_sql = "INSERT INTO case_numbers VALUES(?, ?, ?, ?, ?, ?, ?, ?)";
 void insert_numbers(SQLite::Statement& add, const std::string& case_id, int& position, const NumberTable& table);

@@ -5,7 +5,6 @@
 #include <SQLiteCpp/Transaction.h>
 #include <fmt/format.h>
 
-#include <cstring>
 #include <map>
 
 #include "runners/store/arithmetics.hpp"
@@ -13,17 +12,12 @@
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
+#include "runners/store/stored_series.hpp"
 
 namespace ricochet {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::vector<double> series(const SQLite::Column& column) {
-  std::vector<double> values(static_cast<std::size_t>(column.getBytes()) / sizeof(double));
-  if (!values.empty()) std::memcpy(values.data(), column.getBlob(), values.size() * sizeof(double));
-  return values;
-}
 
 /// Calls `row(record, statement)` for each row of these columns of `table`, in the order of `order`: of all cases, or
 /// of the only one.
@@ -80,16 +74,64 @@ CaseRecord case_of(SQLite::Statement& row) {
   return record;
 }
 
-void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
-  per_case(database, cases, curves == Curves::whole ? "name, series" : "name, x''", "curves", "position",
-           [](CaseRecord& record, SQLite::Statement& row) {
-             record.curve.names.push_back(row.getColumn(1).getString());
-             record.curve.columns.push_back(series(row.getColumn(2)));
+Series series_of(SQLite::Database& database, const CaseRecord& record, std::vector<StoredPiece> pieces,
+                 StoredSeries* later) {
+  if (later && !record.partial) return later->series(std::move(pieces));
+  std::vector<double> values;
+  for (const StoredPiece& piece : pieces) {
+    const std::vector<double> more = read_piece(database, piece);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  return values;
+}
+
+std::size_t count_of_numbers(const SQLite::Column& bytes) {
+  return static_cast<std::size_t>(bytes.getInt64()) / sizeof(double);
+}
+
+void read_curves(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
+  per_case(database, cases, "position, name, length(series)", "curves", "position",
+           [&](CaseRecord& record, SQLite::Statement& row) {
+             record.curve.names.push_back(row.getColumn(2).getString());
+             record.curve.columns.push_back(series_of(database, record,
+                                                      {{StoredPiece::Of::curves, record.id, row.getColumn(1).getInt(),
+                                                        0, count_of_numbers(row.getColumn(3))}},
+                                                      later));
            });
 }
 
+void read_numbers(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
+  std::map<CaseRecord*, std::vector<std::vector<std::vector<StoredPiece>>>> pieces;  // of each table, of each column
+  per_case(database, cases, "position, part, name, exported, column_name, words, length(series)", "case_numbers",
+           "position, part", [&](CaseRecord& record, SQLite::Statement& row) {
+             auto& tables = pieces[&record];
+             const auto part = static_cast<std::size_t>(row.getColumn(2).getInt());
+             const std::string name = row.getColumn(3).getString();
+             if (part == 0 && (record.numbers.empty() || record.numbers.back().name != name)) {
+               NumberTable& first = record.numbers.emplace_back();
+               first.name = name;
+               first.exported = row.getColumn(4).getInt() != 0;
+               tables.emplace_back();
+             }
+             NumberTable& table = record.numbers.back();
+             if (part == table.columns.size()) {
+               tables.back().emplace_back();
+               table.columns.push_back({row.getColumn(5).getString(), "", ""});
+               if (!row.getColumn(6).isNull())
+                 table.words.emplace_back(table.columns.back().name,
+                                          Json::parse(row.getColumn(6).getString()).get<std::vector<std::string>>());
+             }
+             tables.back()[part].push_back({StoredPiece::Of::case_numbers, record.id, row.getColumn(1).getInt(),
+                                            static_cast<int>(part), count_of_numbers(row.getColumn(7))});
+           });
+  for (auto& [record, tables] : pieces)
+    for (std::size_t t = 0; t < tables.size(); ++t)
+      for (std::vector<StoredPiece>& column : tables[t])
+        record->numbers[t].values.push_back(series_of(database, *record, std::move(column), later));
+}
+
 /// Reads what belongs to these cases.
-void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, Curves curves) {
+void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& cases, StoredSeries* later) {
   using Statement = SQLite::Statement;
   per_case(database, cases, "name, value", "axes", "position", [](CaseRecord& record, Statement& row) {
     record.axes.emplace_back(row.getColumn(1).getString(), Json::parse(row.getColumn(2).getString()));
@@ -102,7 +144,7 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
   });
   per_case(database, cases, "note", "notes", "position",
            [](CaseRecord& record, Statement& row) { record.notes.push_back(row.getColumn(1).getString()); });
-  read_curves(database, cases, curves);
+  read_curves(database, cases, later);
   per_case(database, cases, "name, content", "case_tables", "position", [](CaseRecord& record, Statement& row) {
     // What the columns mean is not stored: the kind of study declares it.
     const Json content = Json::parse(row.getColumn(2).getString());
@@ -118,28 +160,7 @@ void read_rows(SQLite::Database& database, std::map<std::string, CaseRecord*>& c
       for (const Json& cell : cells) one.push_back(cell_of(cell));
     }
   });
-
-  per_case(database, cases, "part, name, exported, column_name, words, series", "case_numbers", "position, part",
-           [](CaseRecord& record, Statement& row) {
-             const auto part = static_cast<std::size_t>(row.getColumn(1).getInt());
-             const std::string name = row.getColumn(2).getString();
-             if (part == 0 && (record.numbers.empty() || record.numbers.back().name != name)) {
-               NumberTable& first = record.numbers.emplace_back();
-               first.name = name;
-               first.exported = row.getColumn(3).getInt() != 0;
-             }
-             NumberTable& table = record.numbers.back();
-             if (part < table.values.size()) {
-               const std::vector<double> more = series(row.getColumn(6));
-               table.values[part].insert(table.values[part].end(), more.begin(), more.end());
-               return;
-             }
-             table.columns.push_back({row.getColumn(4).getString(), "", ""});
-             if (!row.getColumn(5).isNull())
-               table.words.emplace_back(table.columns.back().name,
-                                        Json::parse(row.getColumn(5).getString()).get<std::vector<std::string>>());
-             table.values.push_back(series(row.getColumn(6)));
-           });
+  read_numbers(database, cases, later);
 }
 
 }  // namespace
@@ -160,7 +181,7 @@ Environment read_environment(SQLite::Database& database) {
   return environment;
 }
 
-StudyResults read_tables(SQLite::Database& database, Curves curves) {
+StudyResults read_tables(SQLite::Database& database) {
   StudyResults results;
   SQLite::Transaction transaction(database);
   read_study(database, results);
@@ -168,7 +189,8 @@ StudyResults read_tables(SQLite::Database& database, Curves curves) {
   while (rows.executeStep()) results.cases.push_back(case_of(rows));
   std::map<std::string, CaseRecord*> cases;
   for (CaseRecord& record : results.cases) cases[record.id] = &record;
-  if (!cases.empty()) read_rows(database, cases, curves);
+  const auto later = std::make_shared<StoredSeries>(database.getFilename());
+  if (!cases.empty()) read_rows(database, cases, later.get());
   results.environment = read_environment(database);
   tell_arithmetics(results);
   return results;
@@ -187,15 +209,8 @@ std::optional<CaseRecord> read_case(SQLite::Database& database, const std::strin
   if (!row.executeStep()) return std::nullopt;
   CaseRecord record = case_of(row);
   std::map<std::string, CaseRecord*> only = {{id, &record}};
-  read_rows(database, only, Curves::whole);
+  read_rows(database, only, nullptr);
   return record;
-}
-
-Curve read_curve(SQLite::Database& database, const std::string& id) {
-  CaseRecord record;
-  std::map<std::string, CaseRecord*> only = {{id, &record}};
-  read_curves(database, only, Curves::whole);
-  return std::move(record.curve);
 }
 
 std::string find_motion(SQLite::Database& database, const std::string& whole_key) {
@@ -227,9 +242,9 @@ void with_store(const std::filesystem::path& folder, const std::function<void(SQ
   guarded(folder / "results.sqlite", database.get(), [&] { use(*database); });
 }
 
-StudyResults read_store(const std::filesystem::path& folder, Curves curves) {
+StudyResults read_store(const std::filesystem::path& folder) {
   StudyResults results;
-  with_store(folder, [&](SQLite::Database& database) { results = read_tables(database, curves); });
+  with_store(folder, [&](SQLite::Database& database) { results = read_tables(database); });
   return results;
 }
 

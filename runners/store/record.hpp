@@ -13,7 +13,7 @@ namespace ricochet {
 /// Sampled series of one case: columns of equal length, in the order of `names` (design §5).
 struct Curve {
   std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
+  std::vector<Series> columns;
 };
 
 /// What one case left behind: a row of cases.csv, and its curve.

@@ -19,7 +19,7 @@ std::vector<Column> measure_columns(const StudyResults& results) {
 
 /// A column of a table of numbers as it is written: none (the table has no such column), numbers, or words.
 struct Source {
-  const std::vector<double>* values = nullptr;
+  std::shared_ptr<const std::vector<double>> values;
   bool worded = false;
   std::vector<std::string> words;  // quoted
 };
@@ -28,7 +28,7 @@ std::vector<Source> sources_of(const NumberTable& table, const std::vector<Colum
   std::vector<Source> sources;
   for (const Column& column : columns) {
     Source& source = sources.emplace_back();
-    source.values = table.numbers(column.name);
+    if (const Series* series = table.series(column.name)) source.values = series->share();
     const auto* words = table.words_of(column.name);
     if (!words) continue;
     source.worded = true;
@@ -91,10 +91,14 @@ std::string curve_csv(const Curve& curve) {
   for (const std::string& name : curve.names) fields.push_back(csv_field(name));
   std::string table = csv_line(fields);
   std::size_t samples = 0;
-  for (const auto& column : curve.columns) samples = std::max(samples, column.size());
+  std::vector<std::shared_ptr<const std::vector<double>>> columns;
+  for (const Series& column : curve.columns) {
+    columns.push_back(column.share());
+    samples = std::max(samples, column.size());
+  }
   for (std::size_t i = 0; i < samples; ++i) {
     fields.clear();
-    for (const auto& column : curve.columns) fields.push_back(i < column.size() ? csv_number(column[i]) : "");
+    for (const auto& column : columns) fields.push_back(i < column->size() ? csv_number((*column)[i]) : "");
     table += csv_line(fields);
   }
   return table;

@@ -336,7 +336,8 @@ void Store::save_one(const CaseRecord& record, bool partial) {
     curve.bind(1, record.id);
     curve.bind(2, static_cast<int>(i));
     curve.bind(3, record.curve.names.at(i));
-    bind_series(curve, 4, record.curve.columns[i].data(), record.curve.columns[i].size());
+    const std::vector<double>& samples = record.curve.columns[i];
+    bind_series(curve, 4, samples.data(), samples.size());
     curve.exec();
   }
   save_numbers(record);

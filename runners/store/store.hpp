@@ -91,7 +91,7 @@ class Store {
   /// Makes the views of these results anew (views.hpp): for who reads the store with SQL.
   void make_views(const StudyResults& results);
 
-  /// Everything the store holds.
+  /// Everything the store holds; the series of finished cases are read when somebody asks for them.
   StudyResults load() const;
 
  private:
@@ -118,12 +118,9 @@ class Store {
   std::unique_ptr<WriteGroup> group_;  // last: it uses what stands before
 };
 
-/// What is read of curves: their names alone, with columns that are empty, where nobody asks for their samples.
-enum class Curves { whole, names };
-
-/// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. Throws
-/// StoreError.
-StudyResults read_store(const std::filesystem::path& folder, Curves curves = Curves::whole);
+/// Everything that FOLDER/results.sqlite holds, without the right to change it: works while a run goes on. The series
+/// of finished cases are read when somebody asks for them. Throws StoreError.
+StudyResults read_store(const std::filesystem::path& folder);
 
 /// What FOLDER/results.sqlite keeps under a key of Store::motion for runs of this arithmetic, "" where there is none.
 std::string read_motion(const std::filesystem::path& folder, const std::string& key, const std::string& arithmetic);

@@ -40,12 +40,6 @@ CaseRecord StoreReader::read(const std::string& id) const {
   return std::move(*found);
 }
 
-Curve StoreReader::curve(const std::string& id) const {
-  Curve found;
-  guarded(file_, database_.get(), [&] { found = read_curve(*database_, id); });
-  return found;
-}
-
 std::vector<std::string> StoreReader::motion_keys(const std::string& arithmetic) const {
   std::vector<std::string> found;
   const std::string prefix = motion_key(arithmetic, "");

@@ -25,8 +25,6 @@ class StoreReader {
   std::vector<Finished> finished() const;
   /// A case that finished() names.
   CaseRecord read(const std::string& id) const;
-  /// Its curve alone; without columns where it has none.
-  Curve curve(const std::string& id) const;
 
   /// The keys of Store::motion() for runs of this arithmetic, and what is kept under one of them.
   std::vector<std::string> motion_keys(const std::string& arithmetic) const;

@@ -9,9 +9,14 @@ void NumberTable::add(std::initializer_list<double> row) {
   for (const double value : row) values.at(column++).push_back(value);
 }
 
-const std::vector<double>* NumberTable::numbers(std::string_view column) const {
+const Series* NumberTable::series(std::string_view column) const {
   const auto place = find_column(columns, column);
   return place && *place < values.size() ? &values[*place] : nullptr;
+}
+
+const std::vector<double>* NumberTable::numbers(std::string_view column) const {
+  const Series* found = series(column);
+  return found ? &found->get() : nullptr;
 }
 
 const std::vector<std::string>* NumberTable::words_of(std::string_view column) const {

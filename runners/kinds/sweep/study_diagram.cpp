@@ -13,6 +13,7 @@ namespace {
 /// Points of a cycle closer than this (in units of the spread) are one.
 constexpr double kSamePoint = 1e-3;
 constexpr std::size_t kLargestCycle = 64;
+constexpr double kNoWord = -1;
 
 /// Index of a start; new ones are added.
 int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
@@ -62,47 +63,51 @@ std::optional<double> compliance_of(const CaseRecord& record) {
 SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key,
                            const std::string& word) {
   table_ = find_table(record.numbers, table);
-  const std::vector<double>*keys = column(key), *second = word.empty() ? nullptr : column(word);
+  const Series *keys = column(key), *second = word.empty() ? nullptr : column(word);
   if (!keys || (!word.empty() && !second)) return;
-  const std::vector<std::string>* words = table_->words_of(word);
-  std::size_t first = 0;
-  for (std::size_t k = 0; k <= keys->size(); ++k) {
-    const bool same = k < keys->size() && (*keys)[k] == (*keys)[first] && (!second || (*second)[k] == (*second)[first]);
-    if (same) continue;
-    if (k > first) {
-      std::string name;
-      if (second && words) {
-        const double index = (*second)[first];
-        if (index >= 0 && index < static_cast<double>(words->size())) name = (*words)[static_cast<std::size_t>(index)];
-      }
-      ranges_[{(*keys)[first], name}].emplace_back(first, k);
-    }
-    first = k;
-  }
+  words_ = table_->words_of(word);
+  keys->each([&](std::size_t row, double value) {
+    const double index = second ? second->at(row) : kNoWord;
+    if (std::isnan(value) || std::isnan(index)) return;
+    if (!ranges_.empty() && ranges_.back().key == value && ranges_.back().word == index && ranges_.back().last == row)
+      ++ranges_.back().last;
+    else
+      ranges_.push_back({value, index, row, row + 1});
+  });
+  std::stable_sort(ranges_.begin(), ranges_.end(), before);
+}
+
+bool SectionIndex::before(const Range& a, const Range& b) {
+  return std::pair(a.key, a.word) < std::pair(b.key, b.word);
 }
 
 void SectionIndex::add_points(ScaleOfPoints& scale) const {
   for (const std::string name : {"tip", "opposite"}) {
     const double sign = name == "opposite" ? -1 : 1;
-    const auto *x = column(name + "_displacement"), *v = column(name + "_velocity");
+    const Series *x = column(name + "_displacement"), *v = column(name + "_velocity");
     if (!x || !v) return;
-    for (std::size_t k = 0; k < x->size(); ++k) scale.add({sign * (*x)[k], sign * (*v)[k]});
+    x->each([&](std::size_t row, double value) { scale.add({sign * value, sign * v->at(row)}); });
   }
 }
 
 SectionReadings SectionIndex::read(double key, const std::string& word) const {
   SectionReadings out;
-  const auto found = ranges_.find({key, word});
-  const std::vector<double>*x = column("tip_displacement"), *v = column("tip_velocity");
-  if (found == ranges_.end() || !x || !v) return out;
-  const std::vector<double>*ox = column("opposite_displacement"), *ov = column("opposite_velocity");
+  const Series *x = column("tip_displacement"), *v = column("tip_velocity");
+  double index = kNoWord;
+  if (words_) index = static_cast<double>(std::find(words_->begin(), words_->end(), word) - words_->begin());
+  const auto [first, last] = std::equal_range(ranges_.begin(), ranges_.end(), Range{key, index, 0, 0}, before);
+  if (first == last || !x || !v) return out;
+  const Series *ox = column("opposite_displacement"), *ov = column("opposite_velocity");
   bool whole = ox && ov;
-  for (const auto& [first, last] : found->second)
-    for (std::size_t k = first; k < last; ++k) {
-      if (!std::isfinite((*x)[k]) || !std::isfinite((*v)[k])) continue;
-      out.points.push_back({(*x)[k], (*v)[k]});
-      whole = whole && std::isfinite((*ox)[k]) && std::isfinite((*ov)[k]);
-      if (whole) out.opposite.push_back({(*ox)[k], (*ov)[k]});
+  for (auto range = first; range != last; ++range)
+    for (std::size_t k = range->first; k < range->last; ++k) {
+      const CloudPoint point{x->at(k), v->at(k)};
+      if (!std::isfinite(point[0]) || !std::isfinite(point[1])) continue;
+      out.points.push_back(point);
+      if (!whole) continue;
+      const CloudPoint opposite{ox->at(k), ov->at(k)};
+      whole = std::isfinite(opposite[0]) && std::isfinite(opposite[1]);
+      if (whole) out.opposite.push_back(opposite);
     }
   if (!whole) out.opposite.clear();
   return out;

@@ -34,12 +34,18 @@ class SectionIndex {
   void add_points(ScaleOfPoints& scale) const;
   const NumberTable* table() const { return table_; }
   /// Column of that name; null where the table has none.
-  const std::vector<double>* column(const std::string& name) const { return table_ ? table_->numbers(name) : nullptr; }
+  const Series* column(const std::string& name) const { return table_ ? table_->series(name) : nullptr; }
 
  private:
-  using Range = std::pair<std::size_t, std::size_t>;
+  struct Range {
+    double key = 0, word = 0;  ///< the second one as it is stored
+    std::size_t first = 0, last = 0;
+  };
+  static bool before(const Range& a, const Range& b);
+
   const NumberTable* table_ = nullptr;
-  std::map<std::pair<double, std::string>, std::vector<Range>> ranges_;
+  const std::vector<std::string>* words_ = nullptr;
+  std::vector<Range> ranges_;  // sorted
 };
 
 /// What a case of the diagram was read from.

@@ -64,7 +64,7 @@ void check_equal(const CaseRecord& a, const CaseRecord& b) {
       CHECK(x.columns[c].name == y.columns[c].name);
       REQUIRE(x.values[c].size() == y.values[c].size());
       const std::size_t size = x.values[c].size() * sizeof(double);
-      CHECK((size == 0 || std::memcmp(x.values[c].data(), y.values[c].data(), size) == 0));
+      CHECK((size == 0 || std::memcmp(x.values[c].get().data(), y.values[c].get().data(), size) == 0));
     }
   }
 }

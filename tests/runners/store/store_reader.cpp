@@ -39,8 +39,6 @@ TEST_CASE("store reader: a case read alone is saved again as the same rows, and 
   CHECK(reader.motion_keys("aaaa") == std::vector<std::string>{"key"});
   CHECK(reader.motion_keys("bbbb").empty());
   CHECK(reader.motion("key", "aaaa") == "content");
-  CHECK(reader.curve(finished[0].id).columns == results.cases[0].curve.columns);
-  CHECK(reader.curve(finished[1].id).names.empty());
   CHECK_THROWS_AS(reader.read("no such one"), StoreError);
 
   Store other(scratch / "other", false);

@@ -67,7 +67,7 @@ std::string bits(const CaseRecord& record) {
   for (const Row& row : record.tables.front().rows)
     for (const Cell& cell : row) text += csv_cell(cell);
   for (const auto& numbers : record.numbers.front().values)
-    text.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+    text.append(reinterpret_cast<const char*>(numbers.get().data()), numbers.size() * sizeof(double));
   return text;
 }
 

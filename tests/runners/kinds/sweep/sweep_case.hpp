@@ -113,7 +113,7 @@ inline std::string bits_of(const CaseRecord& record) {
       for (const Cell& cell : row) text += csv_cell(cell) + "\n";
   for (const NumberTable& table : record.numbers)
     for (const auto& column : table.values)
-      text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
+      text.append(reinterpret_cast<const char*>(column.get().data()), column.size() * sizeof(double));
   return text;
 }
 

@@ -107,6 +107,6 @@ TEST_CASE("an oscillator has one place, and a bar moves along its axis") {
 TEST_CASE("a table that is cut short is no film") {
   NumberTable table = *find_table(CaseRuns().first_of(beam_study()).numbers, snapshots_name);
   REQUIRE(snapshots_of(table));
-  for (std::vector<double>& column : table.values) column.resize(column.size() / 2);
+  for (Series& column : table.values) column.own().resize(column.size() / 2);
   CHECK_FALSE(snapshots_of(table));
 }
