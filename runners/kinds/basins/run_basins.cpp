@@ -176,6 +176,7 @@ class BasinsRun {
           sections_[cell] = std::move(section);
       }
       ends_[cell] = std::move(ends[i]);
+      ends_[cell].displacements = {};  // the section was made of them
     }
   }
 
@@ -189,10 +190,21 @@ class BasinsRun {
   }
 
   // Of a case under way (not complete) only the cells that are known have a row.
-  void write_tables(CaseRecord& record, bool complete) const {
+  // Of a complete one the sections of the ends are given up on the way: those of millions of cells need not be there
+  // twice.
+  void write_tables(CaseRecord& record, bool complete) {
     Table cells = cells_head();
     NumberTable points = cell_points_head();
     const std::vector<std::size_t> sources = refinement_.sources();
+    std::size_t count = 0;
+    std::vector<std::size_t> last_use(sources.size());
+    for (std::size_t cell = 0; cell < sources.size(); ++cell)
+      if (const std::size_t source = sources[cell]; source < sources.size()) {
+        count += ends_[source].section.size();
+        last_use[source] = cell;
+      }
+    for (Series& column : points.values) column.own().reserve(count);
+    cells.rows.reserve(sources.size());
     std::vector<std::size_t> row_of(sources.size());
     std::size_t rows = 0;
     for (std::size_t cell = 0; cell < sources.size(); ++cell)
@@ -215,6 +227,7 @@ class BasinsRun {
         points.add({static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement, point.velocity,
                     point.opposite_displacement, point.opposite_velocity});
       }
+      if (complete && last_use[sources[cell]] == cell) ends_[sources[cell]].section = {};
     }
     record.tables.push_back(std::move(cells));
     record.numbers.push_back(std::move(points));

@@ -17,7 +17,7 @@ namespace ricochet {
 Json sweep_settings(const Json& resolved);
 
 /// The most memory that the results of a study may need, bytes.
-inline constexpr double largest_results = 4e9;
+inline constexpr double largest_results = 16e9;
 
 /// Refuses, with pointer, what no case of the sweep could do: a pointer that names no scalar of the scene or of the
 /// methods (the nearest one, and all of them, are told) or that names a list; two axes with the same pointer; a start
