@@ -1,9 +1,8 @@
 #pragma once
 #include <algorithm>
-#include <ricochet/algebra/quadratic_form.hpp>
-#include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/closed_points.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
+#include <ricochet/measure/energy/state_energies.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -110,8 +109,9 @@ class EnergyAudit final : public StepObserver {
     EnergySample now;
     ContactTotals contact;
     explicit Lane(int points) : closed(points) {}
-    std::vector<double> increment;  // of the position, over the stages of the last sub-step; where that is looked at
-    double duration = 0;            // of it, s
+    // Of the position over the stages of the last sub-step, where that is looked at; empty where a slot holds it.
+    Block increment;
+    double duration = 0;  // of that sub-step, s
     ClosedPoints closed;
     double force = 0;  // of the present instant
     Works step;        // of the step under way
@@ -120,7 +120,7 @@ class EnergyAudit final : public StepObserver {
     int steps = 0;     // how many
     int quiet = 0;     // stages since the last effort
     double penetration = 0;
-    double lift = 0;  // of the support over the last sub-step
+    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was looked at
     bool has_scheme = false;
     bool balanced = false;   // whether works are believed between looks
     bool looking = true;     // at the step under way
@@ -129,20 +129,19 @@ class EnergyAudit final : public StepObserver {
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
-  EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
-  double scheme_energy(const Marcher& marcher, int lane);
+  EnergySample sample(const Marcher& marcher, int lane);
   bool to_be_seen(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
   void follow_position(const StageView& view, int lane);
+  double tip_increment(const Marcher& marcher, int lane) const;
   void look(Marcher& marcher, int lane);
   void confirm(Lane& state, double scheme, bool flown);
-  void combine(const double* const* slots, const double* z, const Combination& c, int lane,
-               std::vector<double>& out) const;
   void count_contact(const StageView& view, int lane);
   void close_instant(const StageView& view, Lane& state);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;
+  StateEnergies energies_;
   StageWorks works_;
   Looks looks_;
   long long asked_ = -1;
@@ -151,7 +150,7 @@ class EnergyAudit final : public StepObserver {
   bool compliant_, mean_velocity_, balances_ = false, ends_measured_ = false;
   int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;
-  std::vector<double> first_, second_;
+  Block scratch_;
 };
 
 }  // namespace ricochet
