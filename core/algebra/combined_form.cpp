@@ -22,27 +22,29 @@ RICOCHET_FORM_BODY Four shifted(const Four& a, const Four& b) {
   return __builtin_shufflevector(a, b, s, s + 1, s + 2, s + 3);
 }
 
-/// Σ_i d_i (x + Σ_s l_s x_{+s})_i² and Σ_i h_i x_i with x = Σ_k w_k x_k, by fours; s = 1 … W ≤ 3, k = 1 … N.
+/// Σ_i d_i (x + Σ_s l_s x_{+s})_i² and Σ_i h_i x_i with x = x_0 + Σ_k r_k x_k, by fours; s = 1 … W ≤ 3, 1 ≤ k < N. W =
+/// unit: all d_i are 1 and there are no l.
+constexpr int unit = -1;
 template <int W, int N>
 struct Pass {
-  static constexpr int stride = 4 * (W + 2);
+  static constexpr int stride = 4 * (W + 2);  // h last
   const double* fours;
   const double* in[N];
-  double weight[N];
+  double ratio[N];
   double* out;
   Four forms[2] = {}, projections[2] = {};
 
-  RICOCHET_FORM_BODY Pass(const CombinedForm::Packed& packed, const double* const* x, const double* w, double* to)
+  RICOCHET_FORM_BODY Pass(const CombinedForm::Packed& packed, const double* const* x, const double* r, double* to)
       : fours(packed.fours), out(to) {
     for (int k = 0; k < N; ++k) {
       in[k] = x[k];
-      weight[k] = w[k];
+      ratio[k] = r[k];
     }
   }
   RICOCHET_FORM_BODY Four read(int group) const {
-    Four x = weight[0] * four(in[0] + 4 * group);
+    Four x = four(in[0] + 4 * group);
 #pragma GCC unroll 4
-    for (int k = 1; k < N; ++k) x += weight[k] * four(in[k] + 4 * group);
+    for (int k = 1; k < N; ++k) x += ratio[k] * four(in[k] + 4 * group);
     return x;
   }
   // Sums of even and odd fours apart: none waits for the one before it.
@@ -53,7 +55,8 @@ struct Pass {
     if constexpr (W >= 1) strain += four(row) * shifted<1>(here, next);
     if constexpr (W >= 2) strain += four(row + 4) * shifted<2>(here, next);
     if constexpr (W >= 3) strain += four(row + 8) * shifted<3>(here, next);
-    const Four force = four(row + 4 * W) * strain;
+    Four force = strain;
+    if constexpr (W >= 0) force *= four(row + 4 * W);
     forms[parity] += force * strain;
     projections[parity] += four(row + 4 * W + 4) * here;
     if (out) *reinterpret_cast<Four*>(out + 4 * group) = here;
@@ -88,16 +91,16 @@ struct Pass {
   }
 };
 
-#define RICOCHET_FORM_SET(NAME, TARGET)                                                                             \
-  template <int W, int N>                                                                                           \
-  TARGET CombinedForm::Value NAME(const CombinedForm::Packed& packed, const double* const* x, const double* weight, \
-                                  double* out) {                                                                    \
-    return Pass<W, N>(packed, x, weight, out).run(packed.rows);                                                     \
-  }                                                                                                                 \
-  template <int W>                                                                                                  \
-  const CombinedForm::Kernel* NAME##_kernels() {                                                                    \
-    static constexpr CombinedForm::Kernel by_count[] = {NAME<W, 1>, NAME<W, 2>, NAME<W, 3>, NAME<W, 4>};            \
-    return by_count;                                                                                                \
+#define RICOCHET_FORM_SET(NAME, TARGET)                                                                            \
+  template <int W, int N>                                                                                          \
+  TARGET CombinedForm::Value NAME(const CombinedForm::Packed& packed, const double* const* x, const double* ratio, \
+                                  double* out) {                                                                   \
+    return Pass<W, N>(packed, x, ratio, out).run(packed.rows);                                                     \
+  }                                                                                                                \
+  template <int W>                                                                                                 \
+  const CombinedForm::Kernel* NAME##_kernels() {                                                                   \
+    static constexpr CombinedForm::Kernel by_count[] = {NAME<W, 1>, NAME<W, 2>, NAME<W, 3>, NAME<W, 4>};           \
+    return by_count;                                                                                               \
   }
 RICOCHET_FORM_SET(plain, )
 RICOCHET_FORM_SET(wide, RICOCHET_AVX2)
@@ -119,8 +122,14 @@ const CombinedForm::Kernel* kernels_of() {
 
 CombinedForm::CombinedForm(const QuadraticForm& form, const double* h) : rows_(form.rows()) {
   const std::optional<QuadraticForm::Squares> squares = form.squares();
-  const int width = squares ? squares->width : -1;
-  kernels_ = width == 0 ? kernels_of<0>() : width == 1 ? kernels_of<1>() : width == 3 ? kernels_of<3>() : nullptr;
+  const bool ones = squares && squares->width == 0 &&
+                    std::all_of(squares->pivot, squares->pivot + rows_, [](double d) { return d == 1; });
+  const int width = ones ? unit : squares ? squares->width : 2;
+  kernels_ = width == unit ? kernels_of<unit>()
+             : width == 0  ? kernels_of<0>()
+             : width == 1  ? kernels_of<1>()
+             : width == 3  ? kernels_of<3>()
+                           : nullptr;
   if (!kernels_) {
     general_ = form;
     shape_ = Block(rows_, 1);
@@ -133,16 +142,15 @@ CombinedForm::CombinedForm(const QuadraticForm& form, const double* h) : rows_(f
   for (int i = 0; i < rows_; ++i) {
     double* row = fours_.data() + static_cast<std::ptrdiff_t>(i / 4) * stride + i % 4;
     for (int s = 1; s <= width; ++s) row[4 * (s - 1)] = squares->upper[static_cast<std::ptrdiff_t>(s) * rows_ + i];
-    row[4 * width] = squares->pivot[i];
+    if (width >= 0) row[4 * width] = squares->pivot[i];
     if (h) row[4 * width + 4] = h[i];
   }
 }
 
-CombinedForm::Value CombinedForm::operator()(int count, const double* const* x, const double* weight,
-                                             double* out) const {
-  if (kernels_) return kernels_[count - 1]({rows_, fours_.data()}, x, weight, out);
+// Another width, or factors.
+CombinedForm::Value CombinedForm::at_length(int count, const double* const* x, const double* ratio, double* out) const {
   double* to = out ? out : combined_.data();
-  lane_kernels(1).combine(rows_, count, x, weight, to);
+  lane_kernels(1).combine(rows_, count, x, ratio, to);
   return {general_(to), flight_kernels().dot(rows_, shape_.data(), to)};
 }
 

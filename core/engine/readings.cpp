@@ -33,12 +33,6 @@ double Marcher::support_levels(int lane, double t, const Levels& levels) const {
   return sum;
 }
 
-double Marcher::support(int lane, const PhaseWeights& phase) const {
-  double sine = 0, cosine = 0;
-  clamp_.drive(lane, sine, cosine);
-  return phase.along * sine + phase.across * cosine;
-}
-
 const double* Marcher::distributed_load(const Levels& levels, double t) {
   return load_window_ ? load_window_->sum(levels, t) : nullptr;
 }

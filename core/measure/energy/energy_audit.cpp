@@ -64,6 +64,10 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
   for (const auto* stages : {&marcher.program().start, &marcher.program().stages})
     for (const StageProgram& stage : *stages) memory_ = std::max(memory_, static_cast<int>(stage.work_effort.size()));
   ends_measured_ = measures_the_end(marcher.program());
+  if (marcher.program().increment_slot < 0) {
+    for (const StageProgram& stage : marcher.program().start) start_ways_.emplace_back(stage.facts.increment);
+    for (const StageProgram& stage : marcher.program().stages) ways_.emplace_back(stage.facts.increment);
+  }
   scratch_ = Block(model_.rows(), 1);
 }
 
@@ -120,36 +124,35 @@ void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane
 }
 
 // What the position moves by, where the energies after the step are looked at and no slot holds it.
-void EnergyAudit::follow_position(const StageView& view, int lane) {
+void EnergyAudit::follow_position(const StageView& view, int lane, bool moves) {
+  Block& increment = lanes_[static_cast<std::size_t>(lane)].increment;
+  if (moves || view.stage == 0) increment.fill(0.0);
+  const WeighedTerms& way = (view.starting ? start_ways_ : ways_)[static_cast<std::size_t>(view.stage)];
+  const double* moved = LaneSum(way, view.slots, view.z, view.w, T_, lane).write(scratch_);
+  for (std::size_t i = 0; i < scratch_.size(); ++i) increment.data()[i] += moved[i];
+}
+
+// The balance begins before the first stage that has a work form.
+void EnergyAudit::start_balance(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const StageFacts& facts = view.program->facts;
-  const bool moves = facts.to != facts.from;
-  if (moves) state.duration = (facts.to - facts.from) * h_;
-  if (!state.looking || state.increment.rows() == 0) return;
-  if (moves || view.stage == 0) state.increment.fill(0.0);
-  LaneSum sum(T_, lane);
-  for (std::size_t j = 0; j < facts.increment.slots.size(); ++j)
-    if (facts.increment.slots[j] != 0) sum.add(view.slots[j], facts.increment.slots[j]);
-  if (facts.increment.z != 0) sum.add(view.z, facts.increment.z);
-  if (view.w && facts.increment.w != 0) sum.add(view.w, facts.increment.w);
-  const double* way = sum.write(scratch_);
-  for (std::size_t i = 0; i < scratch_.size(); ++i) state.increment.data()[i] += way[i];
+  state.energy.scheme_start = energies_.scheme(view.slots, lane);
+  state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
+  state.has_scheme = true;
 }
 
 void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
+  const StageFacts& facts = view.program->facts;
+  const bool moves = facts.to != facts.from, balanced = view.plan->work || !view.starting;
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (view.stage == 0) begin_step(marcher, view, state);
-    const bool balanced = view.plan->work || !view.starting;
-    if (!state.has_scheme && balanced) {
-      state.energy.scheme_start = energies_.scheme(view.slots, lane);
-      state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
-      state.has_scheme = true;
-    }
-    follow_position(view, lane);
-    state.quiet = ((view.contact_lanes >> lane) & 1u) ? 0 : state.quiet + 1;
-    if (view.effort) count_contact(view, lane);
+    if (!state.has_scheme && balanced) start_balance(view, lane);
+    if (moves) state.duration = (facts.to - facts.from) * h_;
+    if (state.looking && !ways_.empty()) follow_position(view, lane, moves);
+    const bool pushed = ((view.contact_lanes >> lane) & 1u) != 0;
+    state.quiet = pushed ? 0 : state.quiet + 1;
+    if (view.effort && (pushed || !state.still || ((view.touched_lanes >> lane) & 1u) != 0)) count_contact(view, lane);
     works_.add(marcher, view, lane, balanced, state.quiet < memory_, state.step);
   }
 }
@@ -157,6 +160,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
 void EnergyAudit::count_contact(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   ContactTotals& contact = state.contact;
+  state.still = false;
   if (view.program->opens_instant) state.force = 0;
   const LaneOutcome& outcome = view.outcome[lane];
   if ((view.touched_lanes >> lane) & 1u) {
@@ -185,7 +189,8 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   ContactTotals& contact = state.contact;
   contact.force = state.force;
   contact.active = 0;
-  if (state.closed.idle()) return;
+  state.still = state.closed.idle();
+  if (state.still) return;
   const ClosedPoints::Change change = state.closed.end_instant();
   contact.active = change.active;
   contact.active_set_changes += change.changed;

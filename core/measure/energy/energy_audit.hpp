@@ -126,13 +126,15 @@ class EnergyAudit final : public StepObserver {
     bool looking = true;     // at the step under way
     bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
     bool touched = false;    // whether the law looked at contact where the step ends
+    bool still = false;      // no effort acts, none did at the instant before, and that has been counted
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
   EnergySample sample(const Marcher& marcher, int lane);
   bool to_be_seen(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
-  void follow_position(const StageView& view, int lane);
+  void start_balance(const StageView& view, int lane);
+  void follow_position(const StageView& view, int lane, bool moves);
   double tip_increment(const Marcher& marcher, int lane) const;
   void look(Marcher& marcher, int lane);
   void confirm(Lane& state, double scheme, bool flown);
@@ -150,6 +152,7 @@ class EnergyAudit final : public StepObserver {
   bool compliant_, mean_velocity_, balances_ = false, ends_measured_ = false;
   int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;
+  std::vector<WeighedTerms> start_ways_, ways_;  // of the position, by stage; none where a slot holds it
   Block scratch_;
 };
 

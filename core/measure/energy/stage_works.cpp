@@ -29,9 +29,25 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   const SparseMatrix nothing(model_.rows(), model_.rows());
   first_ = CombinedForm(damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing), shape);
   const StepPlan& plan = marcher.program().plan;
+  const bool alone = T_ == 1 && !marcher.program().load && (projected_ || damped_);
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;
   for (const Stage& stage : plan.start) start_.push_back(describe(stage, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
+  for (auto* stages : {&start_, &stages_})
+    for (StageTerms& stage : *stages) {
+      const std::vector<int>& which = stage.displacement.which;
+      const bool jumps = std::find(which.begin(), which.end(), WeighedTerms::unknown_w) != which.end();
+      const bool across = damped_ && stage.along == 0;
+      if (!alone || which.empty() || which.size() > CombinedForm::most_terms || jumps || across || stage.by_mass != 0 ||
+          !stage.losses.empty())
+        continue;
+      const double scale = stage.displacement.weight[0];
+      stage.passes = static_cast<int>(which.size());
+      stage.by_pass = scale * scale * stage.by_first;
+      stage.pass_load = stage.load;
+      stage.pass_load.along *= scale;
+      stage.pass_load.across *= scale;
+    }
 }
 
 StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation, double h) const {
@@ -59,32 +75,21 @@ StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation,
   return stage;
 }
 
-LaneSum StageWorks::sum(const StageView& view, const WeighedTerms& terms, int lane) const {
-  LaneSum sum(T_, lane);
-  for (std::size_t k = 0; k < terms.which.size(); ++k) {
-    const int which = terms.which[k];
-    const double* from = which >= 0 ? view.slots[which] : which == WeighedTerms::unknown_z ? view.z : view.w;
-    if (from) sum.add(from, terms.weight[k]);  // else nothing jumped
-  }
-  return sum;
-}
-
-void StageWorks::add(const Marcher& marcher, const StageView& view, int lane, bool losses, bool acting, Works& works) {
-  const StageTerms& stage = (view.starting ? start_ : stages_)[static_cast<std::size_t>(view.stage)];
+void StageWorks::add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
+                         bool contact, Works& works) {
+  const auto sum = [&](const WeighedTerms& terms) { return LaneSum(terms, view.slots, view.z, view.w, T_, lane); };
   if (losses)
-    for (const Loss& loss : stage.losses)
-      works.scheme +=
-          loss.coefficient * sum(view, loss.value, lane)
-                                 .under(loss.matrix == EnergyMatrix::M ? mass_form_ : stiffness_form_, displacement_)
-                                 .form;
+    for (const Loss& loss : stage.losses) {
+      const CombinedForm& form = loss.matrix == EnergyMatrix::M ? mass_form_ : stiffness_form_;
+      works.scheme += loss.coefficient * sum(loss.value).under(form, displacement_).form;
+    }
   if (!view.plan->work) return;
-  const bool contact = view.effort && (acting || ((view.contact_lanes >> lane) & 1u));
   const bool load = marcher.program().load, across = damped_ && stage.along == 0;
   if (!projected_ && !damped_ && !load && !contact) return;
-  const LaneSum s = sum(view, stage.displacement, lane);
+  const LaneSum s = sum(stage.displacement);
   const bool passes = projected_ || (damped_ && !across), numbers = contact || load || across;
   if (passes) {
-    const CombinedForm::Value value = s.under(first_, displacement_, numbers);
+    const CombinedForm::Value value = s.under(first_, displacement_, numbers ? &displacement_ : nullptr);
     works.damping += stage.by_first * value.form;
     if (projected_) works.loads += marcher.support(lane, stage.load) * value.projection;
     if (stage.by_mass != 0) works.damping += stage.by_mass * s.under(mass_form_, rate_).form;
@@ -92,7 +97,7 @@ void StageWorks::add(const Marcher& marcher, const StageView& view, int lane, bo
   if (!numbers) return;
   const double* way = passes ? displacement_.data() : s.write(displacement_);
   if (across) {
-    const double* rate = sum(view, stage.rate, lane).write(rate_);
+    const double* rate = sum(stage.rate).write(rate_);
     if (damping_.stiffness != 0) works.damping += damping_.stiffness * stiffness_(way, rate);
     if (damping_.mass != 0) works.damping += damping_.mass * mass_(way, rate);
   }

@@ -31,7 +31,19 @@ class StageWorks {
 
   /// Adds what the stage brings to a lane, its losses only where `losses`. `acting`: whether efforts of stages before
   /// may still be in p̄.
-  void add(const Marcher& marcher, const StageView& view, int lane, bool losses, bool acting, Works& works);
+  void add(const Marcher& marcher, const StageView& view, int lane, bool losses, bool acting, Works& works) {
+    const StageTerms& stage = (view.starting ? start_ : stages_)[static_cast<std::size_t>(view.stage)];
+    const bool contact = view.effort && (acting || ((view.contact_lanes >> lane) & 1u));
+    if (stage.passes == 0 || contact) return add_all(marcher, view, stage, lane, losses, contact, works);
+    const double* x[CombinedForm::most_terms];
+    for (int k = 0; k < stage.passes; ++k) {
+      const int which = stage.displacement.which[static_cast<std::size_t>(k)];
+      x[k] = which >= 0 ? view.slots[which] : view.z;
+    }
+    const CombinedForm::Value value = first_(stage.passes, x, stage.displacement.ratio.data());
+    works.damping += stage.by_pass * value.form;
+    if (projected_) works.loads += marcher.support(lane, stage.pass_load) * value.projection;
+  }
 
  private:
   struct Loss {
@@ -47,9 +59,15 @@ class StageWorks {
     PhaseWeights load;    // times ω²: −φ'' = ω² φ for the harmonic support
     PhaseWeights support;
     std::vector<Loss> losses;
+    // Where one lane's damping and clamp are all there is without contact: how many vectors s weighs, and what the pass
+    // over them is worth, the first of them taken once. Else 0.
+    int passes = 0;
+    double by_pass = 0;
+    PhaseWeights pass_load;
   };
   StageTerms describe(const Stage& plan, double pulsation, double h) const;
-  LaneSum sum(const StageView& view, const WeighedTerms& terms, int lane) const;
+  void add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
+               bool contact, Works& works);
   void add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,
                    Works& works) const;
 

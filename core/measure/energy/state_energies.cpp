@@ -53,17 +53,16 @@ double StateEnergies::evaluate(const Form& form, const double* const* slots, con
   const WeighedTerms& terms = form.terms;
   if (terms.which.empty()) return 0;
   const bool apart = terms.which.back() == slot_count_;
-  // The increment is the lane's own: what it joins has to be gathered first.
-  Block& out = kept ? place_ : scratch_;
-  LaneSum sum(T_, lane);
+  LaneSum sum(terms, T_, lane);
   const std::size_t count = terms.which.size() - (apart ? 1 : 0);
-  for (std::size_t k = 0; k < count; ++k) sum.add(slots[terms.which[k]], terms.weight[k]);
+  for (std::size_t k = 0; k < count; ++k) sum.add(slots[terms.which[k]]);
   const CombinedForm& matrix = form.matrix == EnergyMatrix::M ? mass_ : stiffness_;
-  if (!apart) return sum.under(matrix, out, kept).form;
+  if (!apart) return sum.under(matrix, scratch_, kept ? &place_ : nullptr).form;
+  // The increment is the lane's own: what it joins is gathered first.
   const double by = terms.weight.back();
-  const double* rest = count > 0 ? sum.write(scratch_) : nullptr;
-  for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] = (rest ? rest[i] : 0.0) + by * increment[i];
-  return matrix(out.data()).form;
+  const double* rest = sum.write(scratch_);
+  for (std::size_t i = 0; i < place_.size(); ++i) place_.data()[i] = rest[i] + by * increment[i];
+  return matrix(place_.data()).form;
 }
 
 StateEnergies::Values StateEnergies::read(const double* const* slots, const double* increment, double duration,
