@@ -164,7 +164,11 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObser
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),
       strains_(strain_rows(marcher.program().problem->space, grid.places)),
-      offset_(marcher.program().velocity_offset) {}
+      offset_(marcher.program().velocity_offset) {
+  const std::size_t times = grid_.times.size(), fields = times * grid_.places.size();
+  for (auto* series : {&motion_.tip, &motion_.tip_velocity, &motion_.energy, &motion_.impulse}) series->reserve(times);
+  for (auto* field : {&motion_.displacement, &motion_.strain, &motion_.velocity}) field->reserve(fields);
+}
 
 void MotionSampler::keep() {
   constexpr std::size_t window = 5;
