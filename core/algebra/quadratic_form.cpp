@@ -36,57 +36,6 @@ RICOCHET_AVX2_ALONE void strain_of_three(int n, const double* l, const double* x
   strain_body<3>(n, l, x, out);
 }
 
-// a shifted by s numbers into b, which follows it: what lies across both is not read again.
-template <int s>
-[[gnu::always_inline]] inline Loose4 shifted(const Loose4& a, const Loose4& b) {
-  return __builtin_shufflevector(a, b, s, s + 1, s + 2, s + 3);
-}
-
-// Σ_i d_i (x + Σ_s l_s x_{+s})_i² and Σ_i h_i x_i (h null: none), by fours. s = 1 … W, at most 3.
-template <int W>
-[[gnu::always_inline]] inline double swift_body(int n, const double* l, const double* d, const double* x,
-                                                const double* h, double* projected) {
-  const auto load = [](const double* from) { return *reinterpret_cast<const Loose4*>(from); };
-  const auto total = [](const Loose4& sum) { return (sum[0] + sum[1]) + (sum[2] + sum[3]); };
-  Loose4 forms = {}, dots = {}, next = {};
-  if (n >= 8) next = load(x);
-  int i = 0;
-  for (; i + 8 <= n; i += 4) {
-    const Loose4 here = next;
-    next = load(x + i + 4);
-    if (h) dots += load(h + i) * here;
-    Loose4 strain = here;
-    if constexpr (W >= 1) strain += load(l + i) * shifted<1>(here, next);
-    if constexpr (W >= 2) strain += load(l + n + i) * shifted<2>(here, next);
-    if constexpr (W >= 3) strain += load(l + 2 * n + i) * shifted<3>(here, next);
-    forms += load(d + i) * strain * strain;
-  }
-  double form = total(forms), dot = h ? total(dots) : 0.0;
-  for (; i < n; ++i) {
-    double strain = x[i];
-    if (h) dot += h[i] * strain;
-    for (int s = 1; s <= W && i + s < n; ++s) strain += l[(s - 1) * n + i] * x[i + s];
-    form += d[i] * strain * strain;
-  }
-  if (projected) *projected = dot;
-  return form;
-}
-
-using Swift = double (*)(int, const double*, const double*, const double*, const double*, double*);
-template <int W>
-RICOCHET_AVX2 double swift_wide(int n, const double* l, const double* d, const double* x, const double* h,
-                                double* projected) {
-  return swift_body<W>(n, l, d, x, h, projected);
-}
-template <int W>
-double swift_plain(int n, const double* l, const double* d, const double* x, const double* h, double* projected) {
-  return swift_body<W>(n, l, d, x, h, projected);
-}
-template <int W>
-Swift swift_of() {
-  return has_avx2() ? swift_wide<W> : swift_plain<W>;
-}
-
 }  // namespace
 
 QuadraticForm::QuadraticForm(const SparseMatrix& matrix)
@@ -165,13 +114,11 @@ void QuadraticForm::strain(const double* x, std::vector<double>& out) const {
   }
 }
 
-double QuadraticForm::swift(const double* x, const double* h, double* projected) const {
-  static const Swift diagonal = swift_of<0>(), bar = swift_of<1>(), beam = swift_of<3>();
-  if (start_.empty() && width_ == 0) return diagonal(rows_, nullptr, diagonals_.data(), x, h, projected);
-  if (!pivot_.empty() && (width_ == 1 || width_ == 3))
-    return (width_ == 1 ? bar : beam)(rows_, diagonals_.data() + rows_, pivot_.data(), x, h, projected);
-  if (h) diagonal(rows_, nullptr, h, x, h, projected);
-  return (*this)(x, x);
+std::optional<QuadraticForm::Squares> QuadraticForm::squares() const {
+  if (!start_.empty()) return std::nullopt;
+  if (width_ == 0) return Squares{0, diagonals_.data(), diagonals_.data()};
+  if (pivot_.empty()) return std::nullopt;
+  return Squares{width_, diagonals_.data(), pivot_.data()};
 }
 
 double QuadraticForm::operator()(const double* x) const {

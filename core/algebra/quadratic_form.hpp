@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <optional>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <vector>
 
@@ -17,9 +18,14 @@ class QuadraticForm {
 
   double operator()(const double* x) const;
   double operator()(const double* x, const double* y) const;
-  /// xᵀA x, and hᵀx where h is given, in one pass over x where A is definite and of the width of a bar or a beam: for
-  /// what is added up at every step. Rounded otherwise than the above, as well or better.
-  double swift(const double* x, const double* h = nullptr, double* projected = nullptr) const;
+  int rows() const { return rows_; }
+  /// xᵀA x = Σ_i d_i (x_i + Σ_s l_si x_{i+s})², s = 1 … width, where A is a diagonal or positive definite.
+  struct Squares {
+    int width = 0;
+    const double* upper = nullptr;  ///< (width+1) × n; l_s by rows s ≥ 1, zero beyond the last column
+    const double* pivot = nullptr;  ///< d, n
+  };
+  std::optional<Squares> squares() const;
 
  private:
   void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x

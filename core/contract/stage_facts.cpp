@@ -196,6 +196,26 @@ std::vector<StageFacts> at_the_end(std::vector<Stage>& stages) {
   return all;
 }
 
+bool same(const Combination& a, const Combination& b) {
+  const auto slot = [](const Combination& c, std::size_t j) { return j < c.slots.size() ? c.slots[j] : 0.0; };
+  for (std::size_t j = 0; j < std::max(a.slots.size(), b.slots.size()); ++j)
+    if (slot(a, j) != slot(b, j)) return false;
+  return a.z == b.z && a.w == b.w;
+}
+
+int find_increment(const DerivedPlan& derived) {
+  if (derived.stages.size() != 1 || derived.start.size() > 1) return -1;
+  const auto holds = [](const std::vector<Stage>& stages, const std::vector<StageFacts>& facts, std::size_t slot) {
+    for (std::size_t k = 0; k < stages.size(); ++k)
+      if (!same(stages[k].update[slot], facts[k].increment)) return false;
+    return true;
+  };
+  for (std::size_t j = 1; j < derived.plan.slots.size(); ++j)
+    if (holds(derived.plan.start, derived.start, j) && holds(derived.plan.stages, derived.stages, j))
+      return static_cast<int>(j);
+  return -1;
+}
+
 }  // namespace
 
 double step_of(const StepPlan& plan) {
@@ -208,6 +228,7 @@ DerivedPlan derive(StepPlan plan) {
     derived.start = at_the_end(plan.start);
     derived.stages = at_the_end(plan.stages);
     derived.plan = std::move(plan);
+    derived.increment_slot = find_increment(derived);
     return derived;
   }
   StepPlan filled = plan;
@@ -225,6 +246,7 @@ DerivedPlan derive(StepPlan plan) {
     if (!is_zero(facts.to - facts.from)) last_step = facts.to - facts.from;
   derived.velocity_offset = momentum_place(plan, derived.h, last_step);
   derived.plan = std::move(filled);
+  derived.increment_slot = find_increment(derived);
   return derived;
 }
 

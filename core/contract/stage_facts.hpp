@@ -26,6 +26,9 @@ struct DerivedPlan {
   /// Where plan.velocity stands after a step, in steps: 0 at its end, −½ where it is a mean over the step (of half the
   /// last sub-step where there are several).
   double velocity_offset = 0;
+  /// Of a plan whose step is one stage, and its start one at the most: the slot that holds what the position moved by
+  /// in the last of them; −1: none does.
+  int increment_slot = -1;
 };
 
 /// DerivedPlan::h alone.

@@ -21,12 +21,6 @@ void ClampMotion::set_time(double t) {
   cosine_ = std::cos(pulsation_ * t);
 }
 
-void ClampMotion::drive(int lane, double& sine, double& cosine) const {
-  const double A = amplitude_.at(0, lane), c = cos_phase_.at(0, lane), s = sin_phase_.at(0, lane);
-  sine = A * (sine_ * c + cosine_ * s);
-  cosine = A * (cosine_ * c - sine_ * s);
-}
-
 void ClampMotion::offsets(const PhaseWeights& phase, double* out, bool rate) const {
   double s = sine_ * phase.along + cosine_ * phase.across, c = cosine_ * phase.along - sine_ * phase.across;
   if (rate) {

@@ -23,7 +23,11 @@ class ClampMotion {
     return phases_ ? std::nullopt : std::optional(amplitude * sine_);
   }
   /// A sin(ωt + ψ) and A cos(ωt + ψ) of a lane, then.
-  void drive(int lane, double& sine, double& cosine) const;
+  void drive(int lane, double& sine, double& cosine) const {
+    const double A = amplitude_.at(0, lane), c = cos_phase_.at(0, lane), s = sin_phase_.at(0, lane);
+    sine = A * (sine_ * c + cosine_ * s);
+    cosine = A * (cosine_ * c - sine_ * s);
+  }
   /// Σ_k w_k A sin(ω(t + c_k h) + ψ), or its rate, per lane; `phase` holds the levels (w_k, c_k).
   void offsets(const PhaseWeights& phase, double* out, bool rate) const;
   /// ω² times the first of these: what the clamp's acceleration gives to a load.

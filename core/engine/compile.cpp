@@ -255,6 +255,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.plan = std::move(derived.plan);
   program.h = h;
   program.velocity_offset = derived.velocity_offset;
+  program.increment_slot = derived.increment_slot;
   program.law = std::move(law);
   program.tangents = options.tangents;
   if (program.tangents > 0 && program.law->reads() && !program.law->offers_slopes())

@@ -92,6 +92,7 @@ struct Program {
   StepPlan plan;  ///< complete: what it left to be derived is filled in
   double h = 0;
   double velocity_offset = 0;  ///< where plan.velocity stands after a step, in steps
+  int increment_slot = -1;     ///< the slot that holds what the position moved by in the last stage; −1: none
   std::unique_ptr<ContactLaw> law;
   std::vector<LaneSpec> lanes;
   int width = 1;     ///< T

@@ -1,4 +1,5 @@
 #include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/march_model.hpp>
 
 namespace ricochet {
@@ -60,6 +61,11 @@ MarchModel::MarchModel(std::shared_ptr<const SemiDiscrete> problem, bool modal)
   if (p.changed_by_law()) measured_ = dense_rows(p.law_rows * modes_);
   tip_ = dense_rows(p.tip * modes_);
   shape_ = modes_.transpose() * p.support_shape;
+}
+
+// Modal rows have no zeros.
+double MarchModel::times_full(const RowMatrix& rows, int row, const double* x) const {
+  return flight_kernels().dot(rows_, rows.value.data() + static_cast<std::ptrdiff_t>(row) * rows_, x);
 }
 
 Eigen::VectorXd MarchModel::to_model(const Eigen::VectorXd& nodal) const {

@@ -42,6 +42,10 @@ class MarchModel {
   const RowMatrix& contact() const { return contact_; }
   const RowMatrix& measured() const { return problem_->changed_by_law() ? measured_ : contact_; }
   const RowMatrix& tip() const { return tip_; }
+  /// One row of these times a contiguous vector.
+  double times(const RowMatrix& rows, int row, const double* x) const {
+    return modal() ? times_full(rows, row, x) : rows.times(row, x);
+  }
   const Eigen::VectorXd& support_shape() const { return shape_; }
 
   Eigen::VectorXd to_model(const Eigen::VectorXd& nodal) const;  ///< coordinates of a displacement
@@ -50,6 +54,8 @@ class MarchModel {
   void load_to_model(const double* in, double* out) const;
 
  private:
+  double times_full(const RowMatrix& rows, int row, const double* x) const;
+
   std::shared_ptr<const SemiDiscrete> problem_;
   Eigen::MatrixXd modes_;  // Φ
   int rows_ = 0;

@@ -60,6 +60,8 @@ Marcher::Marcher(Program program)
     start_states_.push_back(make_state(program_.start[k], program_.plan.start[k]));
   for (std::size_t k = 0; k < program_.stages.size(); ++k)
     stage_states_.push_back(make_state(program_.stages[k], program_.plan.stages[k]));
+  for (std::size_t k = 0; k < start_states_.size(); ++k) start_states_[k]->view = view_of(true, k, *start_states_[k]);
+  for (std::size_t k = 0; k < stage_states_.size(); ++k) stage_states_[k]->view = view_of(false, k, *stage_states_[k]);
   connect_efforts();
   connect_works();
   for (const auto& state : stage_states_)
@@ -204,7 +206,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     // Nothing to solve: z = 0.
     elastic_.fill(0.0);
   }
-  if (observer) show(program, plan, state, index, z, *observer);
+  if (observer) show(state, z, *observer);
   // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());
@@ -225,33 +227,46 @@ void Marcher::find_pushed(const StageState& state) {
   pushed_.clear();
   if (state.contact_lanes == 0) return;
   const Block& effort = state.effort[0];
+  const int T = program_.width;
+  if (T == 1) {
+    const double* p = effort.data();
+    for (int i = 0; i < effort.rows(); ++i)
+      if (p[i] != 0) pushed_.push_back(i);
+    return;
+  }
   for (int i = 0; i < effort.rows(); ++i) {
     const double* p = effort.row(i);
-    if (std::any_of(p, p + program_.width, [](double x) { return x != 0; })) pushed_.push_back(i);
+    if (std::any_of(p, p + T, [](double x) { return x != 0; })) pushed_.push_back(i);
   }
 }
 
-// What the observer sees of a stage that has found z and p.
-void Marcher::show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
-                   StepObserver& observer) {
+// What stays the same from step to step of what the observer sees of a stage.
+StageView Marcher::view_of(bool starting, std::size_t index, const StageState& state) const {
   StageView view;
-  view.stage = index;
-  view.plan = &plan;
-  view.program = &program;
-  view.starting = !start_states_.empty() && &program >= program_.start.data() &&
-                  &program < program_.start.data() + program_.start.size();
-  view.time = time();
-  view.from = view.time + program.facts.from * program_.h;
-  view.to = view.time + program.facts.to * program_.h;
+  view.stage = static_cast<int>(index);
+  view.starting = starting;
+  view.plan = &(starting ? program_.plan.start : program_.plan.stages)[index];
+  view.program = &(starting ? program_.start : program_.stages)[index];
   view.slots = slot_pointers_.data();
+  if (!state.delassus) return view;
+  view.outcome = outcome_.data();
+  view.free = state.free.data();
+  return view;
+}
+
+// What the observer sees of a stage that has found z and p.
+void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
+  StageView& view = state.view;
+  const StageFacts& facts = view.program->facts;
+  view.time = time();
+  view.from = view.time + facts.from * program_.h;
+  view.to = view.time + facts.to * program_.h;
   view.z = z;
   view.w = state.jumped ? state.w.data() : nullptr;
   if (state.delassus) {
     view.effort = state.effort_pointers.data();
     view.efforts = static_cast<int>(state.effort_pointers.size());
-    view.outcome = outcome_.data();
     view.touched_lanes = state.touched_lanes;
-    view.free = state.free.data();
     view.contact_lanes = state.contact_lanes;
     find_pushed(state);
     view.pushed = pushed_;

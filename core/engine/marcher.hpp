@@ -76,7 +76,11 @@ class Marcher {
   /// Σ weight φ(t + at·h).
   double support_levels(int lane, double t, const Levels& levels) const;
   /// The same of the levels that `phase` holds, t the beginning of the step under way; no sine is asked for.
-  double support(int lane, const PhaseWeights& phase) const;
+  double support(int lane, const PhaseWeights& phase) const {
+    double sine = 0, cosine = 0;
+    clamp_.drive(lane, sine, cosine);
+    return phase.along * sine + phase.across * cosine;
+  }
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
@@ -105,8 +109,8 @@ class Marcher {
   void free_step(StageProgram& program, const Stage& plan);
   void combine_for(const StageProgram& program);
   void find_pushed(const StageState& state);
-  void show(const StageProgram& program, const Stage& plan, const StageState& state, int index, const double* z,
-            StepObserver& observer);
+  StageView view_of(bool starting, std::size_t index, const StageState& state) const;
+  void show(StageState& state, const double* z, StepObserver& observer);
 
   // flight_march.cpp: steps in which nothing happens.
   long long fly(long long most, StepObserver* observer);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/load_window.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -32,12 +31,6 @@ double Marcher::support_levels(int lane, double t, const Levels& levels) const {
   double sum = 0;
   for (const Level& level : levels) sum += level.weight * support(lane, t + level.at * program_.h);
   return sum;
-}
-
-double Marcher::support(int lane, const PhaseWeights& phase) const {
-  double sine = 0, cosine = 0;
-  clamp_.drive(lane, sine, cosine);
-  return phase.along * sine + phase.across * cosine;
 }
 
 const double* Marcher::distributed_load(const Levels& levels, double t) {
@@ -73,20 +66,20 @@ double Marcher::depth(int lane, int point, double relative, double support) cons
 double Marcher::penetration(int lane) const {
   if (!program_.contact) return 0;
   const RowMatrix& rows = program_.model->contact();
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const double *lower = spec.lower.data(), *upper = spec.upper.data(), *q = slots_[0];
   const double phi = support(lane, time());
   double deepest = 0;
   for (int j = 0; j < rows.rows(); ++j) {
-    double sum = 0;
-    if (program_.flight && program_.width == 1) {
-      const int n = program_.model->rows();
-      const double relative =
-          flight_kernels().dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(j) * n, blocks_[0].data());
-      deepest = std::max(deepest, depth(lane, j, relative, phi));
-      continue;
-    }
-    for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
-      sum += rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
-    deepest = std::max(deepest, depth(lane, j, sum, phi));
+    double relative = 0;
+    if (program_.width == 1)
+      relative = program_.model->times(rows, j, q);
+    else
+      for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
+        relative +=
+            rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
+    const double place = relative + phi;
+    deepest = std::max({deepest, lower[j] - place, place - upper[j]});
   }
   return deepest;
 }

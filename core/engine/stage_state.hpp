@@ -6,6 +6,7 @@
 #include <ricochet/engine/active_system.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
 #include <ricochet/engine/stage_impulse.hpp>
+#include <ricochet/engine/step_observer.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -26,6 +27,7 @@ struct StageState {
   std::uint32_t touched_lanes = 0;  ///< lanes that the law looked at in this stage
   std::vector<double> update;       ///< slots × (slots + 1)
   std::vector<double> update_w;     ///< of each slot, the weight of w
+  StageView view;                   ///< what an observer is shown
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait
   ActiveSystem tangents;         ///< of the lane whose tangents are being corrected

@@ -51,27 +51,3 @@ TEST_CASE("the elastic energy of a smooth shape keeps its digits on a fine mesh"
   nudged[100] *= 1 + 1e-15;
   CHECK(std::abs(K(nudged.data()) - K(problem.position.data())) <= 1e-9 * exact);
 }
-
-TEST_CASE("one pass gives the form and a projection of any size, whatever the width") {
-  for (int n : {1, 2, 3, 4, 7, 8, 11, 12, 16, 31, 100})
-    for (int width : {0, 1, 2, 3, 5}) {
-      if (width >= n) continue;
-      Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-      for (int i = 0; i < n; ++i)
-        for (int s = 0; s <= width && i + s < n; ++s)
-          A(i, i + s) = A(i + s, i) = s == 0 ? 3.0 * (width + 1) : std::cos(0.9 * i + s);
-      const QuadraticForm form{SparseMatrix(A.sparseView())};
-      const auto x = some_vector(n, 0.1), h = some_vector(n, 0.7);
-      double projected = -1;
-      INFO(n << " rows, half-bandwidth " << width);
-      CHECK(form.swift(x.data()) == Approx(form(x.data())).epsilon(1e-13));
-      CHECK(form.swift(x.data(), h.data(), &projected) == form.swift(x.data()));
-      CHECK(projected == Approx(dense(Eigen::MatrixXd::Identity(n, n), h, x)).margin(1e-13 * n));
-    }
-}
-
-TEST_CASE("one pass keeps the digits of a smooth shape on a fine mesh") {
-  const SemiDiscrete problem = discretised(working_set(), 200, *mass("consistent"));
-  const QuadraticForm K(problem.stiffness);
-  CHECK(K.swift(problem.position.data()) == Approx(K(problem.position.data())).epsilon(1e-9));
-}

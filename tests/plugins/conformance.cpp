@@ -4,28 +4,13 @@
 #include <ricochet/scene/assembly.hpp>
 
 #include "tests/amplification_roots.hpp"
-#include "tests/marching.hpp"
+#include "tests/plugins/with_defaults.hpp"
 #include "tests/refusals.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
 
 namespace {
-
-// A parameter without default: the middle of a bounded range, else a stiffness-like number.
-Choice with_defaults(const PluginManual& manual) {
-  Choice choice{manual.name, {}};
-  for (const ParameterSpec& spec : manual.parameters) {
-    if (spec.fallback) continue;
-    if (spec.type == ParameterSpec::Type::word)
-      choice.values[spec.key] = spec.words.front();
-    else if (std::isfinite(spec.range.low) && std::isfinite(spec.range.high))
-      choice.values[spec.key] = 0.5 * (spec.range.low + spec.range.high);
-    else
-      choice.values[spec.key] = 1e5;
-  }
-  return choice;
-}
 
 std::vector<Choice> all(Role role) {
   std::vector<Choice> choices;

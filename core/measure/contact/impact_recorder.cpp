@@ -27,7 +27,9 @@ ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std
     state.stops.resize(2 * static_cast<std::size_t>(points));
     state.impacts.reserve(std::min<std::size_t>(most, 64));
   }
-  if (!marcher.program().contact) return;
+  // Steps that are left out have no increment of their own.
+  if (!marcher.program().flight) increment_slot_ = marcher.program().increment_slot;
+  if (!marcher.program().contact || increment_slot_ >= 0) return;
   earlier_.resize(static_cast<std::size_t>(model_.rows()) * static_cast<std::size_t>(T_));
   latest_.resize(earlier_.size());
 }
@@ -136,17 +138,21 @@ void ImpactRecorder::press(Lane& lane, int point, double lasts) {
 // What the last sub-step was, for the points that wait for it.
 void ImpactRecorder::open_instant(const Marcher& marcher, const StageView& view) {
   lasts_ = 0;
-  move_to(marcher, view.slots[0], view.from);
+  move_to(marcher, view.slots, view.from);
 }
 
-// Keeps the positions at a time, and those before them. Stages of a start rule may ask several times at the same.
-void ImpactRecorder::move_to(const Marcher& marcher, const double* positions, double time) {
+// Keeps the positions at a time, and those before them; where a slot holds what they differ by, that is enough. Stages
+// of a start rule may ask several times at the same.
+void ImpactRecorder::move_to(const Marcher& marcher, const double* const* slots, double time) {
   const bool moves = known_ > 0 && time > latest_time_ + 1e-9 * h_;
   if (moves) {
     earlier_.swap(latest_);
     earlier_time_ = latest_time_;
   }
-  std::copy_n(positions, latest_.size(), latest_.data());
+  if (increment_slot_ >= 0)
+    increment_ = slots[increment_slot_];
+  else
+    std::copy_n(slots[0], latest_.size(), latest_.data());
   latest_time_ = time;
   known_ = moves ? 2 : std::max(known_, 1);
   if (!moves) return;
@@ -165,11 +171,12 @@ double ImpactRecorder::velocity(const Marcher& marcher, int lane, int point, dou
     return speed;
   }
   const RowMatrix& rows = model_.contact();
+  if (increment_ && T_ == 1) return (model_.times(rows, point, increment_) + lift) / (latest_time_ - earlier_time_);
   double way = 0;
   for (int e = rows.start[static_cast<std::size_t>(point)]; e < rows.start[static_cast<std::size_t>(point) + 1]; ++e) {
     const auto at = static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)]) * static_cast<std::size_t>(T_) +
                     static_cast<std::size_t>(lane);
-    way += rows.value[static_cast<std::size_t>(e)] * (latest_[at] - earlier_[at]);
+    way += rows.value[static_cast<std::size_t>(e)] * (increment_ ? increment_[at] : latest_[at] - earlier_[at]);
   }
   return (way + lift) / (latest_time_ - earlier_time_);
 }
@@ -246,7 +253,7 @@ void ImpactRecorder::close_instant(const Marcher& marcher, const StageView& view
 }
 
 void ImpactRecorder::finish(const Marcher& marcher) {
-  if (known_ > 0 && marcher.time() > latest_time_) move_to(marcher, marcher.slot(0), marcher.time());
+  if (known_ > 0 && marcher.time() > latest_time_) move_to(marcher, marcher.slots(), marcher.time());
 }
 
 double ImpactRecorder::take_peak(int lane) {

@@ -60,8 +60,9 @@ struct StopTotals {
 
 /// Writes down the impacts of every contact point of every lane. Passes everything on to the observer behind it.
 ///
-/// A step costs one copy of the positions; a point that is open costs nothing more. Nothing is allocated but by an
-/// impact, when the list grows. Beyond `most` impacts of a lane the list ends, totals go on.
+/// A step costs one copy of the positions where no slot of the plan holds what they moved by; a point that is open
+/// costs nothing more. Nothing is allocated but by an impact, when the list grows. Beyond `most` impacts of a lane the
+/// list ends, totals go on.
 class ImpactRecorder final : public StepObserver {
  public:
   static constexpr std::size_t most_impacts = 100000;
@@ -113,7 +114,7 @@ class ImpactRecorder final : public StepObserver {
     return lane.stops[2 * static_cast<std::size_t>(point) + (side > 0 ? 0U : 1U)];
   }
   void open_instant(const Marcher& marcher, const StageView& view);
-  void move_to(const Marcher& marcher, const double* positions, double time);
+  void move_to(const Marcher& marcher, const double* const* slots, double time);
   void moved(const Marcher& marcher, int lane);
   double velocity(const Marcher& marcher, int lane, int point, double lift) const;
   double lift(const Marcher& marcher, int lane) const;
@@ -128,6 +129,8 @@ class ImpactRecorder final : public StepObserver {
   double h_;
   int T_;
   std::vector<Lane> lanes_;
+  int increment_slot_ = -1;               // holds what the positions moved by; −1: they are kept
+  const double* increment_ = nullptr;     // that slot, before the stages of the instant under way
   std::vector<double> earlier_, latest_;  // positions before the instant before the one under way, and before that one
   double earlier_time_ = 0, latest_time_ = 0;
   int known_ = 0;           // how many of these there are

@@ -1,28 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/instruction_set.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
 namespace {
-
-RICOCHET_AVX2_ALONE void add_wide(double w, const double* x, std::size_t rows, double* __restrict out) {
-  for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
-}
-
-// out += w · lane of x; the stride is written out for one lane, where the loop then vectorises.
-void accumulate(double w, const double* x, std::size_t stride, std::size_t lane, std::vector<double>& out) {
-  if (w == 0) return;
-  const std::size_t rows = out.size();
-  if (stride == 1 && has_avx2())
-    add_wide(w, x, rows, out.data());
-  else if (stride == 1)
-    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i];
-  else
-    for (std::size_t i = 0; i < rows; ++i) out[i] += w * x[i * stride + lane];
-}
 
 // Whether a law that touches nothing has seen every point between its stops where the step ends.
 bool measures_the_end(const Program& program) {
@@ -55,16 +38,16 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
     : model_(*marcher.program().model),
       mass_(QuadraticForm::of(model_.inertia())),
       stiffness_(model_.stiffness()),
-      works_(marcher),
+      energies_(marcher, mass_, stiffness_),
+      works_(marcher, mass_, stiffness_),
       looks_(looks),
       h_(marcher.program().h),
       T_(marcher.width()),
       compliant_(marcher.law().reads().has_value()),
       mean_velocity_(marcher.program().velocity_offset != 0) {
-  const auto rows = static_cast<std::size_t>(model_.rows());
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     Lane& state = lanes_.emplace_back(model_.problem().points());
-    state.increment.assign(rows, 0.0);
+    if (marcher.program().increment_slot < 0) state.increment = Block(model_.rows(), 1);
     state.duration = h_;
     state.energy.first = state.energy.last = state.now = initial_energy(marcher, lane);
     // A scheme with an energy of its own has it once its start rule is through.
@@ -81,51 +64,27 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
   for (const auto* stages : {&marcher.program().start, &marcher.program().stages})
     for (const StageProgram& stage : *stages) memory_ = std::max(memory_, static_cast<int>(stage.work_effort.size()));
   ends_measured_ = measures_the_end(marcher.program());
-  first_.resize(rows);
-  second_.resize(rows);
-}
-
-void EnergyAudit::combine(const double* const* slots, const double* z, const Combination& c, int lane,
-                          std::vector<double>& out) const {
-  const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
-  std::fill(out.begin(), out.end(), 0.0);
-  if (z) accumulate(c.z, z, T, l, out);
-  for (std::size_t j = 0; j < c.slots.size(); ++j) accumulate(c.slots[j], slots[j], T, l, out);
-}
-
-double EnergyAudit::scheme_energy(const Marcher& marcher, int lane) {
-  double energy = 0;
-  for (const QuadraticTerm& term : marcher.program().plan.energy) {
-    if (term.coefficient == 0) continue;
-    const bool mass = term.matrix == QuadraticTerm::Matrix::M;
-    std::fill(first_.begin(), first_.end(), 0.0);
-    for (std::size_t j = 0; j < term.slots.size(); ++j)
-      accumulate(term.slots[j], marcher.slot(static_cast<int>(j)), static_cast<std::size_t>(T_),
-                 static_cast<std::size_t>(lane), first_);
-    energy += term.coefficient * (mass ? mass_(first_.data()) : stiffness_(first_.data()));
+  if (marcher.program().increment_slot < 0) {
+    for (const StageProgram& stage : marcher.program().start) start_ways_.emplace_back(stage.facts.increment);
+    for (const StageProgram& stage : marcher.program().stages) ways_.emplace_back(stage.facts.increment);
   }
-  return energy;
+  scratch_ = Block(model_.rows(), 1);
 }
 
-// The slots hold the state at time t, `increment` what led to it.
-EnergySample EnergyAudit::sample(const Marcher& marcher, const double* const* slots, double t, int lane) {
+// After a step.
+EnergySample EnergyAudit::sample(const Marcher& marcher, int lane) {
   const Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
+  const StateEnergies::Values values = energies_.read(marcher.slots(), state.increment.data(), state.duration, lane);
   EnergySample sample;
-  std::vector<double>& place = second_;
-  if (mean_velocity_) {
-    for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l] - 0.5 * state.increment[i];
-    sample.kinetic = 0.5 * mass_(state.increment.data()) / (state.duration * state.duration);
-  } else {
-    combine(slots, nullptr, marcher.program().plan.velocity, lane, first_);
-    for (std::size_t i = 0; i < place.size(); ++i) place[i] = slots[0][i * T + l];
-    sample.kinetic = 0.5 * mass_(first_.data());
+  sample.kinetic = values.kinetic;
+  sample.elastic = values.elastic;
+  if (marcher.program().contact && compliant_) {
+    const double t = marcher.time();
+    double phi = marcher.support(lane, t);
+    if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
+    sample.contact = potential(marcher, energies_.place(), phi, lane);
   }
-  sample.elastic = 0.5 * stiffness_(place.data());
-  if (!marcher.program().contact || !compliant_) return sample;
-  double phi = marcher.support(lane, t);
-  if (mean_velocity_) phi = 0.5 * (phi + marcher.support(lane, t - state.duration));
-  sample.contact = potential(marcher, place.data(), phi, lane);
+  sample.scheme = state.energy.own_energy ? values.scheme : sample.common();
   return sample;
 }
 
@@ -164,41 +123,44 @@ void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane
   state.look_next = false;
 }
 
-// What the position moves by, where the energies after the step are looked at.
-void EnergyAudit::follow_position(const StageView& view, int lane) {
+// What the position moves by, where the energies after the step are looked at and no slot holds it.
+void EnergyAudit::follow_position(const StageView& view, int lane, bool moves) {
+  Block& increment = lanes_[static_cast<std::size_t>(lane)].increment;
+  if (moves || view.stage == 0) increment.fill(0.0);
+  const WeighedTerms& way = (view.starting ? start_ways_ : ways_)[static_cast<std::size_t>(view.stage)];
+  const double* moved = LaneSum(way, view.slots, view.z, view.w, T_, lane).write(scratch_);
+  for (std::size_t i = 0; i < scratch_.size(); ++i) increment.data()[i] += moved[i];
+}
+
+// The balance begins before the first stage that has a work form.
+void EnergyAudit::start_balance(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const StageFacts& facts = view.program->facts;
-  const bool moves = facts.to != facts.from;
-  if (moves) state.duration = (facts.to - facts.from) * h_;
-  if (!state.looking) return;
-  if (moves || view.stage == 0) std::fill(state.increment.begin(), state.increment.end(), 0.0);
-  combine(view.slots, view.z, facts.increment, lane, first_);
-  if (view.w)
-    accumulate(facts.increment.w, view.w, static_cast<std::size_t>(T_), static_cast<std::size_t>(lane), first_);
-  for (std::size_t i = 0; i < first_.size(); ++i) state.increment[i] += first_[i];
+  state.energy.scheme_start = energies_.scheme(view.slots, lane);
+  state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
+  state.has_scheme = true;
 }
 
 void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
+  const StageFacts& facts = view.program->facts;
+  const bool moves = facts.to != facts.from, balanced = view.plan->work || !view.starting;
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (view.stage == 0) begin_step(marcher, view, state);
-    const bool balanced = view.plan->work || !view.starting;
-    if (!state.has_scheme && balanced) {
-      state.energy.scheme_start = scheme_energy(marcher, lane);
-      state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
-      state.has_scheme = true;
-    }
-    follow_position(view, lane);
-    state.quiet = ((view.contact_lanes >> lane) & 1u) ? 0 : state.quiet + 1;
-    if (view.effort) count_contact(view, lane);
-    works_.add(marcher, view, lane, {mass_, stiffness_}, balanced, state.quiet < memory_, state.step);
+    if (!state.has_scheme && balanced) start_balance(view, lane);
+    if (moves) state.duration = (facts.to - facts.from) * h_;
+    if (state.looking && !ways_.empty()) follow_position(view, lane, moves);
+    const bool pushed = ((view.contact_lanes >> lane) & 1u) != 0;
+    state.quiet = pushed ? 0 : state.quiet + 1;
+    if (view.effort && (pushed || !state.still || ((view.touched_lanes >> lane) & 1u) != 0)) count_contact(view, lane);
+    works_.add(marcher, view, lane, balanced, state.quiet < memory_, state.step);
   }
 }
 
 void EnergyAudit::count_contact(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   ContactTotals& contact = state.contact;
+  state.still = false;
   if (view.program->opens_instant) state.force = 0;
   const LaneOutcome& outcome = view.outcome[lane];
   if ((view.touched_lanes >> lane) & 1u) {
@@ -227,7 +189,8 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   ContactTotals& contact = state.contact;
   contact.force = state.force;
   contact.active = 0;
-  if (state.closed.idle()) return;
+  state.still = state.closed.idle();
+  if (state.still) return;
   const ClosedPoints::Change change = state.closed.end_instant();
   contact.active = change.active;
   contact.active_set_changes += change.changed;
@@ -243,7 +206,20 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
 
 double EnergyAudit::tip_velocity(int lane) const {
   const Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  return (state.lift + model_.tip().times(0, state.increment.data())) / state.duration;
+  return state.tip_way / state.duration;
+}
+
+// What the tip moved by over the last sub-step, relative to the clamp.
+double EnergyAudit::tip_increment(const Marcher& marcher, int lane) const {
+  const int slot = marcher.program().increment_slot;
+  const Block& own = lanes_[static_cast<std::size_t>(lane)].increment;
+  if (slot < 0) return model_.times(model_.tip(), 0, own.data());
+  if (T_ == 1) return model_.times(model_.tip(), 0, marcher.slot(slot));
+  const RowMatrix& row = model_.tip();
+  double sum = 0;
+  for (std::size_t e = 0; e < row.index.size(); ++e)
+    sum += row.value[e] * marcher.slot(slot)[static_cast<std::ptrdiff_t>(row.index[e]) * T_ + lane];
+  return sum;
 }
 
 double EnergyAudit::lost_at_stops(int lane) const {
@@ -273,10 +249,8 @@ void EnergyAudit::step_done(Marcher& marcher) {
 void EnergyAudit::look(Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const double t = marcher.time();
-  EnergySample sample = this->sample(marcher, marcher.slots(), t, lane);
-  state.lift = marcher.support(lane, t) - marcher.support(lane, t - state.duration);
-  const bool declares = !marcher.program().plan.energy.empty();
-  sample.scheme = declares ? scheme_energy(marcher, lane) : sample.common();
+  const EnergySample sample = this->sample(marcher, lane);
+  state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
   confirm(state, sample.scheme, false);
   state.now = state.energy.last = sample;
   const double energy = sample.common();
@@ -328,7 +302,7 @@ void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
   state.look_next = true;
   state.gain = std::max(state.gain, steps.works.gain);
   state.since += flown;
-  confirm(state, scheme_energy(marcher, 0), true);
+  confirm(state, energies_.scheme(marcher.slots(), 0), true);
   if (steps.held.empty()) return;
   ContactTotals& contact = state.contact;
   contact.contact_steps += steps.instants * steps.steps;

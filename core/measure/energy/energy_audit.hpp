@@ -1,9 +1,8 @@
 #pragma once
 #include <algorithm>
-#include <ricochet/algebra/quadratic_form.hpp>
-#include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/closed_points.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
+#include <ricochet/measure/energy/state_energies.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -110,8 +109,9 @@ class EnergyAudit final : public StepObserver {
     EnergySample now;
     ContactTotals contact;
     explicit Lane(int points) : closed(points) {}
-    std::vector<double> increment;  // of the position, over the stages of the last sub-step; where that is looked at
-    double duration = 0;            // of it, s
+    // Of the position over the stages of the last sub-step, where that is looked at; empty where a slot holds it.
+    Block increment;
+    double duration = 0;  // of that sub-step, s
     ClosedPoints closed;
     double force = 0;  // of the present instant
     Works step;        // of the step under way
@@ -120,29 +120,30 @@ class EnergyAudit final : public StepObserver {
     int steps = 0;     // how many
     int quiet = 0;     // stages since the last effort
     double penetration = 0;
-    double lift = 0;  // of the support over the last sub-step
+    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was looked at
     bool has_scheme = false;
     bool balanced = false;   // whether works are believed between looks
     bool looking = true;     // at the step under way
     bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
     bool touched = false;    // whether the law looked at contact where the step ends
+    bool still = false;      // no effort acts, none did at the instant before, and that has been counted
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
-  EnergySample sample(const Marcher& marcher, const double* const* slots, double t, int lane);
-  double scheme_energy(const Marcher& marcher, int lane);
+  EnergySample sample(const Marcher& marcher, int lane);
   bool to_be_seen(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
-  void follow_position(const StageView& view, int lane);
+  void start_balance(const StageView& view, int lane);
+  void follow_position(const StageView& view, int lane, bool moves);
+  double tip_increment(const Marcher& marcher, int lane) const;
   void look(Marcher& marcher, int lane);
   void confirm(Lane& state, double scheme, bool flown);
-  void combine(const double* const* slots, const double* z, const Combination& c, int lane,
-               std::vector<double>& out) const;
   void count_contact(const StageView& view, int lane);
   void close_instant(const StageView& view, Lane& state);
 
   const MarchModel& model_;
   QuadraticForm mass_, stiffness_;
+  StateEnergies energies_;
   StageWorks works_;
   Looks looks_;
   long long asked_ = -1;
@@ -151,7 +152,8 @@ class EnergyAudit final : public StepObserver {
   bool compliant_, mean_velocity_, balances_ = false, ends_measured_ = false;
   int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;
-  std::vector<double> first_, second_;
+  std::vector<WeighedTerms> start_ways_, ways_;  // of the position, by stage; none where a slot holds it
+  Block scratch_;
 };
 
 }  // namespace ricochet

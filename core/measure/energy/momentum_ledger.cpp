@@ -42,8 +42,7 @@ void MomentumLedger::restart() {
   moving_ = false;
 }
 
-void MomentumLedger::stage(bool starting, std::size_t k, double force) {
-  if (!moving_ && force == 0) return;
+void MomentumLedger::move(bool starting, std::size_t k, double force) {
   moving_ = true;
   quiet_ = force == 0 ? quiet_ + 1 : 0;
   // Only as far back as some stage looks.
@@ -64,8 +63,7 @@ void MomentumLedger::stage(bool starting, std::size_t k, double force) {
   state_ = next;
 }
 
-void MomentumLedger::step_done() {
-  if (!moving_) return;
+void MomentumLedger::settle() {
   double velocity = 0;
   for (std::size_t j = 0; j < slot_count_; ++j) velocity += reads_[j] * state_[j];
   const double change = std::abs(velocity - velocity_);

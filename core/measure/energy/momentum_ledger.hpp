@@ -14,8 +14,12 @@ class MomentumLedger {
   explicit MomentumLedger(const Program& program);
 
   /// Σ_i p_i that stage `k` of the start rule or of a step found (0 where it found none); every stage in turn.
-  void stage(bool starting, std::size_t k, double force);
-  void step_done();
+  void stage(bool starting, std::size_t k, double force) {
+    if (moving_ || force != 0) move(starting, k, force);
+  }
+  void step_done() {
+    if (moving_) settle();
+  }
   /// Whether efforts found so far still give some.
   bool moving() const { return moving_; }
   /// Where the scheme's velocity stands: at Program::velocity_offset.
@@ -31,6 +35,8 @@ class MomentumLedger {
     std::size_t efforts = 0;
   };
   Stage describe(const ricochet::Stage& plan, const StageProgram& program) const;
+  void move(bool starting, std::size_t k, double force);
+  void settle();
   void restart();
 
   std::size_t slot_count_ = 0;

@@ -1,16 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
 
 namespace ricochet {
-namespace {
-
-constexpr int unknown_z = -1, unknown_w = -2;
-
-}  // namespace
-
 Works& Works::operator+=(const Works& other) {
   loads += other.loads;
   damping += other.damping;
@@ -20,120 +13,99 @@ Works& Works::operator+=(const Works& other) {
   return *this;
 }
 
-StageWorks::StageWorks(const Marcher& marcher)
+StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const QuadraticForm& stiffness)
     : model_(*marcher.program().model),
-      kernels_(lane_kernels(1)),
+      mass_(mass),
+      stiffness_(stiffness),
+      mass_form_(mass),
+      stiffness_form_(stiffness),
       damping_(model_.problem().damping),
+      damped_(damping_.stiffness != 0 || damping_.mass != 0),
+      projected_(marcher.program().support),
       T_(marcher.width()),
       displacement_(model_.rows(), 1),
       rate_(model_.rows(), 1) {
+  const double* shape = projected_ ? model_.support_shape().data() : nullptr;
+  const SparseMatrix nothing(model_.rows(), model_.rows());
+  first_ = CombinedForm(damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing), shape);
   const StepPlan& plan = marcher.program().plan;
+  const bool alone = T_ == 1 && !marcher.program().load && (projected_ || damped_);
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;
   for (const Stage& stage : plan.start) start_.push_back(describe(stage, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
-}
-
-StageWorks::Terms StageWorks::terms_of(const Combination& c) {
-  Terms terms;
-  const auto add = [&](int which, double weight) {
-    if (weight == 0) return;
-    terms.which.push_back(which);
-    terms.weight.push_back(weight);
-  };
-  for (std::size_t j = 0; j < c.slots.size(); ++j) add(static_cast<int>(j), c.slots[j]);
-  add(unknown_z, c.z);
-  add(unknown_w, c.w);
-  return terms;
+  for (auto* stages : {&start_, &stages_})
+    for (StageTerms& stage : *stages) {
+      const std::vector<int>& which = stage.displacement.which;
+      const bool jumps = std::find(which.begin(), which.end(), WeighedTerms::unknown_w) != which.end();
+      const bool across = damped_ && stage.along == 0;
+      if (!alone || which.empty() || which.size() > CombinedForm::most_terms || jumps || across || stage.by_mass != 0 ||
+          !stage.losses.empty())
+        continue;
+      const double scale = stage.displacement.weight[0];
+      stage.passes = static_cast<int>(which.size());
+      stage.by_pass = scale * scale * stage.by_first;
+      stage.pass_load = stage.load;
+      stage.pass_load.along *= scale;
+      stage.pass_load.across *= scale;
+    }
 }
 
 StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation, double h) const {
   StageTerms stage;
-  for (const LossTerm& term : plan.loss) stage.losses.push_back(terms_of(term.value));
+  for (const LossTerm& term : plan.loss)
+    if (term.coefficient != 0) stage.losses.push_back({term.matrix, term.coefficient, WeighedTerms(term.value)});
   if (!plan.work) return stage;
-  stage.displacement = terms_of(plan.work->displacement);
-  stage.rate = terms_of(plan.work->rate);
+  stage.displacement = WeighedTerms(plan.work->displacement);
+  stage.rate = WeighedTerms(plan.work->rate);
   stage.load = PhaseWeights(plan.work->load, pulsation, h);
+  stage.load.along *= pulsation * pulsation;
+  stage.load.across *= pulsation * pulsation;
   stage.support = PhaseWeights(plan.work->support, pulsation, h);
   const std::vector<double>&s = stage.displacement.weight, &r = stage.rate.weight;
-  if (s.empty() || stage.rate.which != stage.displacement.which) return stage;
+  if (!damped_ || s.empty() || stage.rate.which != stage.displacement.which) return stage;
   const double ratio = r[0] / s[0];
   constexpr double round_off = 1e-14;
   const bool parallel = std::equal(s.begin(), s.end(), r.begin(), [&](double a, double b) {
     return std::abs(b - ratio * a) <= round_off * std::abs(b);
   });
-  if (parallel) stage.along = ratio;
+  if (!parallel) return stage;
+  stage.along = ratio;
+  stage.by_first = ratio * (damping_.stiffness != 0 ? damping_.stiffness : damping_.mass);
+  stage.by_mass = damping_.stiffness != 0 ? ratio * damping_.mass : 0.0;
   return stage;
 }
 
-// The lane's numbers of a combination; where they stand already, they are not copied.
-const double* StageWorks::combine(const StageView& view, const Terms& terms, int lane, Block& out) const {
-  std::array<const double*, most_slots + 2> x;
-  std::array<double, most_slots + 2> weight;
-  int count = 0;
-  for (std::size_t k = 0; k < terms.which.size(); ++k) {
-    const int which = terms.which[k];
-    const double* from = which >= 0 ? view.slots[which] : which == unknown_z ? view.z : view.w;
-    if (!from) continue;  // nothing jumped
-    x[static_cast<std::size_t>(count)] = from;
-    weight[static_cast<std::size_t>(count++)] = terms.weight[k];
-  }
-  if (T_ == 1 && count == 1 && weight[0] == 1) return x[0];
-  if (T_ == 1 && count > 0 && count <= most_lane_slots) {
-    kernels_.combine(static_cast<long>(out.size()), count, x.data(), weight.data(), out.data());
-    return out.data();
-  }
-  out.fill(0.0);
-  const auto T = static_cast<std::size_t>(T_), l = static_cast<std::size_t>(lane);
-  for (int k = 0; k < count; ++k) {
-    const double w = weight[static_cast<std::size_t>(k)];
-    const double* from = x[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += w * from[i * T + l];
-  }
-  return out.data();
-}
-
-void StageWorks::add(const Marcher& marcher, const StageView& view, int lane, const Forms& forms, bool losses,
-                     bool acting, Works& works) {
-  const StageTerms& stage = (view.starting ? start_ : stages_)[static_cast<std::size_t>(view.stage)];
-  for (std::size_t k = 0; losses && k < stage.losses.size(); ++k) {
-    const LossTerm& term = view.plan->loss[k];
-    if (term.coefficient == 0) continue;
-    const double* value = combine(view, stage.losses[k], lane, displacement_);
-    works.scheme += term.coefficient * (term.matrix == EnergyMatrix::M ? forms.mass : forms.stiffness).swift(value);
-  }
-  if (!view.plan->work) return;
-  const Program& program = marcher.program();
-  const bool damped = damping_.stiffness != 0 || damping_.mass != 0;
-  const bool contact = view.effort && (acting || ((view.contact_lanes >> lane) & 1u));
-  if (!program.support && !program.load && !damped && !contact) return;
-  const double* s = combine(view, stage.displacement, lane, displacement_);
-  const double* shape = program.support ? model_.support_shape().data() : nullptr;
-  double along = 0;
-  if (damped && stage.along != 0) {
-    // The form that is asked for takes the shape along.
-    const bool both = damping_.stiffness != 0 && damping_.mass != 0;
-    const QuadraticForm& first = damping_.stiffness != 0 ? forms.stiffness : forms.mass;
-    const double weight = damping_.stiffness != 0 ? damping_.stiffness : damping_.mass;
-    works.damping += weight * (stage.along * first.swift(s, shape, &along));
-    if (both) works.damping += damping_.mass * (stage.along * forms.mass.swift(s));
-  } else {
-    if (damped) {
-      const double* r = combine(view, stage.rate, lane, rate_);
-      if (damping_.stiffness != 0) works.damping += damping_.stiffness * forms.stiffness(s, r);
-      if (damping_.mass != 0) works.damping += damping_.mass * forms.mass(s, r);
+void StageWorks::add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
+                         bool contact, Works& works) {
+  const auto sum = [&](const WeighedTerms& terms) { return LaneSum(terms, view.slots, view.z, view.w, T_, lane); };
+  if (losses)
+    for (const Loss& loss : stage.losses) {
+      const CombinedForm& form = loss.matrix == EnergyMatrix::M ? mass_form_ : stiffness_form_;
+      works.scheme += loss.coefficient * sum(loss.value).under(form, displacement_).form;
     }
-    if (shape) along = flight_kernels().dot(model_.rows(), shape, s);
+  if (!view.plan->work) return;
+  const bool load = marcher.program().load, across = damped_ && stage.along == 0;
+  if (!projected_ && !damped_ && !load && !contact) return;
+  const LaneSum s = sum(stage.displacement);
+  const bool passes = projected_ || (damped_ && !across), numbers = contact || load || across;
+  if (passes) {
+    const CombinedForm::Value value = s.under(first_, displacement_, numbers ? &displacement_ : nullptr);
+    works.damping += stage.by_first * value.form;
+    if (projected_) works.loads += marcher.support(lane, stage.load) * value.projection;
+    if (stage.by_mass != 0) works.damping += stage.by_mass * s.under(mass_form_, rate_).form;
   }
-  if (program.support) {
-    // −φ'' = ω² φ for the harmonic support.
-    const double omega = model_.problem().support.pulsation;
-    works.loads += omega * omega * marcher.support(lane, stage.load) * along;
+  if (!numbers) return;
+  const double* way = passes ? displacement_.data() : s.write(displacement_);
+  if (across) {
+    const double* rate = sum(stage.rate).write(rate_);
+    if (damping_.stiffness != 0) works.damping += damping_.stiffness * stiffness_(way, rate);
+    if (damping_.mass != 0) works.damping += damping_.mass * mass_(way, rate);
   }
-  if (program.load) {
-    const double* load = const_cast<Marcher&>(marcher).distributed_load(view.plan->work->load, view.time);
-    works.loads += flight_kernels().dot(model_.rows(), load, s);
+  if (load) {
+    const double* F = const_cast<Marcher&>(marcher).distributed_load(view.plan->work->load, view.time);
+    works.loads += flight_kernels().dot(model_.rows(), F, way);
   }
-  if (contact) add_contact(marcher, view, stage, lane, s, works);
+  if (contact) add_contact(marcher, view, stage, lane, way, works);
 }
 
 void StageWorks::add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane,
@@ -145,7 +117,7 @@ void StageWorks::add_contact(const Marcher& marcher, const StageView& view, cons
     for (int k = 0; k < std::min(static_cast<int>(weights.size()), view.efforts); ++k)
       if (view.effort[k]) effort += weights[static_cast<std::size_t>(k)] * view.effort[k][j * T_ + lane];
     if (effort == 0) return;
-    works.contact += effort * (model_.measured().times(j, s) + lift);
+    works.contact += effort * (model_.times(model_.measured(), j, s) + lift);
     works.loads -= effort * lift;
   };
   if (weights.size() > 1)

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
@@ -31,15 +29,6 @@ Cubic cubic(double s) {
   return {{-b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6},
           {-(c * d + b * d + b * c) / 6, (c * d + a * d + a * c) / 2, -(b * d + a * d + a * b) / 2,
            (b * c + a * c + a * b) / 6}};
-}
-
-constexpr int block = 8;
-
-// Whether `block` points have no effort.
-bool all_free(const double* efforts, int stride) {
-  std::uint64_t any = 0;
-  for (int j = 0; j < block; ++j) any |= std::bit_cast<std::uint64_t>(efforts[j * stride]) << 1U;  // −0 is no effort
-  return any == 0;
 }
 
 // A time is a step when it is one up to the rounding of two decimal numbers.
@@ -114,14 +103,9 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
 
 void ContactLog::look(const Marcher& marcher, const StageView& view) {
   const double* efforts = view.effort[0];
-  const int points = problem_.points();
   state_known_ = false;
   double force = 0;
-  for (int j = 0; j < points; ++j) {
-    // Most points of most steps are free: eight at a time are passed over.
-    if (j % block == 0)
-      while (j + block <= points && all_free(efforts + j * T_, T_)) j += block;
-    if (j >= points) break;
+  for (const int j : view.pushed) {
     const double p = efforts[j * T_];
     if (p == 0) continue;
     force += p;
@@ -180,7 +164,11 @@ MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObser
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),
       strains_(strain_rows(marcher.program().problem->space, grid.places)),
-      offset_(marcher.program().velocity_offset) {}
+      offset_(marcher.program().velocity_offset) {
+  const std::size_t times = grid_.times.size(), fields = times * grid_.places.size();
+  for (auto* series : {&motion_.tip, &motion_.tip_velocity, &motion_.energy, &motion_.impulse}) series->reserve(times);
+  for (auto* field : {&motion_.displacement, &motion_.strain, &motion_.velocity}) field->reserve(fields);
+}
 
 void MotionSampler::keep() {
   constexpr std::size_t window = 5;

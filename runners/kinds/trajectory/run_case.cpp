@@ -22,7 +22,7 @@ namespace ricochet {
 namespace {
 
 // The audit costs about this much more than the step alone.
-constexpr double audit_seconds_per_step = 1.5e-7;
+constexpr double audit_seconds_per_step = 1e-7;
 
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
 // samples. Passes everything on to the observer behind it.

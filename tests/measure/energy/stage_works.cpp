@@ -1,0 +1,166 @@
+// The ledger of a step is that of its definition: every term worked out again with whole matrices, at every step, and
+// the energies of every step between them.
+#include <ricochet/measure/energy/energy_audit.hpp>
+
+#include "tests/plugins/with_defaults.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+/// The terms of one lane as a plan declares them, in the coordinates of the march.
+class DefinedLedger final : public StepObserver {
+ public:
+  DefinedLedger(const Marcher& marcher, int lane, EnergyAudit& audit) : lane_(lane), audit_(audit) {
+    const MarchModel& model = *marcher.program().model;
+    const Damping& damping = model.problem().damping;
+    K_ = Eigen::MatrixXd(model.stiffness());
+    M_ = model.modal() ? Eigen::MatrixXd(model.inertia().mass) : dense_mass(model.inertia());
+    C_ = damping.stiffness * K_ + damping.mass * M_;
+  }
+
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    if (view.plan->work || !view.starting) {
+      if (!begun_) start_ = energy(marcher);
+      begun_ = true;
+      for (const LossTerm& term : view.plan->loss)
+        sums_.scheme += term.coefficient * form(term.matrix, combined(marcher, view, term.value));
+    }
+    if (view.plan->work) add_work(marcher, view, *view.plan->work);
+    audit_.stage_solved(marcher, view);
+  }
+
+  void step_done(Marcher& marcher) override {
+    audit_.step_done(marcher);
+    if (!begun_) return;
+    const Works& w = sums_;
+    worst_ = std::max(worst_, std::abs(energy(marcher) - start_ - w.loads + w.damping + w.scheme - w.contact));
+    size_ = std::max({size_, std::abs(start_), std::abs(w.loads), std::abs(w.contact), w.damping});
+  }
+
+  const Works& sums() const { return sums_; }
+  /// Largest part of the energy, at any step, that the terms do not explain; and the largest of these.
+  double worst() const { return worst_; }
+  double size() const { return size_; }
+
+ private:
+  double form(EnergyMatrix matrix, const Eigen::VectorXd& x) const {
+    return x.dot((matrix == EnergyMatrix::M ? M_ : K_) * x);
+  }
+  Eigen::VectorXd lane_of(const Marcher& marcher, const double* block) const {
+    Eigen::VectorXd x(M_.rows());
+    for (int i = 0; i < x.size(); ++i) x[i] = block[i * marcher.width() + lane_];
+    return x;
+  }
+  Eigen::VectorXd combined(const Marcher& marcher, const StageView& view, const Combination& c) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(M_.rows());
+    for (std::size_t j = 0; j < c.slots.size(); ++j) sum += c.slots[j] * lane_of(marcher, view.slots[j]);
+    if (c.z != 0) sum += c.z * lane_of(marcher, view.z);
+    if (c.w != 0 && view.w) sum += c.w * lane_of(marcher, view.w);
+    return sum;
+  }
+  double energy(const Marcher& marcher) const {
+    double sum = 0;
+    for (const QuadraticTerm& term : marcher.program().plan.energy) {
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(M_.rows());
+      for (std::size_t j = 0; j < term.slots.size(); ++j)
+        x += term.slots[j] * lane_of(marcher, marcher.slot(static_cast<int>(j)));
+      sum += term.coefficient * form(term.matrix, x);
+    }
+    return sum;
+  }
+  void add_work(const Marcher& marcher, const StageView& view, const WorkForm& work) {
+    const MarchModel& model = *marcher.program().model;
+    const double t = view.time, omega = model.problem().support.pulsation;
+    const Eigen::VectorXd s = combined(marcher, view, work.displacement);
+    sums_.damping += s.dot(C_ * combined(marcher, view, work.rate));
+    sums_.loads += omega * omega * marcher.support_levels(lane_, t, work.load) * model.support_shape().dot(s);
+    if (const double* F = const_cast<Marcher&>(marcher).distributed_load(work.load, t))
+      sums_.loads += Eigen::Map<const Eigen::VectorXd>(F, s.size()).dot(s);
+    if (!view.effort) return;
+    const double lift = marcher.support_levels(lane_, t, work.support);
+    const std::vector<double>& weights = view.program->work_effort;
+    for (int j = 0; j < model.problem().points(); ++j) {
+      double effort = 0;
+      for (std::size_t k = 0; k < weights.size() && static_cast<int>(k) < view.efforts; ++k)
+        if (view.effort[k]) effort += weights[k] * view.effort[k][j * marcher.width() + lane_];
+      sums_.contact += effort * (model.measured().times(j, s.data()) + lift);
+      sums_.loads -= effort * lift;
+    }
+  }
+
+  int lane_;
+  EnergyAudit& audit_;
+  Eigen::MatrixXd M_, K_, C_;
+  Works sums_;
+  bool begun_ = false;
+  double start_ = 0, worst_ = 0, size_ = 0;
+};
+
+SceneSpec busy_scene(const Damping& damping, bool loaded) {
+  SceneSpec scene = working_set();
+  beam_of(scene).damping = damping;
+  scene.support.amplitude = 0.03;
+  scene.support.phase = 0.4;
+  if (loaded) scene.load = Formula("0.5*x*cos(20*t) - 0.2", "/scene/load");
+  scene.stops.place = StopsSpec::Place::nodes;
+  return scene;
+}
+
+std::vector<LaneSpec> two_lanes(const LaneSpec& lane) {
+  std::vector<LaneSpec> lanes(2, lane);
+  lanes[0].amplitude *= 1.3;
+  return lanes;
+}
+
+/// Whether every stage pays for its energy, by the plan.
+bool balances(const StepPlan& plan) {
+  return !plan.energy.empty() &&
+         std::all_of(plan.stages.begin(), plan.stages.end(), [](const Stage& stage) { return stage.work.has_value(); });
+}
+
+}  // namespace
+
+TEST_CASE("works are those of the definition, and explain the energy of every step: every scheme with every law") {
+  constexpr double h = 2e-5;  // below the limits of explicit schemes on this mesh
+  constexpr long long steps = 3000;
+  const Damping damping = GENERATE(Damping{2e-5, 0}, Damping{0, 0.4}, Damping{2e-5, 0.4}, Damping{});
+  const bool loaded = GENERATE(false, true), alone = GENERATE(true, false);
+  const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
+  int balanced = 0, touched = 0;
+  for (const std::string& time : registry().names(Role::time))
+    for (const std::string& law : registry().names(Role::contact)) {
+      INFO(time << " × " << law << ", α = " << damping.stiffness << ", η = " << damping.mass
+                << (loaded ? ", loaded" : "") << (alone ? "" : ", two lanes"));
+      CompileOptions options;
+      options.kind = kind;
+      const Methods methods{{"consistent"}, with_defaults(*registry().manual(Role::contact, law)), {time}};
+      const auto problem = problem_of(busy_scene(damping, loaded), 4, methods.mass, methods.contact);
+      auto program = compiled(problem, methods, h, options, alone ? one_lane : Lanes(two_lanes));
+      if (std::holds_alternative<Refusal>(program)) continue;
+      Marcher beam(std::move(std::get<Program>(program)));
+      EnergyAudit audit(beam, Looks::seldom);
+      const int lane = beam.lanes() - 1;
+      DefinedLedger ledger(beam, lane, audit);
+      audit.look_after(steps);
+      beam.start(&ledger);
+      beam.march(steps - beam.step(), &ledger);
+      REQUIRE(beam.status(lane).running);
+      const EnergyTotals& totals = audit.totals(lane);
+      const Works& defined = ledger.sums();
+      // Entries of K s are larger than what is left of their sum, but steps are small.
+      const double slack = 1e-12 * ledger.size();
+      CHECK(totals.work_of_damping == Approx(defined.damping).epsilon(0).margin(slack));
+      CHECK(totals.work_of_loads == Approx(defined.loads).epsilon(0).margin(slack));
+      CHECK(totals.work_of_contact == Approx(defined.contact).epsilon(0).margin(slack));
+      CHECK(totals.work_of_scheme == Approx(defined.scheme).epsilon(0).margin(slack));
+      touched += audit.contact(lane).impacts > 0;
+      if (!balances(beam.program().plan)) continue;
+      ++balanced;
+      CHECK(ledger.worst() <= 1e-8 * ledger.size());
+      CHECK(std::abs(totals.balance_residual()) <= 1e-8 * ledger.size());
+    }
+  CHECK(balanced > 50);
+  CHECK(touched > 50);
+}
