@@ -23,16 +23,14 @@ constexpr size_t columns_on_paper = 11, rows_on_paper = 150;
 
 /// Measures that at least one case has, in the declared order, others after them.
 std::vector<std::string> measures_present(const CaseView& view) {
-  std::vector<std::string> out;
-  const auto present = [&](const std::string& name) {
-    return std::any_of(view.results().cases.begin(), view.results().cases.end(),
-                       [&](const CaseRecord& r) { return ricochet::measure(r, name).has_value(); });
-  };
-  for (const MeasureInfo& info : all_measures())
-    if (present(info.name)) out.emplace_back(info.name);
+  InOrderMet<std::string, bool> met;
   for (const CaseRecord& record : view.results().cases)
-    for (const auto& [name, value] : record.measures)
-      if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
+    for (const auto& [name, value] : record.measures) met[name] = true;
+  std::vector<std::string> out;
+  for (const MeasureInfo& info : all_measures())
+    if (met.holds(info.name)) out.emplace_back(info.name);
+  for (const auto& [name, ignored] : met.list())
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
   return out;
 }
 

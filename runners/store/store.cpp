@@ -31,11 +31,22 @@ std::string text_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// Texts are read where they stand: they live until the row is there.
+void bind_value(SQLite::Statement& statement, int index, const std::string& text) {
+  statement.bindNoCopy(index, text);
+}
+void bind_value(SQLite::Statement& statement, int index, const char* text) {
+  statement.bindNoCopy(index, text);
+}
+void bind_value(SQLite::Statement& statement, int index, auto number) {
+  statement.bind(index, number);
+}
+
 template <class... Values>
 void insert(SQLite::Statement& statement, const Values&... values) {
   statement.reset();
   int index = 0;
-  (statement.bind(++index, values), ...);
+  (bind_value(statement, ++index, values), ...);
   statement.exec();
 }
 

@@ -25,6 +25,7 @@ class InOrderMet {
     if (fresh) list_.emplace_back(key, Value());
     return list_[place->second].second;
   }
+  bool holds(const Key& key) const { return places_.contains(key); }
   const std::vector<std::pair<Key, Value>>& list() const& { return list_; }
   std::vector<std::pair<Key, Value>> list() && { return std::move(list_); }
 
