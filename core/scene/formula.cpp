@@ -6,8 +6,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
-#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <ricochet/scene/formula_errors.hpp>
@@ -46,108 +46,142 @@ std::array<double, 7> derivative_weights(double s) {
 
 }  // namespace
 
-struct Formula::State {
+/// What is evaluated: a parser and the variables that it reads, for one thread at a time.
+struct Formula::Compiled {
+  double x = 0, t = 0;
+  mu::Parser parser;
+
+  explicit Compiled(const std::string& variables) {
+    parser.DefineConst("pi", std::numbers::pi);
+    parser.DefineConst("e", std::numbers::e);
+    if (variables.find('x') != std::string::npos) parser.DefineVar("x", &x);
+    if (variables.find('t') != std::string::npos) parser.DefineVar("t", &t);
+  }
+  Compiled(const Compiled&) = delete;
+  Compiled& operator=(const Compiled&) = delete;
+};
+
+/// What is known of a formula, and what copies of it left compiled: parsing costs more than a few hundred evaluations.
+struct Formula::Source {
   std::string text, pointer, variables;
   bool uses_x = false, uses_t = false;
   double constant = 0;
-  double x = 0, t = 0;  // what the parser reads
-  std::optional<mu::Parser> parser;
 
   bool varies() const { return uses_x || uses_t; }
 
-  void compile() {
-    parser.emplace();
-    parser->DefineConst("pi", std::numbers::pi);
-    parser->DefineConst("e", std::numbers::e);
-    if (variables.find('x') != std::string::npos) parser->DefineVar("x", &x);
-    if (variables.find('t') != std::string::npos) parser->DefineVar("t", &t);
-    parser->SetExpr(text);
-    constant = parser->Eval();  // first: unlike GetUsedVar() it names an unknown word as such
-    const auto& used = parser->GetUsedVar();
-    uses_x = used.contains("x");
-    uses_t = used.contains("t");
-    parser->Eval();
-    if (parser->GetNumResults() != 1)
-      throw InputError(pointer, fmt::format("the formula \"{}\" gives {} values; expected one (decimals take a point)",
-                                            text, parser->GetNumResults()));
+  std::unique_ptr<Compiled> take() {
+    {
+      const std::lock_guard guard(mutex);
+      for (auto& one : idle)
+        if (one) return std::move(one);
+    }
+    auto made = std::make_unique<Compiled>(variables);
+    made->parser.SetExpr(text);
+    made->parser.Eval();  // the first call parses
+    return made;
+  }
+  /// Where there is no place, it goes.
+  void put_back(std::unique_ptr<Compiled> one) {
+    const std::lock_guard guard(mutex);
+    for (auto& place : idle)
+      if (!place) {
+        place = std::move(one);
+        return;
+      }
   }
 
-  double value(double at_x, double at_t) {
-    if (!varies()) return constant;
-    x = at_x;
-    t = at_t;
-    try {
-      return parser->Eval();
-    } catch (const mu::ParserError&) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-  }
+ private:
+  std::mutex mutex;
+  std::array<std::unique_ptr<Compiled>, 8> idle;
 };
 
 Formula::Formula() : Formula(0.0) {}
 
-Formula::Formula(double constant) : state_(std::make_unique<State>()) {
-  state_->constant = constant;
-  state_->text = fmt::format("{}", constant);
+Formula::Formula(double constant) : source_(std::make_shared<Source>()) {
+  source_->constant = constant;
+  source_->text = fmt::format("{}", constant);
   if (!std::isfinite(constant)) throw InputError("", fmt::format("{} is not a finite number", constant));
 }
 
 Formula::Formula(const std::string& text, const std::string& pointer, const std::string& variables)
-    : state_(std::make_unique<State>()) {
-  state_->text = text;
-  state_->pointer = pointer;
-  state_->variables = variables;
+    : source_(std::make_shared<Source>()) {
+  source_->text = text;
+  source_->pointer = pointer;
+  source_->variables = variables;
   require_expression(text, pointer);
+  auto compiled = std::make_unique<Compiled>(variables);
+  mu::Parser& parser = compiled->parser;
   try {
-    state_->compile();
+    parser.SetExpr(text);
+    source_->constant = parser.Eval();  // first: unlike GetUsedVar() it names an unknown word as such
+    const auto& used = parser.GetUsedVar();
+    source_->uses_x = used.contains("x");
+    source_->uses_t = used.contains("t");
+    parser.Eval();
+    if (parser.GetNumResults() != 1)
+      throw InputError(pointer, fmt::format("the formula \"{}\" gives {} values; expected one (decimals take a point)",
+                                            text, parser.GetNumResults()));
   } catch (const mu::ParserError& error) {
-    explain_formula(*state_->parser, error, text, pointer, letters(variables), variables_in_words(variables));
+    explain_formula(parser, error, text, pointer, letters(variables), variables_in_words(variables));
   }
-  if (state_->varies()) return;
-  if (!std::isfinite(state_->constant))
+  if (source_->varies())
+    own_ = std::move(compiled);
+  else if (!std::isfinite(source_->constant))
     throw InputError(pointer, fmt::format("the formula \"{}\" gives {}; expected a finite number", text,
-                                          std::isnan(state_->constant) ? "no number (NaN)" : "an infinite value"));
-  state_->parser.reset();
+                                          std::isnan(source_->constant) ? "no number (NaN)" : "an infinite value"));
 }
 
-Formula::Formula(const Formula& other) : state_(std::make_unique<State>()) {
-  // The parser points at its own State's x and t, so a copy compiles its own.
-  state_->text = other.state_->text;
-  state_->pointer = other.state_->pointer;
-  state_->variables = other.state_->variables;
-  state_->constant = other.state_->constant;
-  if (other.state_->varies()) state_->compile();
-}
+Formula::Formula(const Formula& other) : source_(other.source_) {}
 
 Formula::Formula(Formula&&) noexcept = default;
-Formula& Formula::operator=(Formula&&) noexcept = default;
-Formula::~Formula() = default;
+
+Formula& Formula::operator=(Formula&& other) noexcept {
+  std::swap(source_, other.source_);
+  std::swap(own_, other.own_);
+  return *this;
+}
+
+Formula::~Formula() {
+  if (own_) source_->put_back(std::move(own_));
+}
 
 Formula& Formula::operator=(const Formula& other) {
   if (this != &other) *this = Formula(other);
   return *this;
 }
 
+double Formula::evaluated(double x, double t) const {
+  if (!source_->varies()) return source_->constant;
+  if (!own_) own_ = source_->take();
+  own_->x = x;
+  own_->t = t;
+  try {
+    return own_->parser.Eval();
+  } catch (const mu::ParserError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 double Formula::operator()(double x, double t) const {
-  const double value = state_->value(x, t);
+  const double value = evaluated(x, t);
   if (std::isfinite(value)) return value;
-  throw InputError(state_->pointer,
-                   fmt::format("the formula \"{}\" gives {} at x = {:.6g} m{}; expected a finite number", state_->text,
+  throw InputError(source_->pointer,
+                   fmt::format("the formula \"{}\" gives {} at x = {:.6g} m{}; expected a finite number", source_->text,
                                std::isnan(value) ? "no number (NaN)" : "an infinite value", x,
-                               state_->uses_t ? fmt::format(", t = {:.6g} s", t) : ""));
+                               source_->uses_t ? fmt::format(", t = {:.6g} s", t) : ""));
 }
 
 double Formula::value(double x, double t) const {
-  return state_->value(x, t);
+  return evaluated(x, t);
 }
 
 void Formula::evaluate(std::span<const double> x, double t, std::span<double> values) const {
   assert(x.size() == values.size());
-  if (!state_->uses_x) {
-    std::fill(values.begin(), values.end(), state_->value(0, t));
+  if (!source_->uses_x) {
+    std::fill(values.begin(), values.end(), evaluated(0, t));
     return;
   }
-  for (std::size_t i = 0; i < x.size(); ++i) values[i] = state_->value(x[i], t);
+  for (std::size_t i = 0; i < x.size(); ++i) values[i] = evaluated(x[i], t);
 }
 
 double Formula::slope(double x, double low, double high, double t) const {
@@ -164,16 +198,16 @@ double Formula::slope(double x, double low, double high, double t) const {
 }
 
 bool Formula::uses_x() const {
-  return state_->uses_x;
+  return source_->uses_x;
 }
 bool Formula::uses_t() const {
-  return state_->uses_t;
+  return source_->uses_t;
 }
 bool Formula::is_zero() const {
-  return !state_->varies() && state_->constant == 0;
+  return !source_->varies() && source_->constant == 0;
 }
 const std::string& Formula::text() const {
-  return state_->text;
+  return source_->text;
 }
 
 }  // namespace ricochet

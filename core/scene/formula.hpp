@@ -7,7 +7,7 @@ namespace ricochet {
 
 /// A number or a formula in x (m) and t (s), as a study writes it: "0.04*x^2", "sin(pi*x)*cos(10*t)", pi and e defined.
 /// Throws InputError (with the pointer given) when the text does not parse, names an unknown variable, or a value is
-/// not finite.
+/// not finite. A copy costs next to nothing; copies may be evaluated by several threads at the same time, one may not.
 class Formula {
  public:
   Formula();  ///< the constant 0
@@ -35,8 +35,11 @@ class Formula {
   const std::string& text() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Source;
+  struct Compiled;
+  double evaluated(double x, double t) const;
+  std::shared_ptr<Source> source_;         ///< shared by copies
+  mutable std::unique_ptr<Compiled> own_;  ///< made, or taken over from a copy that is gone, when first evaluated
 };
 
 }  // namespace ricochet

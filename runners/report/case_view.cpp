@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "runners/report/html.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -25,6 +25,11 @@ std::string word(std::string_view column) {
   const size_t dot = column.rfind('.');
   const bool method = role_of(column) != column;
   return std::string(method && dot != std::string_view::npos ? column.substr(dot + 1) : column) + " ";
+}
+
+/// What is added to `before` of a column that sets cases apart by these values.
+std::string apart(const std::string& before, const std::string& column, const std::vector<std::string>& values) {
+  return fmt::format("{}{} {}", before.empty() ? "" : "; ", column, fmt::join(values, ", "));
 }
 
 }  // namespace
@@ -63,17 +68,21 @@ std::string axis_unit(std::string_view column) {
 
 CaseView::CaseView(const StudyResults& results) : results_(results) {
   for (const std::string& column : results.columns) {
-    std::vector<std::string>& found = values_[column];
+    Values& found = values_[column];
     bool absent = false;
-    std::set<std::string> seen;
+    std::map<std::string, std::size_t> places;
     for (const CaseRecord& record : results.cases) {
       const std::string value = text(record, column);
-      if (value.empty())
+      if (value.empty()) {
         absent = true;
-      else if (seen.insert(value).second)
-        found.push_back(value);
+        found.at.push_back(no_value);
+        continue;
+      }
+      const auto [place, fresh] = places.emplace(value, found.texts.size());
+      if (fresh) found.texts.push_back(value);
+      found.at.push_back(place->second);
     }
-    if (seen.size() + absent > 1) varying_.push_back(column);
+    if (found.texts.size() + absent > 1) varying_.push_back(column);
   }
   for (const CaseRecord& record : results.cases) {
     const std::string mass = mass_label(record);
@@ -88,7 +97,7 @@ bool CaseView::varies(std::string_view column) const {
 const std::vector<std::string>& CaseView::values(const std::string& column) const {
   static const std::vector<std::string> none;
   const auto found = values_.find(column);
-  return found == values_.end() ? none : found->second;
+  return found == values_.end() ? none : found->second.texts;
 }
 
 std::vector<std::string> CaseView::constants() const {
@@ -176,26 +185,41 @@ const CaseRecord* CaseView::find(std::string_view id) const {
 
 std::string CaseView::set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns) {
   const auto values_in = [](const Cases& some, const std::string& column) {
-    std::vector<std::string> out;
-    for (const CaseRecord* record : some) {
-      std::string value = text(*record, column);
-      if (!value.empty() && !contains(out, value)) out.push_back(std::move(value));
-    }
+    InOrderMet<std::string, bool> out;
+    for (const CaseRecord* record : some)
+      if (const std::string value = text(*record, column); !value.empty()) out[value] = true;
     return out;
   };
   std::string what;
   for (const std::string& column : columns) {
-    const std::vector<std::string> inside = values_in(cases, column);
-    if (inside.empty() || inside.size() == values_in(among, column).size()) continue;
-    what += fmt::format("{}{} {}", what.empty() ? "" : "; ", column, fmt::join(inside, ", "));
+    std::vector<std::string> inside;
+    for (const auto& [value, ignored] : values_in(cases, column).list()) inside.push_back(value);
+    if (inside.empty() || inside.size() == values_in(among, column).list().size()) continue;
+    what += apart(what, column, inside);
   }
   return what;
 }
 
-std::string CaseView::describe(const Cases& cases, const Cases& among) const {
-  const size_t total = among.size();
+std::vector<std::string> CaseView::values_of(const Cases& cases, const std::string& column) const {
+  const Values& all = values_.at(column);
+  std::vector<std::string> out;
+  std::vector<char> met(all.texts.size(), 0);
+  for (const CaseRecord* record : cases) {
+    const std::size_t at = all.at[static_cast<std::size_t>(record - results_.cases.data())];
+    if (at == no_value || met[at] != 0) continue;
+    met[at] = 1;
+    out.push_back(all.texts[at]);
+  }
+  return out;
+}
+
+std::string CaseView::describe(const Cases& cases) const {
+  const std::size_t total = results_.cases.size();
   if (cases.size() == total) return total == 1 ? "the one case" : fmt::format("all {} cases", total);
-  const std::string what = set_apart(cases, among, varying_);
+  std::string what;
+  for (const std::string& column : varying_)
+    if (const auto inside = values_of(cases, column); !inside.empty() && inside.size() < values(column).size())
+      what += apart(what, column, inside);
   return fmt::format("{} of {} cases{}", cases.size(), total, what.empty() ? "" : " (" + what + ")");
 }
 

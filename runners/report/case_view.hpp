@@ -70,15 +70,24 @@ class CaseView {
   Cases all() const { return all_cases(results_); }
   Cases with_status(const std::string& status) const { return ricochet::with_status(all(), status); }
 
-  /// What sets `cases` apart from `among`: "all 24 cases", "12 of 24 cases (mass singular)".
-  std::string describe(const Cases& cases, const Cases& among) const;
-  std::string describe(const Cases& cases) const { return describe(cases, all()); }
-  /// The same of some columns alone, without the count: "mass singular; time.beta 0.25"; "" where nothing does.
+  /// What sets some of these cases apart from all: "all 24 cases", "12 of 24 cases (mass singular)".
+  std::string describe(const Cases& cases) const;
+  /// What sets `cases` apart from `among` in some columns, without the count: "mass singular; time.beta 0.25"; "" where
+  /// nothing does.
   static std::string set_apart(const Cases& cases, const Cases& among, const std::vector<std::string>& columns);
 
  private:
+  static constexpr std::size_t no_value = static_cast<std::size_t>(-1);
+  /// The values of a column as texts, in order of appearance, and which of them each case has.
+  struct Values {
+    std::vector<std::string> texts;
+    std::vector<std::size_t> at;
+  };
+  /// Those that some of the cases have, as they are met.
+  std::vector<std::string> values_of(const Cases& cases, const std::string& column) const;
+
   const StudyResults& results_;
-  std::map<std::string, std::vector<std::string>> values_;
+  std::map<std::string, Values> values_;
   std::vector<std::string> varying_, masses_;
 };
 

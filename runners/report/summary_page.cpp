@@ -47,22 +47,26 @@ Fill answer_fill(const StudyResults& results) {
 /// axis its values. "alpha (order 1, 2), beta".
 std::string ran_text(const StudyResults& results, const std::string& role) {
   using Values = std::vector<std::string>;
-  std::vector<std::pair<std::string, std::vector<std::pair<std::string, Values>>>> methods;
+  std::vector<std::string> own;
+  for (const std::string& column : results.columns)
+    if (column != role && role_of(column) == role) own.push_back(column);
+  InOrderMet<std::string, InOrderMet<std::string, InOrderMet<std::string, bool>>> methods;
   for (const CaseRecord& record : results.cases) {
     const std::string name = CaseView::text(record, role);
     if (record.status == "refused" || name.empty()) continue;
-    auto& parameters = in_order_met(methods, name);
-    for (const std::string& column : results.columns) {
-      const std::string value = CaseView::text(record, column);
-      if (column == role || role_of(column) != role || value.empty()) continue;
-      Values& values = in_order_met(parameters, column.substr(role.size() + 1));
-      if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
-    }
+    auto& parameters = methods[name];
+    for (const std::string& column : own)
+      if (const std::string value = CaseView::text(record, column); !value.empty())
+        parameters[column.substr(role.size() + 1)][value] = true;
   }
   Values out;
-  for (const auto& [name, parameters] : methods) {
+  for (const auto& [name, parameters] : methods.list()) {
     Values said;
-    for (const auto& [parameter, values] : parameters) said.push_back(parameter + " " + list_text(values, most_values));
+    for (const auto& [parameter, met] : parameters.list()) {
+      Values values;
+      for (const auto& [value, ignored] : met.list()) values.push_back(value);
+      said.push_back(parameter + " " + list_text(values, most_values));
+    }
     out.push_back(said.empty() ? name : fmt::format("{} ({})", name, fmt::join(said, "; ")));
   }
   return list_text(out, most_values);

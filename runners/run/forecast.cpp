@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/run/alike_cases.hpp"
 #include "runners/store/fingerprint.hpp"
 
 namespace ricochet {
@@ -21,7 +23,7 @@ constexpr double least_part = 0.01, shared_measuring = 1;  // s
 constexpr double preparations = 2;                         // that measuring a case takes
 // Processor time of a run that is no case's: the program and its plugins opened, the report written; and of each case:
 // its fingerprint, its row in the store, its curve, its share of tables and page.
-constexpr double each_run = 0.12, each_case = 2e-3;
+constexpr double each_run = 0.12, each_case = 1e-3;
 
 std::string group_of(const StudyCase& one) {
   return fmt::format("{}/{}/{}/{}", content_of(one.contact).dump(), content_of(one.mass).dump(),
@@ -126,14 +128,16 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Cas
     }
   }
   std::map<const StudyCase*, double> steps;
+  std::set<std::string> alike;
   for (PlannedCase& one : cases) {
     const double ratio = ratios.of(*one.study_case);
     steps[one.study_case] = ratio * modelled_step(one.plan);
-    // Planned once more by the run, and prepared.
+    // Prepared by the run, which plans one of cases that are alike once more.
+    const double set_up = (alike.insert(cost_key(*one.study_case)).second ? 2 : 1) * one.plan_seconds;
     const double chain = one.plan.chain_seconds > 0 ? one.plan.chain_seconds : one.plan.predicted_seconds;
-    found.chain = std::max(found.chain, ratio * chain + 2 * one.plan_seconds);
+    found.chain = std::max(found.chain, ratio * chain + set_up);
     found.bytes += one.plan.bytes;
-    one.plan.predicted_seconds = ratio * one.plan.predicted_seconds + 2 * one.plan_seconds;
+    one.plan.predicted_seconds = ratio * one.plan.predicted_seconds + set_up;
     found.seconds += one.plan.predicted_seconds;
   }
   if (kind.beside) {

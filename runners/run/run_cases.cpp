@@ -10,10 +10,15 @@
 #include <set>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/run/alike_cases.hpp"
 #include "runners/run/study_runner.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
 namespace {
+
+// One of cases that are alike is planned; where that tells nothing (it may be refused), a few more.
+constexpr std::size_t most_tried = 16;
 
 // What waits, shared by the threads that work on it; one that was given up may look at it until the program ends.
 class CaseQueue {
@@ -169,10 +174,14 @@ std::vector<CaseRecord> predict_cases(const StudyRunner& runner, std::vector<Pen
                                       const std::atomic<bool>& stop, const CaseEvents& events) {
   struct Predictions {
     std::vector<PendingCase> cases;
+    std::vector<std::vector<std::size_t>> alike;  // which, in the study's order
     std::atomic<std::size_t> next{0};
   };
   const auto all = std::make_shared<Predictions>();
   all->cases = pending;
+  InOrderMet<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < pending.size(); ++i) groups[cost_key(*pending[i].study_case)].push_back(i);
+  for (auto& [key, alike] : std::move(groups).list()) all->alike.push_back(std::move(alike));
   std::vector<CaseRecord> failed;
   WatchHooks hooks;
   hooks.waiting = events.waiting;
@@ -182,20 +191,24 @@ std::vector<CaseRecord> predict_cases(const StudyRunner& runner, std::vector<Pen
       if (one.study_case->id == call.ticket->id) failed.push_back(given_up_record(*one.study_case, call));
   };
   run_watched(
-      std::max(1, std::min(jobs, static_cast<int>(pending.size()))),
+      std::max(1, std::min(jobs, static_cast<int>(all->alike.size()))),
       [all, &runner, &stop] {
-        for (std::size_t i = all->next++; i < all->cases.size() && !stop; i = all->next++) {
-          const TicketPointer ticket = ticket_of(all->cases[i]);
-          const CaseScope scope(ticket);
+        for (std::size_t group = all->next++; group < all->alike.size() && !stop; group = all->next++) {
+          const std::vector<std::size_t>& alike = all->alike[group];
           double seconds = 0;
-          try {
-            seconds = std::max(0.0, runner.plan(*all->cases[i].study_case).predicted_seconds);
-          } catch (...) {
-            // A prediction that cannot be made says nothing about the case: running it will.
+          for (std::size_t k = 0; k < std::min(alike.size(), most_tried) && seconds == 0 && !stop; ++k) {
+            const PendingCase& one = all->cases[alike[k]];
+            const TicketPointer ticket = ticket_of(one);
+            const CaseScope scope(ticket);
+            try {
+              seconds = std::max(0.0, runner.plan(*one.study_case).predicted_seconds);
+            } catch (...) {
+              // A prediction that cannot be made says nothing about the case: running it will.
+            }
+            const auto turn = ticket->turn();
+            ticket->close();
           }
-          const auto turn = ticket->turn();
-          ticket->close();
-          all->cases[i].predicted_seconds = seconds;
+          for (const std::size_t i : alike) all->cases[i].predicted_seconds = seconds;
         }
       },
       stop, hooks);

@@ -27,7 +27,8 @@ WriteGroup::~WriteGroup() {
 void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
   const bool large = bytes > most_waiting;
   if (large || failure_) commit();
-  if (!waiting_) begin();
+  const bool first = !waiting_;
+  if (first) begin();
   waiting_ = true;
   try {
     SQLite::Savepoint own(database_, "own");
@@ -41,7 +42,7 @@ void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
   bytes_ += bytes;
   if (large || bytes_ > most_waiting || Clock::now() >= due_)
     commit();
-  else
+  else if (first)
     changed_.notify_all();
 }
 

@@ -73,6 +73,21 @@ TEST_CASE("copies are evaluated at the same time by several threads") {
   for (double error : worst) CHECK(error < 1e-15);  // the same two operations
 }
 
+TEST_CASE("a copy that goes on with what another one left behind reads its own variables") {
+  const Formula original("x + 10*t", "");
+  CHECK(original(1, 2) == 21);
+  for (int i = 0; i < 20; ++i) {
+    const Formula first(original);
+    Formula second(original);
+    CHECK(first(i, 1) == i + 10);
+    CHECK(second(2 * i, 2) == 2 * i + 20);
+    second = Formula("x - t", "");
+    CHECK(second(i, 1) == i - 1);
+    CHECK(first(i, 3) == i + 30);
+  }
+  CHECK(original(3, 4) == 43);
+}
+
 TEST_CASE("evaluate() is operator() at each point and leaves judgement of values to the caller") {
   const Formula formula("1/x + t", "");
   const std::vector<double> x{1, 2, 0};

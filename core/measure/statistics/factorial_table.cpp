@@ -52,9 +52,24 @@ std::vector<double> FactorialTable::contract(const std::vector<double>& tensor, 
     if (mask & bit(k)) inner *= levels_[k];
   const std::size_t n = levels_[factor];
   std::vector<double> out(tensor.size() / n, 0);
-  for (std::size_t at = 0; at < out.size(); at += inner)
-    for (std::size_t l = 0; l < n; ++l)
-      for (std::size_t k = 0; k < inner; ++k) out[at + k] += weights[l] * tensor[at * n + l * inner + k];
+  // Every mean adds the levels in their order, however many are worked out side by side.
+  constexpr std::size_t together = 8;
+  std::size_t at = 0;
+  if (inner == 1)
+    for (; at + together <= out.size(); at += together) {
+      const double* first = tensor.data() + at * n;
+      double sums[together] = {};
+      for (std::size_t l = 0; l < n; ++l)
+        for (std::size_t k = 0; k < together; ++k) sums[k] += weights[l] * first[k * n + l];
+      std::copy_n(sums, together, out.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+  for (; at < out.size(); at += inner)
+    for (std::size_t l = 0; l < n; ++l) {
+      const double weight = weights[l];
+      const double* from = tensor.data() + at * n + l * inner;
+      double* into = out.data() + at;
+      for (std::size_t k = 0; k < inner; ++k) into[k] += weight * from[k];
+    }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "runners/store/record_values.hpp"
 
@@ -100,11 +101,13 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
 void describe_contact(std::vector<CaseRecord>& records) {
   const Table stops = stops_head();
   const NumberTable impacts = impacts_head();
+  // Of a study of many cases in which nothing is hit, what they mean would be the largest part.
+  bool stops_told = false, impacts_told = false;
   for (CaseRecord& record : records) {
     for (Table& table : record.tables)
-      if (table.name == stops.name) describe(table, stops);
+      if (table.name == stops.name && (!table.rows.empty() || !std::exchange(stops_told, true))) describe(table, stops);
     for (NumberTable& table : record.numbers)
-      if (table.name == impacts.name) {
+      if (table.name == impacts.name && (table.rows() > 0 || !std::exchange(impacts_told, true))) {
         table.text = impacts.text;
         describe(table.columns, impacts.columns);
       }

@@ -207,6 +207,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
+  double before = run;
   bool spent = false;
   // Steps between two looks at the clock; those that are left out cost it nothing.
   long long chunk = 16;
@@ -221,13 +222,13 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
     audit.look_after(target);
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
-      const double before = thread_seconds();
       marcher.march(std::min(target - marcher.step(), chunk), &sampler);
       const double now = thread_seconds();
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.
       chunk = now - before < 0.01 ? std::min(2 * chunk, longest_chunk)
                                   : (now - before > 0.1 ? std::max(chunk / 2, 1LL) : chunk);
+      before = now;
     }
     if (marcher.any_running() && marcher.step() == target) sampler.take(marcher);
   }
