@@ -124,9 +124,19 @@ void create_from(SQLite::Database& database, int version) {
       "{}: this file is not a Ricochet store; move it away or choose another folder with --out", file.string()));
 }
 
+/// What the system said to what failed; 0 where that is not known.
+int system_error(const SQLite::Exception& error, const SQLite::Database* database) {
+  if (database == nullptr) return errno;
+  int said = sqlite3_system_errno(database->getHandle());
+  // Of a write that fails where a transaction ends the file alone knows.
+  if (said == 0 && (error.getErrorCode() & 0xff) == SQLITE_IOERR)
+    sqlite3_file_control(database->getHandle(), "main", SQLITE_FCNTL_LAST_ERRNO, &said);
+  return said;
+}
+
 std::string sentence(const SQLite::Exception& error, const SQLite::Database* database) {
-  const int system_error = database != nullptr ? sqlite3_system_errno(database->getHandle()) : errno;
-  const std::string cause = system_error != 0 ? std::strerror(system_error) : error.getErrorStr();
+  const int said = system_error(error, database);
+  const std::string cause = said != 0 ? std::strerror(said) : error.getErrorStr();
   switch (error.getErrorCode() & 0xff) {
     case SQLITE_FULL:
       return "the disk is full; free some space and run the same command again: the cases that finished are kept";
