@@ -47,7 +47,7 @@ TEST_CASE("of a stored series that is looked at in one place the piece is read, 
   CHECK_THROWS(series.at(10));
 }
 
-TEST_CASE("going through a series, or sharing it, keeps nothing; what was kept is not read again") {
+TEST_CASE("going through a series, or sharing it, keeps nothing, and what was kept is not read again") {
   Counted source;
   const Series series = source.series();
   std::vector<double> met;
