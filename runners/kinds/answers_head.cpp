@@ -29,7 +29,9 @@ Table answers_head() {
        {"window_open", "1",
         "Of a mean over a window: half its 95 % interval, over the scale; the widest of the levels, median over the "
         "combinations."},
-       {"combinations", "1", "Combinations of the other choices in which two levels or more finished."},
+       {"combinations", "1",
+        "Combinations of the other choices in which two levels or more finished; those that the row speaks of, where a "
+        "choice does not matter in some and is not resolved in others."},
        {"depends_on", "", "The other choice that tells where this one decides."},
        {"sentence", "", "The rows of one choice and one verdict, said together; empty but in the first of them."}},
       {}};

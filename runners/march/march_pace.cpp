@@ -24,8 +24,12 @@ constexpr double worth_refining = 4, refinement = 16;
 // How the time of flights grows with the number n of steps, as n^p: measured from 1e4 to 1e9 steps.
 constexpr double flight_growth = 0.4;
 constexpr double long_parts = 2;  // one that is cut off, and that on the case's own step
-// What a step that is left out in contact costs of one that is visited, where that is not seen.
-constexpr double share_of_visit = 0.2;
+// What a step that is left out in contact costs where that is not seen: a share of one that is visited, and no more than
+// the works and efforts of so many dofs come to (0.1 to 0.4 µs measured at 100 of them).
+constexpr double share_of_visit = 0.2, held_step = 5e-8, held_dof = 2.5e-9;  // –, s, s
+// Of so many steps, visiting most is not what any march does that begins: some 10 √n of n steps are visited.
+constexpr long long telling_steps = 4000;
+constexpr double telling_time = 3;  // times what another part may take
 constexpr long long enough_contact = 500;  // steps
 
 struct Part {
@@ -33,6 +37,7 @@ struct Part {
   long long steps = 0, of = 0;      ///< marched, and those of the whole
   long long visited = 0, held = 0;  ///< of those marched: not left out; left out in contact
   long long closed = 0;             ///< marched in contact, visited or not
+  long long dofs = 0;
   bool standing = false;            ///< no lane stopped on the way
   bool whole = false;               ///< and its end was reached
   bool flies = false;               ///< steps are left out
@@ -41,6 +46,8 @@ struct Part {
 
   /// Hardly a step is left out: a finer one would leave out more.
   bool visits_most() const { return 2 * visited > steps; }
+  /// Of the whole, and long enough for visiting most of it to mean something.
+  bool telling() const { return whole && of >= telling_steps; }
   /// Contact changes too often to leave out steps of it.
   bool visits_contact() const { return !visits_most() && closed > enough_contact && 2 * (closed - held) > closed; }
   double step_seconds() const { return seconds / static_cast<double>(steps); }
@@ -51,7 +58,8 @@ struct Part {
 // On coarser ones a visit costs less, as flights are shorter. Where such steps are no large part of them, what they
 // cost is not seen.
 double cost_of_held(const std::vector<Part>& parts) {
-  const double unseen = share_of_visit * parts.front().step_seconds();
+  const double unseen = std::min(share_of_visit * parts.front().step_seconds(),
+                                 held_step + held_dof * static_cast<double>(parts.front().dofs));
   if (parts.size() < 2) return unseen;
   const Part &fine = parts.back(), &coarse = parts[parts.size() - 2];
   const auto v = static_cast<double>(fine.visited), h = static_cast<double>(fine.held);
@@ -74,10 +82,10 @@ class Pace {
 
   std::optional<double> found() {
     double step = std::max(case_.step, coarsest_step());
-    std::optional<Part> part = march(step);
+    std::optional<Part> part = march(step, long_enough_);
     while (step > case_.step && (!part || !part->standing)) {
       step = std::max(case_.step, step / refinement);
-      part = march(step);
+      part = march(step, long_enough_);
     }
     if (!part) return std::nullopt;
     std::vector<Part> parts{*part};
@@ -89,6 +97,10 @@ class Pace {
       part = parts.back();
     }
     if (!parts.back().flies) return parts.back().step_seconds();
+    // What is disturbed once may be visited from then on: of that the first few hundred steps tell nothing.
+    const bool told = std::any_of(parts.begin(), parts.end(), [](const Part& one) { return one.telling(); });
+    if (parts.back().marginal && !told && steps_ > telling_steps)
+      add(case_.duration / static_cast<double>(telling_steps), parts, telling_time * long_enough_);
     const auto whole = std::find_if(parts.rbegin(), parts.rend(), [](const Part& one) { return one.whole; });
     const bool flown = whole != parts.rend() && !whole->visits_most();
     if (!flown && parts.back().of < steps_) add(case_.step, parts);
@@ -113,10 +125,11 @@ class Pace {
   }
 
   /// Marches on a finer step; whether its lanes stand.
-  bool add(double step, std::vector<Part>& parts) const {
-    const std::optional<Part> part = march(std::max(case_.step, step));
+  bool add(double step, std::vector<Part>& parts, std::optional<double> long_enough = std::nullopt) const {
+    const std::optional<Part> part = march(std::max(case_.step, step), long_enough.value_or(long_enough_));
     if (!part || !part->standing) return false;
     parts.push_back(*part);
+    std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.of < b.of; });
     return true;
   }
 
@@ -130,7 +143,7 @@ class Pace {
     if (whole == parts.rend() || whole->of == steps_ || finest.visits_most())
       return finest.once + finest.step_seconds() * n;
     // What is disturbed once is visited from then on.
-    if (whole->marginal && whole->visits_most()) return whole->step_seconds() * n;
+    if (whole->marginal && whole->telling() && whole->visits_most()) return whole->step_seconds() * n;
     const bool leaves_contact = finest.leaves_contact && !whole->visits_contact();
     const double in_contact = leaves_contact ? cost_of_held(parts) : parts.front().step_seconds();
     const auto between = [&](const Part& part) {
@@ -145,7 +158,7 @@ class Pace {
   }
 
   /// As much of the march on this step as is long enough. Its operator is chosen by the steps of the whole case.
-  std::optional<Part> march(double step) const {
+  std::optional<Part> march(double step, double long_enough) const {
     StudyCase other = case_;
     other.step = step;
     Prepared prepared = prepare_case(other, registry_, steps_);
@@ -155,6 +168,7 @@ class Pace {
     marcher.start(observer.get());
     Part part;
     part.of = prepared.steps;
+    part.dofs = marcher.program().problem->dofs();
     part.marginal = prepared.marginal;
     if (const auto& flight = marcher.program().flight) {
       part.flies = true;
@@ -168,7 +182,7 @@ class Pace {
                     closed = marcher.steps_closed();
     const double start = thread_seconds();
     double now = start;
-    while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough_) {
+    while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough) {
       marcher.march(std::min(few, prepared.steps - marcher.step()), observer.get());
       now = thread_seconds();
     }

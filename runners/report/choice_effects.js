@@ -9,8 +9,11 @@
     if (!all.length) return [];
     const measures = ricochet.distinct(all.map((row) => row.measure)), ordered = measures.flatMap((measure) => all.filter((row) => row.measure === measure)), shown = ordered.slice(0, mostRows);
     const left = (row) => Math.max(row.step_open || 0, row.mesh_open || 0), choice = (row) => ({ mass: "mass matrix", contact: "contact law", time: "time scheme" }[row.choice] || ricochet.shorten(row.choice));
+    // Where a choice does not matter in some combinations and is not resolved in others, each has a row of its own.
+    const parts = (row) => all.filter((other) => other.measure === row.measure && other.choice === row.choice);
+    const part = (row) => parts(row).length > 1 ? " (" + row.combinations + " of " + parts(row).reduce((sum, other) => sum + other.combinations, 0) + ")" : "";
     const rows = shown.map((row) => ({
-      name: spaced(row.measure) + ": " + choice(row), verdict: row.verdict, effect: 100 * row.effect, largest: 100 * row.largest, left: left(row) > 0 ? 100 * left(row) : null,
+      name: spaced(row.measure) + ": " + choice(row) + part(row), verdict: row.verdict, effect: 100 * row.effect, largest: 100 * row.largest, left: left(row) > 0 ? 100 * left(row) : null,
       text: row.verdict + ": " + percent(row.effect) + (row.combinations > 1 ? " (median of " + row.combinations + " combinations, up to " + percent(row.largest) + ")" : "") + (row.scale ? " " + row.scale : "") +
         (left(row) > 0 ? "; step and mesh leave " + percent(left(row)) + " open" : ""),
     }));

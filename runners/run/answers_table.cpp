@@ -25,9 +25,10 @@ namespace {
 
 constexpr double nearly_all = 0.9, tells = 0.8;
 
-/// What all groups of one choice and one measure say together.
+/// What groups of one choice and one measure say together: all of them, or those that share a verdict.
 struct Said {
   const ChoiceEffects* effects = nullptr;
+  std::vector<const GroupEffect*> groups;
   std::string verdict, depends_on;
   double median = 0, largest = 0;       ///< effects, over the scale
   std::optional<double> step, mesh;     ///< median of what they leave open
@@ -37,7 +38,8 @@ struct Said {
 };
 
 std::string percent(double share) {
-  constexpr double many = 10, whole = 0.995;
+  constexpr double many = 10, whole = 0.995, least = 1e-9;
+  if (share > 0 && share < least) return "less than 1e-7 %";
   if (share >= many) return report::number_text(share, 2) + " times";
   if (share >= whole) return fmt::format("{:.0f} %", 100 * share);
   return report::number_text(100 * share, 2) + " %";
@@ -47,10 +49,11 @@ std::string of_scale(const ChoiceEffects& effects, double share) {
   return percent(share) + (effects.scale.empty() ? "" : " " + effects.scale);
 }
 
-std::optional<double> median_open(const ChoiceEffects& effects, std::optional<double> ResolvedEffect::*move) {
+std::optional<double> median_open(const std::vector<const GroupEffect*>& groups,
+                                  std::optional<double> ResolvedEffect::*move) {
   std::vector<double> known;
-  for (const GroupEffect& group : effects.groups)
-    if (group.found.*move) known.push_back(*(group.found.*move));
+  for (const GroupEffect* group : groups)
+    if (group->found.*move) known.push_back(*(group->found.*move));
   return known.empty() ? std::nullopt : std::optional(lower_median(known));
 }
 
@@ -96,14 +99,14 @@ std::string two_digits(double value) {
 std::string next_sizes(const std::vector<const Said*>& same) {
   double step = 0, elements = 0, open_step = 0, open_mesh = 0, open_window = 0;
   for (const Said* said : same)
-    for (const GroupEffect& group : said->effects->groups) {
-      if (group.found.verdict != EffectVerdict::unresolved) continue;
-      const double wanted = std::max(answer_threshold, group.found.effect) / 3;
-      if (group.step > 0 && (step == 0 || group.step < step)) step = group.step;
-      elements = std::max(elements, group.elements);
-      open_step = std::max(open_step, group.found.step.value_or(0) / wanted);
-      open_mesh = std::max(open_mesh, group.found.mesh.value_or(0) / wanted);
-      open_window = std::max(open_window, group.found.sampling.value_or(0) / wanted);
+    for (const GroupEffect* group : said->groups) {
+      if (group->found.verdict != EffectVerdict::unresolved) continue;
+      const double wanted = std::max(answer_threshold, group->found.effect) / 3;
+      if (group->step > 0 && (step == 0 || group->step < step)) step = group->step;
+      elements = std::max(elements, group->elements);
+      open_step = std::max(open_step, group->found.step.value_or(0) / wanted);
+      open_mesh = std::max(open_mesh, group->found.mesh.value_or(0) / wanted);
+      open_window = std::max(open_window, group->found.sampling.value_or(0) / wanted);
     }
   // What is open so far beyond what is wanted is not refined away.
   constexpr double hopeless = 100;
@@ -140,29 +143,55 @@ std::string verdict_of(const ChoiceEffects& effects) {
   return "depends";
 }
 
-Said said_of(const StudyResults& results, const ChoiceEffects& effects) {
+Said said_of_groups(const ChoiceEffects& effects, std::vector<const GroupEffect*> groups, std::string verdict) {
   Said out;
   out.effects = &effects;
+  out.groups = std::move(groups);
+  out.verdict = std::move(verdict);
   std::vector<double> sizes;
-  for (const GroupEffect& group : effects.groups) {
-    sizes.push_back(group.found.effect);
-    if (!out.widest || group.found.effect > out.widest->found.effect) out.widest = &group;
+  for (const GroupEffect* group : out.groups) {
+    sizes.push_back(group->found.effect);
+    if (!out.widest || group->found.effect > out.widest->found.effect) out.widest = group;
   }
   out.median = lower_median(sizes);
   out.largest = out.widest->found.effect;
-  out.step = median_open(effects, &ResolvedEffect::step);
-  out.mesh = median_open(effects, &ResolvedEffect::mesh);
-  out.sampling = median_open(effects, &ResolvedEffect::sampling);
-  out.verdict = verdict_of(effects);
-  if (out.verdict == "depends") out.depends_on = separating_choice(results, effects);
+  out.step = median_open(out.groups, &ResolvedEffect::step);
+  out.mesh = median_open(out.groups, &ResolvedEffect::mesh);
+  out.sampling = median_open(out.groups, &ResolvedEffect::sampling);
   return out;
 }
 
-std::string range_of(const Said& said) {
+/// One thing to say of a choice and a measure; two where in most combinations, of several, the choice does not matter
+/// and in the others that is not resolved: a median over both would be neither.
+std::vector<Said> said_of(const StudyResults& results, const ChoiceEffects& effects) {
+  const std::string verdict = verdict_of(effects);
+  std::vector<const GroupEffect*> all, open, settled;
+  for (const GroupEffect& group : effects.groups) {
+    all.push_back(&group);
+    if (group.found.verdict == EffectVerdict::unresolved) open.push_back(&group);
+    if (group.found.verdict == EffectVerdict::no_matter) settled.push_back(&group);
+  }
+  constexpr std::size_t several = 4;
+  if (verdict == "not resolved" && all.size() >= several && !open.empty() && settled.size() >= open.size() &&
+      effects.count(EffectVerdict::decides) == 0 && effects.count(EffectVerdict::untold) == 0)
+    return {said_of_groups(effects, open, verdict),
+            said_of_groups(effects, settled, effect_word(EffectVerdict::no_matter))};
+  Said out = said_of_groups(effects, all, verdict);
+  if (verdict == "depends") out.depends_on = separating_choice(results, effects);
+  return {out};
+}
+
+/// "by 0.4 % of the larger", with the number of combinations where there are several, and of how many where not of all.
+std::string range_of(const Said& said, const std::string& by) {
   const ChoiceEffects& effects = *said.effects;
-  if (effects.groups.size() < 2 || said.largest <= 1.05 * said.median) return of_scale(effects, said.median);
-  return fmt::format("{} (median of {} combinations; up to {})", of_scale(effects, said.median), effects.groups.size(),
-                     percent(said.largest));
+  const bool part = said.groups.size() < effects.groups.size();
+  const std::string where =
+      part ? fmt::format("in {} of {} combinations ", said.groups.size(), effects.groups.size()) : "";
+  const std::string size = where + by + of_scale(effects, said.median);
+  if (said.groups.size() < 2 || said.largest <= 1.05 * said.median || percent(said.largest) == percent(said.median))
+    return size;
+  if (part) return fmt::format("{} (median; up to {})", size, percent(said.largest));
+  return fmt::format("{} (median of {} combinations; up to {})", size, effects.groups.size(), percent(said.largest));
 }
 
 /// "least with consistent, most with singular", where the choice moves the measure most.
@@ -185,12 +214,13 @@ std::string as_sentence(std::string text) {
 std::string clause(const report::CaseView& view, const Said& said) {
   const ChoiceEffects& effects = *said.effects;
   const std::string name = report::in_words(effects.measure);
+  const std::string by = said.verdict == "does not matter" ? "" : "by ";
   if (said.verdict == "not observed") return name;
-  if (said.verdict == "not told") return fmt::format("{} by {}", name, range_of(said));
-  if (said.verdict == "does not matter") return fmt::format("{} {} {}", name, range_of(said), against(said));
+  if (said.verdict == "not told") return fmt::format("{} {}", name, range_of(said, by));
+  if (said.verdict == "does not matter") return fmt::format("{} {} {}", name, range_of(said, by), against(said));
   if (said.verdict == "decides")
-    return fmt::format("{} by {} {} ({})", name, range_of(said), against(said), extremes(view, said));
-  if (said.verdict == "not resolved") return fmt::format("{} by {} {}", name, range_of(said), against(said));
+    return fmt::format("{} {} {} ({})", name, range_of(said, by), against(said), extremes(view, said));
+  if (said.verdict == "not resolved") return fmt::format("{} {} {}", name, range_of(said, by), against(said));
   return fmt::format("{} in {} of {} combinations by up to {}", name, effects.count(EffectVerdict::decides),
                      effects.groups.size(), of_scale(effects, said.largest));
 }
@@ -297,10 +327,11 @@ Table choices_said(const StudyResults& results) {
   const report::CaseView view(results);
   say_shares(view, observed, table);
   std::vector<Said> said;
-  for (const ChoiceEffects& effects : all) {
-    said.push_back(said_of(results, effects));
-    said.back().clause = clause(view, said.back());
-  }
+  for (const ChoiceEffects& effects : all)
+    for (Said& one : said_of(results, effects)) {
+      one.clause = clause(view, one);
+      said.push_back(std::move(one));
+    }
   // What decides first, by size; then what is open; then what does not matter.
   const auto rank = [](const Said& one) {
     static const std::vector<std::string> order = {"decides",         "depends",  "not resolved",
@@ -329,7 +360,7 @@ Table choices_said(const StudyResults& results) {
                                    .step_open = one.step,
                                    .mesh_open = one.mesh,
                                    .window_open = one.sampling,
-                                   .combinations = one.effects->groups.size(),
+                                   .combinations = one.groups.size(),
                                    .depends_on = one.depends_on,
                                    .sentence = line}
                              .row());

@@ -47,15 +47,11 @@ void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
   }
 }
 
-/// Of the contact law of a case. Stores of earlier versions do not hold it: there the axis tells that the penalties of
-/// this tree have, and a case without one is taken for rigid.
+/// Of the contact law of a case, as its law declares it; not known of stores of versions that did not keep it.
 std::optional<double> compliance_of(const CaseRecord& record) {
-  if (const NumberTable* table = find_table(record.numbers, contact_law_head().name); table && table->rows() == 1) {
-    const double told = table->values.front().front();
-    return std::isfinite(told) ? std::optional(told) : std::nullopt;
-  }
-  const auto stiffness = axis(record, "contact.stiffness").number();
-  return stiffness ? 1 / *stiffness : 0;
+  const NumberTable* table = find_table(record.numbers, contact_law_head().name);
+  if (!table || table->rows() != 1 || !std::isfinite(table->values.front().front())) return std::nullopt;
+  return table->values.front().front();
 }
 
 }  // namespace
