@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -214,6 +215,7 @@ void race(const Scene& scene, int rounds, Registry& registry) {
     fmt::print("\n");
   }
   fmt::print("\n");
+  std::fflush(stdout);
 }
 
 }  // namespace

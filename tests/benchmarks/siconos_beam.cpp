@@ -68,15 +68,7 @@ std::shared_ptr<SimpleMatrix> matrix_of(const Matrix& from, bool sparse) {
 }
 
 int solver_of(SiconosBeam::Solver solver) {
-  switch (solver) {
-    case SiconosBeam::Solver::pgs:
-      return SICONOS_LCP_PGS;
-    case SiconosBeam::Solver::newton:
-      return SICONOS_LCP_NEWTONMIN;
-    case SiconosBeam::Solver::lemke:
-      break;
-  }
-  return SICONOS_LCP_LEMKE;
+  return solver == SiconosBeam::Solver::pgs ? SICONOS_LCP_PGS : SICONOS_LCP_LEMKE;
 }
 
 // Impacts of points that leave: the law's right-hand side gets w⁻ where that is positive, and w⁺ + w⁻ ≥ 0 results.

@@ -28,10 +28,10 @@ class SiconosBeam {
   /// How the linear part is stored.
   enum class Form {
     dense,   ///< LagrangianLinearTIDS, M, K and C as dense matrices
-    sparse,  ///< the same, sparse
+    sparse,  ///< the same, stored sparse
     modes,   ///< LagrangianLinearDiagonalDS: q = Φη, ΦᵀMΦ = 1, ΦᵀKΦ diagonal, relations through HΦ
   };
-  enum class Solver { lemke, pgs, newton };
+  enum class Solver { lemke, pgs };
   /// What holds of a point that passes the gap test but leaves its stop, w⁻ > 0.
   enum class Leaving {
     stopped,  ///< w⁺ ≥ 0: Siconos's own rule
