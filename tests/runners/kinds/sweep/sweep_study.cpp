@@ -254,7 +254,7 @@ TEST_CASE("Bad sweeps are refused with their place, what was expected and the ne
       {basins_with("/axes/1/values", {0.1}), "/axes/1/values: unknown key", {}},
       {changed(basins_with("/axes/0/count", 3000), "/axes/1/count", 3000),
        "/axes: 1 case × 3000 × 3000 cells",
-       {"4 GB"}},
+       {"16 GB"}},
       {basins_with("/refine", 0.1), "/refine: expected true or false", {}},
       {basins_with("/start", "rest"), "/start: unknown key", {}},
   });
