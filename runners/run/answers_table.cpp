@@ -37,9 +37,11 @@ struct Said {
   std::string clause;                   ///< of a sentence about the choice
 };
 
+constexpr double negligible = 1e-9;
+
 std::string percent(double share) {
-  constexpr double many = 10, whole = 0.995, least = 1e-9;
-  if (share > 0 && share < least) return "less than 1e-7 %";
+  constexpr double many = 10, whole = 0.995;
+  if (share > 0 && share < negligible) return "less than 1e-7 %";
   if (share >= many) return report::number_text(share, 2) + " times";
   if (share >= whole) return fmt::format("{:.0f} %", 100 * share);
   return report::number_text(100 * share, 2) + " %";
@@ -187,9 +189,8 @@ std::string range_of(const Said& said, const std::string& by) {
   const bool part = said.groups.size() < effects.groups.size();
   const std::string where =
       part ? fmt::format("in {} of {} combinations ", said.groups.size(), effects.groups.size()) : "";
-  const std::string size = where + by + of_scale(effects, said.median);
-  if (said.groups.size() < 2 || said.largest <= 1.05 * said.median || percent(said.largest) == percent(said.median))
-    return size;
+  const std::string size = where + by + of_scale(effects, said.largest < negligible ? said.largest : said.median);
+  if (said.groups.size() < 2 || said.largest <= 1.05 * said.median || said.largest < negligible) return size;
   if (part) return fmt::format("{} (median; up to {})", size, percent(said.largest));
   return fmt::format("{} (median of {} combinations; up to {})", size, effects.groups.size(), percent(said.largest));
 }
