@@ -73,8 +73,9 @@ RICOCHET_BODY double total(Wide even, Wide odd) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-RICOCHET_BODY void reach_body(int n, const double* h, const double* places, double* out) {
-  const double *near = places, *near_radius = places + n, *far = places + 2L * n, *far_radius = places + 3L * n;
+RICOCHET_BODY void reach_body(int n, long stride, const double* h, const double* places, double* out) {
+  const double *near = places, *near_radius = places + stride, *far = places + 2 * stride,
+               *far_radius = places + 3 * stride;
   Wide a{}, b{}, c{}, d{};
   int j = 0;
   for (; j + wide <= n; j += wide) {
@@ -155,7 +156,9 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     }                                                                                                                  \
     TARGET static void cone(int n, double k, const double* v, const double* c, const double* a, const double* b,       \
                             double* p) { cone_body(n, k, v, c, a, b, p); }                                             \
-    TARGET static void reach(int n, const double* h, const double* p, double* o) { reach_body(n, h, p, o); }           \
+    TARGET static void reach(int n, long stride, const double* h, const double* p, double* o) {                        \
+      reach_body(n, stride, h, p, o);                                                                                  \
+    }                                                                                                                  \
     TARGET static double dot(int n, const double* h, const double* x) { return dot_body(n, h, x); }                    \
     TARGET static void add(int n, double a, const double* x, double* o) { add_body(n, a, x, o); }                      \
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \

@@ -15,7 +15,7 @@ int flight_powers(long long steps) {
 
 double flight_set_bytes(int modes, int slots, int powers) {
   const double n = modes, width = slots + 3;
-  return 8 * (n * n + n * powers * (slots * width + 2 * width * (width + 1)));
+  return 8 * (n * n + n * powers * (slots * width + 2 * width * (width + 1)) + 2 * n * 17 * width);
 }
 
 std::size_t most_flight_sets(double set_bytes) {

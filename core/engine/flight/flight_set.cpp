@@ -263,6 +263,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     if (!tip_by_four_->cause().empty()) tip_by_four_.reset();
   }
   motion_ = std::make_unique<FlightMotion>(rows, powers);
+  clear_steps_ = std::make_unique<ClearSteps>(rows, *bound_, *motion_);
   works_ = std::make_unique<FlightWorks>(rows, forms(program, rows, mass, lifted), powers);
 }
 
@@ -338,10 +339,6 @@ const TipReadings& FlightSet::readings() {
     readings_ = std::make_unique<TipReadings>(*step_rows_, tip.rows.row(0), tip.drive.row(0));
   }
   return *readings_;
-}
-
-void FlightSet::efforts(const double* x, const double* e, double* out) {
-  bound_->values(effort_watch_, x, e, out);
 }
 
 }  // namespace ricochet

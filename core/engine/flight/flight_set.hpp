@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 #include <ricochet/engine/compile.hpp>
-#include <ricochet/engine/flight/flight_bound.hpp>
+#include <ricochet/engine/flight/clear_steps.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_works.hpp>
 #include <ricochet/engine/flight/tip_readings.hpp>
@@ -36,6 +36,8 @@ class FlightSet {
   void leave(const std::vector<double>& x, const double* e, double* const* slots) const;
 
   FlightBound& bound() { return *bound_; }
+  /// The steps in which nothing of it is reached.
+  ClearSteps& clear_steps() { return *clear_steps_; }
   const FlightMotion& motion() const { return *motion_; }
   const FlightWorks& works() const { return *works_; }
   /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded.
@@ -44,8 +46,8 @@ class FlightSet {
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
   const TipReadings& readings();
-  /// Efforts of the held points in the step that begins at (x, e), N.
-  void efforts(const double* x, const double* e, double* out);
+  /// Efforts of the held points in each step, N.
+  const StepReadings& efforts() { return clear_steps_->readings(effort_watch_); }
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -79,6 +81,7 @@ class FlightSet {
   std::unique_ptr<const StepRows> step_rows_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
   std::unique_ptr<FlightMotion> motion_;
+  std::unique_ptr<ClearSteps> clear_steps_;
   std::unique_ptr<FlightWorks> works_;
   std::unique_ptr<TipReadings> readings_;
   int effort_watch_ = -1;
