@@ -19,10 +19,12 @@ double steps_within(double g, double d, double s, double z) {
 
 }  // namespace
 
-const StepReadings& ClearSteps::readings(int watch) {
+const StepReadings& ClearSteps::readings(int watch, int point) {
   readings_.resize(static_cast<std::size_t>(bound_.watches()));
-  auto& made = readings_[static_cast<std::size_t>(watch)];
-  if (!made) made = std::make_unique<StepReadings>(rows_, bound_.watch(watch), bound_.row(watch, 0));
+  auto& points = readings_[static_cast<std::size_t>(watch)];
+  points.resize(static_cast<std::size_t>(bound_.watch(watch).rows.rows()));
+  auto& made = points[static_cast<std::size_t>(point)];
+  if (!made) made = std::make_unique<StepReadings>(rows_, bound_.watch(watch), point, bound_.row(watch, point));
   return *made;
 }
 
@@ -38,13 +40,9 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
     const long long left = std::min(most - done, bound_.longest());
     bound_.look(x_.data(), e_);
     long long k = std::min(pace, left);
-    bool all = bound_.holds(k);
-    if (all) {
-      while (k < left && bound_.holds(std::min(2 * k, left))) k = std::min(2 * k, left);
-    } else {
-      while (!bound_.find_exposed(k, exposed_, k > block ? few : static_cast<std::size_t>(-1))) k /= 2;
-      all = exposed_.empty();
-    }
+    while (!bound_.find_exposed(k, exposed_, k > block ? few : static_cast<std::size_t>(-1))) k /= 2;
+    const bool all = exposed_.empty();
+    while (all && k < left && bound_.holds(std::min(2 * k, left))) k = std::min(2 * k, left);
     pace = std::max<long long>(k, block);
     if (all) {
       if (done + k < most) advance(k);
@@ -62,20 +60,33 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
 // Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each; the bound has looked
 // at where they begin. Returns over how many they are; −1: not in the first.
 long long ClearSteps::follow(long long steps) {
-  paces_.clear();
-  for (const auto& [watch, point] : exposed_) paces_.push_back(bound_.pace(watch, point));
-  modes_.resize(2 * static_cast<std::size_t>(motion_.modes()));
+  followed_.clear();
+  for (const auto& [watch, point] : exposed_)
+    followed_.push_back({&readings(watch, point), bound_.pace(watch, point),
+                         bound_.watch(watch).lower[static_cast<std::size_t>(point)],
+                         bound_.watch(watch).upper[static_cast<std::size_t>(point)]});
   long long gone = 0;
   while (gone < steps) {
-    long long leap = std::min(steps - gone, leap_ahead());
-    if (leap < 0) return gone - 1;
+    // Points of which enough is known are not read.
+    long long clear = steps;
+    for (Followed& one : followed_) {
+      if (one.clear < std::min(steps, gone + least_leap)) {
+        const long long more = clear_steps(one);
+        if (more < 0) return gone - 1;
+        one.clear = gone + more;
+      }
+      clear = std::min(clear, one.clear);
+    }
+    long long leap = clear - gone;
     if (leap >= least_leap) {
       // Of few powers of two.
       const int low = std::bit_width(static_cast<unsigned long long>(leap)) - 2;
       leap = leap >> low << low;
     } else {
       leap = std::min<long long>(block, steps - gone);
-      if (const int reached = read(static_cast<int>(leap)); reached > 0) return gone + reached - 1;
+      for (int step = 1; step <= leap; ++step)
+        for (const Followed& one : followed_)
+          if (one.clear < gone + step && !inside(one, step)) return gone + step - 1;
     }
     advance(leap);
     gone += leap;
@@ -83,51 +94,23 @@ long long ClearSteps::follow(long long steps) {
   return steps;
 }
 
-// How many steps the exposed points stay between their bounds from here on: by where they are, how far they go in the
-// next step, and what steps can do at most. −1: one of them is not between them.
-long long ClearSteps::leap_ahead() {
-  double least = static_cast<double>(motion_.longest());
-  double *const now = modes_.data(), *const next = now + motion_.modes();
-  int read = -1;
-  for (std::size_t i = 0; i < exposed_.size(); ++i) {
-    const auto& [watch, point] = exposed_[i];
-    const StepReadings& readings = this->readings(watch);
-    if (watch != read) {
-      readings.modes(0, x_.data(), e_, now);
-      readings.modes(1, x_.data(), e_, next);
-    }
-    read = watch;
-    const FlightWatch& bounds = bound_.watch(watch);
-    const auto at = static_cast<std::size_t>(point);
-    const auto& [step, bend, margin] = paces_[i];
-    const double value = readings.value(point, 0, now, e_), change = readings.value(point, 1, next, e_) - value;
-    // Its round-off counts once a step.
-    const double slower = 1e-3 * margin;
-    const double below = value - bounds.lower[at] - margin, above = bounds.upper[at] - value - margin;
-    if (!(below > 0 && above > 0)) return -1;
-    least = std::min(
-        {least, steps_within(below, change - slower, step, bend), steps_within(above, -change - slower, step, bend)});
-  }
-  return static_cast<long long>(least);
+// How many steps a point stays between its bounds from here on: by where it is, how far it goes in the next step, and
+// what steps can do at most. −1: it is not between them.
+long long ClearSteps::clear_steps(const Followed& one) const {
+  const auto& [step, bend, margin] = one.pace;
+  const double value = (*one.reading)(0, x_.data(), e_), change = (*one.reading)(1, x_.data(), e_) - value;
+  // Its round-off counts once a step.
+  const double slower = 1e-3 * margin, below = value - one.lower - margin, above = one.upper - value - margin;
+  if (!(below > 0 && above > 0)) return -1;
+  return static_cast<long long>(
+      std::min({static_cast<double>(motion_.longest()), steps_within(below, change - slower, step, bend),
+                steps_within(above, -change - slower, step, bend)}));
 }
 
-// The first of the steps that begin 1 to `steps` steps on in which an exposed point is not strictly between its bounds;
-// −1: none.
-int ClearSteps::read(int steps) {
-  for (int step = 1; step <= steps; ++step) {
-    int read = -1;
-    for (std::size_t i = 0; i < exposed_.size(); ++i) {
-      const auto& [watch, point] = exposed_[i];
-      const StepReadings& readings = this->readings(watch);
-      if (watch != read) readings.modes(step, x_.data(), e_, modes_.data());
-      read = watch;
-      const double value = readings.value(point, step, modes_.data(), e_), margin = paces_[i].margin;
-      const FlightWatch& bounds = bound_.watch(watch);
-      const auto at = static_cast<std::size_t>(point);
-      if (!(value - margin > bounds.lower[at] && value + margin < bounds.upper[at])) return step;
-    }
-  }
-  return -1;
+// Whether it is, `step` steps on.
+bool ClearSteps::inside(const Followed& one, int step) const {
+  const double value = (*one.reading)(step, x_.data(), e_);
+  return value - one.pace.margin > one.lower && value + one.pace.margin < one.upper;
 }
 
 }  // namespace ricochet

@@ -16,26 +16,33 @@ class ClearSteps {
   /// The largest k ≤ `most` for which they do in the steps that begin 0, 1, …, k steps after (x, e); −1: not in the
   /// first. `pace`: over how many steps to ask first, kept from one count to the next.
   long long count(const std::vector<double>& x, const double* e, long long most, long long& pace);
-  /// A watch in each step.
-  const StepReadings& readings(int watch);
+  /// A point of a watch in each step.
+  const StepReadings& readings(int watch, int point);
 
  private:
   // Points that are followed one by one.
   static constexpr std::size_t few = 6;
+  struct Followed {
+    const StepReadings* reading;
+    FlightBound::Pace pace;
+    double lower, upper;
+    long long clear = -1;  // the last step of which it is known to be
+  };
 
   long long follow(long long steps);
-  long long leap_ahead();
-  int read(int steps);
+  long long clear_steps(const Followed& one) const;
+  bool inside(const Followed& one, int step) const;
   void advance(long long k);
 
   const StepRows& rows_;
   FlightBound& bound_;
   const FlightMotion& motion_;
-  std::vector<std::unique_ptr<StepReadings>> readings_;  // made when first asked for
-  std::vector<double> x_, modes_;
+  // Of each watch and point; made when first asked for.
+  std::vector<std::vector<std::unique_ptr<StepReadings>>> readings_;
+  std::vector<double> x_;
   double e_[3] = {};
   std::vector<WatchedPoint> exposed_;
-  std::vector<FlightBound::Pace> paces_;
+  std::vector<Followed> followed_;
 };
 
 }  // namespace ricochet

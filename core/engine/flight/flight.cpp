@@ -167,15 +167,13 @@ long long Flight::find_efforts(long long first) {
   }
   const std::size_t points = set_->held().size();
   efforts_.resize(static_cast<std::size_t>(effort_block) * points);
-  modes_.resize(static_cast<std::size_t>(set_->modes()));
-  const StepReadings& readings = set_->efforts();
-  double* effort = efforts_.data();
   for (long long k = 0; k < count; k += StepReadings::block) {
     const int steps = static_cast<int>(std::min<long long>(StepReadings::block, count - k));
-    for (int step = 0; step < steps; ++step) {
-      readings.modes(step, after_efforts_.x.data(), after_efforts_.e, modes_.data());
-      for (std::size_t i = 0; i < points; ++i)
-        *effort++ = readings.value(static_cast<int>(i), step, modes_.data(), after_efforts_.e);
+    for (std::size_t i = 0; i < points; ++i) {
+      const StepReadings& effort = set_->effort(i);
+      for (int step = 0; step < steps; ++step)
+        efforts_[static_cast<std::size_t>(k + step) * points + i] =
+            effort(step, after_efforts_.x.data(), after_efforts_.e);
     }
     advance(steps, after_efforts_);
   }

@@ -134,7 +134,7 @@ class Flight {
   std::vector<Leg> tangents_;  // where they start
   long long flown_ = 0, clear_ = 0;
   // Efforts of up to effort_block steps from one of them on (−1: of none yet), and the state that they lead to.
-  std::vector<double> efforts_, modes_;
+  std::vector<double> efforts_;
   Leg after_efforts_;
   long long efforts_from_ = -1, effort_next_ = 0;
   std::vector<Leg> legs_;  // of a search, by depth

@@ -40,14 +40,14 @@ class FlightSet {
   ClearSteps& clear_steps() { return *clear_steps_; }
   const FlightMotion& motion() const { return *motion_; }
   const FlightWorks& works() const { return *works_; }
-  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded.
-  FlightBound& tip() { return *tip_; }
-  /// The same of every fourth step; null where no mode alternates.
+  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded; made when first asked for.
+  FlightBound& tip();
+  /// The same of every fourth step, once tip() was asked for; null where no mode alternates.
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
   const TipReadings& readings();
-  /// Efforts of the held points in each step, N.
-  const StepReadings& efforts() { return clear_steps_->readings(effort_watch_); }
+  /// The effort of a held point in each step, N.
+  const StepReadings& effort(std::size_t held) { return clear_steps_->readings(effort_watch_, static_cast<int>(held)); }
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -72,13 +72,14 @@ class FlightSet {
   Eigen::VectorXd own_mass_;    // M of the structure's modes
   Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
   Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
-  mutable Eigen::VectorXd apart_;
+  mutable Eigen::MatrixXd apart_;
   Eigen::MatrixXd lever_;                         // L, rows × held
   std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
   Eigen::MatrixXd held_rows_;                     // H_I
   std::unique_ptr<const StepRows> step_rows_;
+  FlightWatch tip_watch_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
   std::unique_ptr<FlightMotion> motion_;
   std::unique_ptr<ClearSteps> clear_steps_;

@@ -3,45 +3,37 @@
 
 namespace ricochet {
 
-StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, const double* points)
-    : points_(points),
-      count_(static_cast<int>(watch.rows.rows())),
-      modes_(rows.modes()),
-      slots_(rows.slots()),
-      drives_(rows.drive().count()) {
-  const int width = rows.width();
-  const auto n = static_cast<std::size_t>(modes_), size = static_cast<std::size_t>(width) * n;
-  table_.resize((block + 1) * size);
+StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int point, const double* row)
+    : size_(rows.slots() * rows.modes()), drives_(rows.drive().count()) {
+  const int modes = rows.modes(), slots = rows.slots();
+  weights_.resize(static_cast<std::size_t>((block + 1) * size_));
+  drive_.assign(static_cast<std::size_t>((block + 1) * drives_), 0.0);
+  const auto add_drive = [&](int step, const auto& more) {
+    for (int k = 0; k < drives_; ++k) drive_[static_cast<std::size_t>(step * drives_ + k)] += more[k];
+  };
   const Eigen::MatrixXd turn = rows.drive().change(1);
-  for (int mode = 0; mode < modes_; ++mode) {
+  Eigen::RowVectorXd own, more(rows.width());
+  for (int mode = 0; mode < modes; ++mode) {
     const Eigen::MatrixXd& change = rows.change(mode);
-    Eigen::RowVectorXd row = rows.of(mode, watch.stage, watch.value), more(width);
-    for (std::size_t step = 0; step <= block; ++step) {
-      for (int k = 0; k < width; ++k)
-        table_[step * size + static_cast<std::size_t>(k) * n + static_cast<std::size_t>(mode)] = row[k];
-      more.noalias() = row.head(slots_).lazyProduct(change);
-      if (drives_ > 0) more.tail(drives_) += row.tail(drives_).lazyProduct(turn);
-      row += more;
+    own = row[mode] * rows.of(mode, watch.stage, watch.value);
+    for (int step = 0; step <= block; ++step) {
+      for (int j = 0; j < slots; ++j) weights_[static_cast<std::size_t>(step * size_ + j * modes + mode)] = own[j];
+      add_drive(step, own.tail(drives_));
+      more.noalias() = own.head(slots).lazyProduct(change);
+      if (drives_ > 0) more.tail(drives_) += own.tail(drives_).lazyProduct(turn);
+      own += more;
     }
   }
-  Eigen::MatrixXd drive = watch.drive;
+  Eigen::RowVectorXd drive = watch.drive.row(point);
   for (int step = 0; step <= block; ++step) {
-    for (Eigen::Index i = 0; i < count_; ++i)
-      for (int k = 0; k < drives_; ++k) drive_.push_back(drive(i, k));
-    drive += drive * turn.eval();
+    add_drive(step, drive);
+    drive += drive * turn;
   }
 }
 
-void StepReadings::modes(int step, const double* x, const double* e, double* out) const {
-  const std::size_t size = static_cast<std::size_t>(slots_ + drives_) * static_cast<std::size_t>(modes_);
-  flight_kernels().row(modes_, slots_, drives_, table_.data() + static_cast<std::size_t>(step) * size, x, e, out);
-}
-
-double StepReadings::value(int point, int step, const double* modes, const double* e) const {
-  double sum =
-      flight_kernels().dot(modes_, points_ + static_cast<std::size_t>(point) * static_cast<std::size_t>(modes_), modes);
-  const double* own = drive_.data() + static_cast<std::size_t>((step * count_ + point) * drives_);
-  for (int k = 0; k < drives_; ++k) sum += own[k] * e[k];
+double StepReadings::operator()(int step, const double* x, const double* e) const {
+  double sum = flight_kernels().dot(size_, weights_.data() + static_cast<std::size_t>(step * size_), x);
+  for (int k = 0; k < drives_; ++k) sum += drive_[static_cast<std::size_t>(step * drives_ + k)] * e[k];
   return sum;
 }
 

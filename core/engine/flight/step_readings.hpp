@@ -4,25 +4,21 @@
 
 namespace ricochet {
 
-/// A watch in each of `block` steps that begin one after the other, from the state before them alone: by rows
-/// r, r A, r A², … of each mode.
+/// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone: by
+/// rows h r, h r A, h r A², …
 class StepReadings {
  public:
-  static constexpr int power = 4, block = 1 << power;
+  static constexpr int block = 8;
 
-  /// `points` of the watch as FlightBound has them.
-  StepReadings(const StepRows& rows, const FlightWatch& watch, const double* points);
+  /// `row`: the point over the modes; `point`: which of the watch.
+  StepReadings(const StepRows& rows, const FlightWatch& watch, int point, const double* row);
 
-  /// What each mode has `step` ≤ block steps after (x, e).
-  void modes(int step, const double* x, const double* e, double* out) const;
-  /// A point of the watch then; `modes`: of that step.
-  double value(int point, int step, const double* modes, const double* e) const;
+  /// `step` ≤ block steps after (x, e).
+  double operator()(int step, const double* x, const double* e) const;
 
  private:
-  const double* points_;
-  int count_, modes_, slots_, drives_;
-  std::vector<double> table_;  // of each step: width × modes
-  std::vector<double> drive_;  // of each step: points × drives
+  int size_, drives_;
+  std::vector<double> weights_, drive_;  // of each step: slots × modes, drives
 };
 
 }  // namespace ricochet
