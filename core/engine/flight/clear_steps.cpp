@@ -79,9 +79,8 @@ long long ClearSteps::follow(long long steps) {
     }
     long long leap = clear - gone;
     if (leap >= least_leap) {
-      // Of few powers of two.
-      const int low = std::bit_width(static_cast<unsigned long long>(leap)) - 2;
-      leap = leap >> low << low;
+      // In one leap: what it leaves costs less than another.
+      leap = static_cast<long long>(std::bit_floor(static_cast<unsigned long long>(leap)));
     } else {
       leap = std::min<long long>(block, steps - gone);
       for (int step = 1; step <= leap; ++step)

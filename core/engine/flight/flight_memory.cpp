@@ -21,7 +21,7 @@ int flight_powers(long long steps) {
 
 double flight_set_bytes(int modes, int slots, int powers) {
   const double n = modes, width = slots + 3;
-  return 8 * (n * n + n * powers * (slots * width + 2 * width * (width + 1))) +
+  return 8 * (2 * n * n + n * powers * (slots * width + 2 * width * (width + 1))) +
          reading_bytes(modes, slots, read_points);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
@@ -116,6 +117,7 @@ void FlightSet::hold(const Program& program) {
   const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
   const SymmetricModes modes = symmetric_modes(null.transpose() * own_mass_.asDiagonal() * null);
   basis_ = null * modes.vectors;
+  basis_rows_ = basis_.transpose();
   // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
   // a static lever would move the whole structure by it.
   const FoldedStage& folded = program.stages.front().folded;
@@ -307,7 +309,7 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
   }
   for (int j = 0; j < slots_; ++j) {
     Eigen::Map<VectorXd> mode(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
-    mode.noalias() = basis_.transpose() * Eigen::Map<const VectorXd>(slots[j], rows_);
+    flight_kernels().dots(rows_, modes_, basis_.data(), slots[j], mode.data());
     mode.noalias() -= settle_ * apart_.col(j);
   }
   return true;
@@ -321,7 +323,8 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
   const Eigen::Map<const VectorXd> drive(e, drive_.count());
   for (int j = 0; j < slots_; ++j) {
     Eigen::Map<VectorXd> slot(slots[j], rows_);
-    slot.noalias() = basis_ * Eigen::Map<const VectorXd>(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
+    flight_kernels().dots(modes_, rows_, basis_rows_.data(), x.data() + static_cast<std::ptrdiff_t>(j) * modes_,
+                          slot.data());
     slot.noalias() += lift_[static_cast<std::size_t>(j)] * drive;
   }
 }

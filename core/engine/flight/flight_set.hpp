@@ -71,6 +71,7 @@ class FlightSet {
   std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
   Eigen::VectorXd own_mass_;    // M of the structure's modes
   Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd basis_rows_;  // Ψᵀ
   Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
   mutable Eigen::MatrixXd apart_;
   Eigen::MatrixXd lever_;                         // L, rows × held
