@@ -73,8 +73,9 @@ RICOCHET_BODY double total(Wide even, Wide odd) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-RICOCHET_BODY void reach_body(int n, const double* h, const double* places, double* out) {
-  const double *near = places, *near_radius = places + n, *far = places + 2L * n, *far_radius = places + 3L * n;
+RICOCHET_BODY void reach_body(int n, long stride, const double* h, const double* places, double* out) {
+  const double *near = places, *near_radius = places + stride, *far = places + 2 * stride,
+               *far_radius = places + 3 * stride;
   Wide a{}, b{}, c{}, d{};
   int j = 0;
   for (; j + wide <= n; j += wide) {
@@ -113,6 +114,31 @@ RICOCHET_BODY double sum_over(int n, Four four, One one) {
 RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
   return sum_over(
       n, [&](int j) { return load(h + j) * load(x + j); }, [&](int j) { return h[j] * x[j]; });
+}
+
+// Four rows at a time: sums do not wait for each other. Each row has the order of dot_body.
+RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double* x, double* out) {
+  int i = 0;
+  for (; i + 4 <= rows; i += 4, matrix += 4L * n) {
+    const double *a = matrix, *b = a + n, *c = b + n, *d = c + n;
+    Wide even[4] = {}, odd[4] = {};
+    int j = 0;
+    for (; j + 2 * wide <= n; j += 2 * wide) {
+      const Wide first = load(x + j), second = load(x + j + wide);
+      even[0] += load(a + j) * first;
+      odd[0] += load(a + j + wide) * second;
+      even[1] += load(b + j) * first;
+      odd[1] += load(b + j + wide) * second;
+      even[2] += load(c + j) * first;
+      odd[2] += load(c + j + wide) * second;
+      even[3] += load(d + j) * first;
+      odd[3] += load(d + j + wide) * second;
+    }
+    for (int l = 0; j < n; ++j, ++l)
+      for (int k = 0; k < 4; ++k) (l < wide ? even : odd)[k][l % wide] += matrix[static_cast<long>(k) * n + j] * x[j];
+    for (int k = 0; k < 4; ++k) out[i + k] = total(even[k], odd[k]);
+  }
+  for (; i < rows; ++i, matrix += n) out[i] = dot_body(n, matrix, x);
 }
 
 RICOCHET_BODY void add_body(int n, double a, const double* x, double* __restrict out) {
@@ -155,13 +181,16 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     }                                                                                                                  \
     TARGET static void cone(int n, double k, const double* v, const double* c, const double* a, const double* b,       \
                             double* p) { cone_body(n, k, v, c, a, b, p); }                                             \
-    TARGET static void reach(int n, const double* h, const double* p, double* o) { reach_body(n, h, p, o); }           \
+    TARGET static void reach(int n, long stride, const double* h, const double* p, double* o) {                        \
+      reach_body(n, stride, h, p, o);                                                                                  \
+    }                                                                                                                  \
     TARGET static double dot(int n, const double* h, const double* x) { return dot_body(n, h, x); }                    \
+    TARGET static void dots(int n, int r, const double* m, const double* x, double* o) { dots_body(n, r, m, x, o); }   \
     TARGET static void add(int n, double a, const double* x, double* o) { add_body(n, a, x, o); }                      \
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, add, quadratic};                      \
+    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, dots, add, quadratic};                      \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

@@ -17,10 +17,12 @@ struct FlightKernels {
   /// says more. `places`: four arrays, near, its radius, far, its radius.
   void (*cone)(int n, double k, const double* value, const double* change, const double* amplitude, const double* bend,
                double* places);
-  /// Σ h_j near_j, Σ |h_j| radius_j, and the same of far.
-  void (*reach)(int n, const double* h, const double* places, double* out);
+  /// Σ h_j near_j, Σ |h_j| radius_j, and the same of far, over n modes of arrays that are `stride` numbers apart.
+  void (*reach)(int n, long stride, const double* h, const double* places, double* out);
   /// Σ_j h_j x_j.
   double (*dot)(int n, const double* h, const double* x);
+  /// out_i = Σ_j m_ij x_j, m by rows: bit for bit that of each row alone.
+  void (*dots)(int n, int rows, const double* matrix, const double* x, double* out);
   /// out += a x.
   void (*add)(int n, double a, const double* x, double* out);
   /// Σ_j x_jᵀ Q_j x_j, Q_j symmetric over (x, e), its upper half by rows: w(w+1)/2 arrays.

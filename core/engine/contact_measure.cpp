@@ -19,10 +19,8 @@ void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const
   const int n = program_.model->rows();
   // Modes keep no combination for the step to come: its block is free.
   kernels_.combine(n, terms, x, weights, combination_.data());
-  const FlightKernels& kernels = flight_kernels();
-  for (int i = 0; i < rows.rows(); ++i)
-    out[i] = kernels.dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(i) * n, combination_.data()) +
-             (offset ? offset[0] : 0.0);
+  flight_kernels().dots(n, rows.rows(), rows.value.data(), combination_.data(), out);
+  for (int i = 0; offset && i < rows.rows(); ++i) out[i] += offset[0];
 }
 
 // Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
@@ -72,6 +70,8 @@ void Marcher::open_gates(StageProgram& program, StageState& state) {
 
 // What the law reads in every lane; a bit for each lane beyond a bound.
 std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state, const double* z) {
+  state.closed_lanes = 0;
+  if (clear_ > 0 && state.contact_lanes == 0) return 0;
   const bool gated = program.gate.has_value();
   if (gated) {
     open_gates(program, state);

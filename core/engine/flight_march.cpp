@@ -98,6 +98,7 @@ long long Marcher::fly(long long most, StepObserver* observer) {
   gather_columns();
   find_past();
   const long long k = flight.look(column_slots_, e, past_, most);
+  clear_ = flight.clear();
   if (k == 0) return 0;
   SkippedSteps skipped;
   skipped.steps = k;

@@ -94,6 +94,7 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   if (program_.contact) place_stops(lane);
   if (program_.flight && !(same_law && same_stops))
     program_.flight->place(own, program_.contact ? program_.law->layer(0) : 0);
+  clear_ = 0;
   set_state_at(lane, state);
 }
 
@@ -101,6 +102,7 @@ void Marcher::set_clock(long long step) {
   step_ = step;
   // What comes depends on the state alone, whoever marched before.
   quiet_ = 0;
+  clear_ = 0;
   if (program_.flight) program_.flight->forget();
 }
 

@@ -154,6 +154,7 @@ long long Marcher::march(long long steps, StepObserver* observer) {
       run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer);
     ++step_;
     ++visited_;
+    if (clear_ > 0) --clear_;
     if (observer) {
       // Observers ask where the clamp is now; the next step begins here.
       if (program_.support) clamp_.set_time(time());

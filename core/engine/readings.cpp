@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/load_window.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -70,6 +71,22 @@ double Marcher::penetration(int lane) const {
   const double *lower = spec.lower.data(), *upper = spec.upper.data(), *q = slots_[0];
   const double phi = support(lane, time());
   double deepest = 0;
+  const auto see = [&](int j, double relative) {
+    const double place = relative + phi;
+    deepest = std::max({deepest, lower[j] - place, place - upper[j]});
+  };
+  if (program_.flight && program_.width == 1) {
+    // The rows of one lane are dense where flights leave out steps.
+    constexpr int some = 16;
+    double places[some];
+    const int n = program_.model->rows();
+    for (int first = 0; first < rows.rows(); first += some) {
+      const int count = std::min(some, rows.rows() - first);
+      flight_kernels().dots(n, count, rows.value.data() + static_cast<std::ptrdiff_t>(first) * n, q, places);
+      for (int j = 0; j < count; ++j) see(first + j, places[j]);
+    }
+    return deepest;
+  }
   for (int j = 0; j < rows.rows(); ++j) {
     double relative = 0;
     if (program_.width == 1)
@@ -78,8 +95,7 @@ double Marcher::penetration(int lane) const {
       for (int e = rows.start[static_cast<std::size_t>(j)]; e < rows.start[static_cast<std::size_t>(j) + 1]; ++e)
         relative +=
             rows.value[static_cast<std::size_t>(e)] * blocks_[0].at(rows.index[static_cast<std::size_t>(e)], lane);
-    const double place = relative + phi;
-    deepest = std::max({deepest, lower[j] - place, place - upper[j]});
+    see(j, relative);
   }
   return deepest;
 }

@@ -100,8 +100,8 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
 long long Flight::step_held(Columns columns, const double* e, HeldSteps::Past past, long long most) {
   const long long asked = std::min(most, set_pace_->next), k = steps_->march(columns[0], e, past, asked);
   if (k < least) {
-    set_pace_->wait = set_pace_->penalty;
-    set_pace_->penalty = std::min(2 * set_pace_->penalty, longest_wait);
+    set_pace_->wait = std::max(set_pace_->penalty, least);
+    set_pace_->penalty = std::min(2 * set_pace_->wait, longest_wait);
     set_pace_->next = 2 * least;
     return 0;
   }
@@ -111,6 +111,7 @@ long long Flight::step_held(Columns columns, const double* e, HeldSteps::Past pa
 }
 
 long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, long long most) {
+  clear_ = 0;
   if (steps_) return step_held(columns, e, past, most);
   FlightSet* const set = set_;
   Pace* const pace = set_pace_;
@@ -118,7 +119,6 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   const auto fails = [&] {
     pace->wait = pace->penalty;
     pace->penalty = std::min(2 * pace->penalty, longest_wait);
-    pace->next = 2 * least;
     return 0LL;
   };
   std::copy_n(e, 3, start_.e);
@@ -126,19 +126,13 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   tangents_.resize(columns.size() - 1);
   for (std::size_t k = 0; k < tangents_.size(); ++k)
     if (!set->enter(columns[k + 1], tangents_[k].e, tangents_[k].x)) return fails();
-  FlightBound& bound = set->bound();
-  bound.look(start_.x.data(), e);
-  long long k = std::min(pace->next, most);
-  if (bound.holds(k)) {
-    while (k < most && bound.holds(std::min(2 * k, most))) k = std::min(2 * k, most);
-  } else {
-    do k /= 2;
-    while (k >= least && !bound.holds(k));
-  }
-  if (k < least) return fails();
-  pace->penalty = least;
-  pace->next = k;
-  return k;
+  const long long k = set->clear_steps().count(start_.x, e, most, pace->next);
+  if (set->held().empty() && k >= 0) clear_ = k < least ? k + 1 : 1;
+  // What is reached is known to the step: until then there is nothing to look for.
+  if (k < most) pace->wait = k < least ? k + 1 : 1;
+  if (k < 0) return fails();
+  pace->penalty = 1;
+  return k < least ? 0 : k;
 }
 
 FlightSums Flight::fly(long long k, Columns columns, HeldSteps::Past past, bool works) {
@@ -173,9 +167,15 @@ long long Flight::find_efforts(long long first) {
   }
   const std::size_t points = set_->held().size();
   efforts_.resize(static_cast<std::size_t>(effort_block) * points);
-  for (long long k = 0; k < count; ++k) {
-    set_->efforts(after_efforts_.x.data(), after_efforts_.e, efforts_.data() + static_cast<std::size_t>(k) * points);
-    advance(1, after_efforts_);
+  for (long long k = 0; k < count; k += StepReadings::block) {
+    const int steps = static_cast<int>(std::min<long long>(StepReadings::block, count - k));
+    for (std::size_t i = 0; i < points; ++i) {
+      const StepReadings& effort = set_->effort(i);
+      for (int step = 0; step < steps; ++step)
+        efforts_[static_cast<std::size_t>(k + step) * points + i] =
+            effort(step, after_efforts_.x.data(), after_efforts_.e);
+    }
+    advance(steps, after_efforts_);
   }
   efforts_from_ = first;
   effort_next_ = first + count;

@@ -52,6 +52,9 @@ class Flight {
   /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
   /// march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
   long long look(Columns columns, const double* e, HeldSteps::Past past, long long most);
+  /// How many steps that come next, the one after a flight among them, no open point can close in, as far as the last
+  /// look has seen; no lane without contact then needs to be measured.
+  long long clear() const { return clear_; }
   /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
   FlightSums fly(long long k, Columns columns, HeldSteps::Past past, bool works);
   /// Largest penetration after any of them, m.
@@ -90,8 +93,8 @@ class Flight {
   static constexpr long long effort_block = 4096;
 
   struct Pace {
-    long long next = 2 * least;
-    long long wait = 0, penalty = least;
+    long long next = 16;  // steps to ask for first
+    long long wait = 0, penalty = 1;
   };
   struct Kept {
     std::vector<HeldPoint> held;
@@ -129,7 +132,7 @@ class Flight {
   Pace* set_pace_ = nullptr;
   Leg start_, last_;
   std::vector<Leg> tangents_;  // where they start
-  long long flown_ = 0;
+  long long flown_ = 0, clear_ = 0;
   // Efforts of up to effort_block steps from one of them on (−1: of none yet), and the state that they lead to.
   std::vector<double> efforts_;
   Leg after_efforts_;

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <complex>
 #include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 
@@ -21,7 +19,6 @@ using Complex = std::complex<double>;
 constexpr double nothing = 1e-3;         // a root below: zero as often as it is found, known to the root of round-off
 constexpr double grows = 1e-10;          // of a root beyond the unit circle: what round-off makes of one on it
 constexpr double ill_conditioned = 1e6;  // of eigenvectors: roots that coincide
-constexpr double slack = 1e-12;          // of a bound: its own round-off
 
 std::size_t place(Index row, int modes, int mode) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(modes) + static_cast<std::size_t>(mode);
@@ -63,6 +60,9 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches,
       array->assign(n, 0.0);
     for (auto* array : {&watched.offset, &watched.offset_step, &watched.offset_bend})
       array->assign(static_cast<std::size_t>(points), 0.0);
+    watched.widest.assign(n, 0.0);
+    for (std::size_t at = 0; at < watched.points.size(); ++at)
+      watched.widest[at % n] = std::max(watched.widest[at % n], std::abs(watched.points[at]));
   }
   places_.resize(4 * n);
   real_.resize(n);
@@ -238,114 +238,6 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
   if (drive_.constant) {
     const int one = drive_.one();
     watched.rest[at] = std::abs(row.head(slots_).dot(found.steady.col(one)) + row[slots_ + one]);
-  }
-}
-
-void FlightBound::look(const double* x, const double* e) {
-  const FlightKernels& kernels = flight_kernels();
-  const double drive = drive_.harmonic ? std::hypot(e[0], e[1]) : 0.0;
-  const double turn = 2 * std::sin(drive_.angle / 2);
-  double turned[3] = {};  // what e changes by
-  for (int k = 0; k < drives_; ++k)
-    for (int l = 0; l < drives_; ++l) turned[k] += turn_(k, l) * e[l];
-  for (Watched& watched : watches_) {
-    kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, watched.now.data());
-    kernels.row(modes_, slots_, drives_, watched.change.data(), x, e, watched.step.data());
-    for (std::size_t j = 0; j < watched.amplitude.size(); ++j) {
-      watched.amplitude[j] = drive * watched.steady_amplitude[j] + watched.rest[j];
-      watched.bend[j] = drive * watched.steady_bend[j];
-    }
-    for (std::size_t l = 0; l < watched.real.size(); ++l) {
-      kernels.row(modes_, slots_, drives_, watched.real[l].data(), x, e, real_.data());
-      kernels.row(modes_, slots_, drives_, watched.imaginary[l].data(), x, e, imaginary_.data());
-      kernels.modulus(modes_, real_.data(), imaginary_.data(), watched.weight[l].data(), watched.amplitude.data(),
-                      watched.bend.data());
-    }
-    if (!watched.grows.empty()) {
-      kernels.row(modes_, slots_, drives_, watched.grows.data(), x, e, watched.growth.data());
-      for (double& growth : watched.growth) growth = std::abs(growth);
-    }
-    for (std::size_t i = 0; i < watched.offset.size() && drives_ > 0; ++i) {
-      const auto row = static_cast<Index>(i);
-      const MatrixXd& own = watched.watch.drive;
-      watched.offset[i] = watched.offset_step[i] = 0;
-      for (int k = 0; k < drives_; ++k) {
-        watched.offset[i] += own(row, k) * e[k];
-        watched.offset_step[i] += own(row, k) * turned[k];
-      }
-      if (drive_.harmonic) watched.offset_bend[i] = turn * turn * std::hypot(own(row, 0), own(row, 1)) * drive;
-    }
-  }
-  placed_of_ = nullptr;
-}
-
-// (4) at 0 and at k.
-FlightBound::Range FlightBound::cone(Watched& watched, std::size_t point, double k) {
-  const FlightKernels& kernels = flight_kernels();
-  if (placed_of_ != &watched || placed_ != static_cast<long long>(k)) {
-    const double *amplitude = watched.amplitude.data(), *bend = watched.bend.data();
-    if (!watched.grows.empty()) {
-      for (std::size_t j = 0; j < watched.growth.size(); ++j) {
-        grown_amplitude_[j] = 1.005 * (amplitude[j] + k * watched.growth[j]);
-        grown_bend_[j] = bend[j] + (k * watched.doubled[j] + 2 * std::sqrt(watched.doubled[j])) * watched.growth[j];
-      }
-      amplitude = grown_amplitude_.data();
-      bend = grown_bend_.data();
-    }
-    kernels.cone(modes_, k, watched.now.data(), watched.step.data(), amplitude, bend, places_.data());
-    placed_of_ = &watched;
-    placed_ = static_cast<long long>(k);
-  }
-  double sums[4];
-  kernels.reach(modes_, watched.points.data() + point * static_cast<std::size_t>(modes_), places_.data(), sums);
-  const double near = sums[0] + watched.offset[point];
-  const double far = sums[2] + watched.offset[point] + k * watched.offset_step[point];
-  const double far_radius = sums[3] + 0.5 * k * (k - 1) * watched.offset_bend[point];
-  const double margin = slack * (std::abs(near) + std::abs(far) + sums[1] + far_radius);
-  return {std::min(near - sums[1], far - far_radius) - margin, std::max(near + sums[1], far + far_radius) + margin};
-}
-
-bool FlightBound::holds(long long k) {
-  if (k > longest_) return false;
-  for (Watched& watched : watches_) {
-    const std::size_t points = watched.offset.size();
-    const auto inside = [&](std::size_t i) {
-      const double lower = watched.watch.lower[i], upper = watched.watch.upper[i];
-      if (lower == -infinity && upper == infinity) return true;
-      const Range range = cone(watched, i, static_cast<double>(k));
-      return range.low > lower && range.high < upper;
-    };
-    if (points == 0) continue;
-    // The point that stopped the last flight is the first to ask.
-    if (!inside(watched.tightest)) return false;
-    for (std::size_t i = 0; i < points; ++i)
-      if (i != watched.tightest && !inside(i)) {
-        watched.tightest = i;
-        return false;
-      }
-  }
-  return true;
-}
-
-FlightBound::Range FlightBound::range(int watch, int point, long long k) {
-  return cone(watches_[static_cast<std::size_t>(watch)], static_cast<std::size_t>(point), static_cast<double>(k));
-}
-
-double FlightBound::value(int watch, int point) {
-  const Watched& watched = watches_[static_cast<std::size_t>(watch)];
-  return flight_kernels().dot(
-             modes_, watched.points.data() + static_cast<std::size_t>(point) * static_cast<std::size_t>(modes_),
-             watched.now.data()) +
-         watched.offset[static_cast<std::size_t>(point)];
-}
-
-void FlightBound::values(int watch, const double* x, const double* e, double* out) {
-  Watched& watched = watches_[static_cast<std::size_t>(watch)];
-  const FlightKernels& kernels = flight_kernels();
-  kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, real_.data());
-  for (std::size_t i = 0; i < watched.offset.size(); ++i) {
-    out[i] = kernels.dot(modes_, watched.points.data() + i * static_cast<std::size_t>(modes_), real_.data());
-    for (int k = 0; k < drives_; ++k) out[i] += watched.watch.drive(static_cast<Index>(i), k) * e[k];
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <limits>
 #include <ricochet/engine/flight/step_rows.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct FlightWatch {
   enum class Bounds { own, stops, layer } bounds = Bounds::own;
 };
 
+/// One point of one watch.
+struct WatchedPoint {
+  int watch = 0, point = 0;
+};
+
 /// The bound of some measures. Allocates when constructed.
 class FlightBound {
  public:
@@ -49,15 +55,30 @@ class FlightBound {
   long long longest() const { return longest_; }
   /// Whether every measure stays strictly between its bounds at this step and the k that follow it.
   bool holds(long long k);
+  /// The same of some points only.
+  bool holds(long long k, std::span<const WatchedPoint> points);
+  /// The points of which that is not known, k ≤ longest(); false where they are more than `most`.
+  bool find_exposed(long long k, std::vector<WatchedPoint>& exposed, std::size_t most);
 
+  /// A point of a watch over the modes.
+  const double* row(int watch, int point) const {
+    return watches_[static_cast<std::size_t>(watch)].points.data() +
+           static_cast<std::size_t>(point) * static_cast<std::size_t>(modes_);
+  }
   FlightWatch& watch(int i) { return watches_[static_cast<std::size_t>(i)].watch; }
   int watches() const { return static_cast<int>(watches_.size()); }
 
-  /// Where one point of one measure, by the last look, may be within k steps.
+  /// Where one point of one measure, by the last look, may be within k steps; what it has for round-off.
   struct Range {
-    double low = 0, high = 0;
+    double low = 0, high = 0, margin = 0;
   };
   Range range(int watch, int point, long long k);
+  /// What a point can do from the last look on, forever: change by so much in a step, and its change by so much; and
+  /// what its values have for round-off.
+  struct Pace {
+    double step = 0, bend = 0, margin = 0;
+  };
+  Pace pace(int watch, int point);
   /// Its value in the state itself.
   double value(int watch, int point);
   /// Values of all points of one measure in a state that is not looked at otherwise.
@@ -67,6 +88,7 @@ class FlightBound {
   struct Watched {
     FlightWatch watch;
     std::vector<double> points;                        // rows, one after the other
+    std::vector<double> widest;                        // of each mode, the largest size in any of them
     std::vector<double> value, change;                 // rows of a mode, width × modes
     std::vector<std::vector<double>> real, imaginary;  // of the eigenvectors' shares, width × modes each
     std::vector<std::vector<double>> weight;           // |λ − 1|², modes
@@ -79,7 +101,10 @@ class FlightBound {
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
     std::size_t tightest = 0;
   };
-  Range cone(Watched& watched, std::size_t point, double k);
+  void place(Watched& watched, long long k);
+  void split(const Watched& watched);
+  bool inside(Watched& watched, std::size_t point, long long k);
+  Range cone(const Watched& watched, std::size_t point, double k, int first, int count, double more);
   struct ModeRoots;
   ModeRoots roots(const StepRows& rows, int mode);
   bool double_root(const Eigen::MatrixXd& D, ModeRoots& found);
@@ -96,6 +121,9 @@ class FlightBound {
   long long placed_ = -1;
   long long longest_ = std::numeric_limits<long long>::max();  // for which the bound holds
   const Watched* placed_of_ = nullptr;
+  // Of the cone that is placed: modes that are followed, −1: not known; what the others add at most.
+  int slow_from_ = -1, slow_to_ = 0;
+  double fast_radius_ = 0;
   bool alternates_ = false;
   std::string cause_;
 };

@@ -14,8 +14,8 @@ void double_change(Eigen::MatrixXd& change, int slots, const Eigen::MatrixXd& tu
 FlightMotion::FlightMotion(const StepRows& rows, int powers)
     : modes_(rows.modes()), slots_(rows.slots()), width_(rows.width()), drive_(rows.drive()) {
   const int drives = drive_.count();
-  tables_.assign(static_cast<std::size_t>(powers),
-                 std::vector<double>(static_cast<std::size_t>(slots_ * width_) * static_cast<std::size_t>(modes_)));
+  const auto n = static_cast<std::size_t>(modes_);
+  tables_.assign(static_cast<std::size_t>(powers), std::vector<double>(static_cast<std::size_t>(slots_ * width_) * n));
   for (int power = 0; power < powers; ++power) {
     const Eigen::MatrixXd R = drive_.change(static_cast<double>(1LL << power));
     std::vector<double>& rotation = rotations_.emplace_back();
@@ -23,17 +23,36 @@ FlightMotion::FlightMotion(const StepRows& rows, int powers)
       for (int j = 0; j < drives; ++j) rotation.push_back(R(i, j));
   }
   for (int mode = 0; mode < modes_; ++mode) {
-    Eigen::MatrixXd change = rows.change(mode);
-    for (int power = 0; power < powers; ++power) {
-      for (int i = 0; i < slots_; ++i)
-        for (int j = 0; j < width_; ++j)
-          tables_[static_cast<std::size_t>(power)]
-                 [static_cast<std::size_t>(i * width_ + j) * static_cast<std::size_t>(modes_) +
-                  static_cast<std::size_t>(mode)] = change(i, j);
-      double_change(change, slots_, drive_.change(static_cast<double>(1LL << power)));
-    }
+    const Eigen::MatrixXd& change = rows.change(mode);
+    for (int i = 0; i < slots_; ++i)
+      for (int j = 0; j < width_; ++j)
+        tables_[0][static_cast<std::size_t>(i * width_ + j) * n + static_cast<std::size_t>(mode)] = change(i, j);
   }
-  next_.resize(static_cast<std::size_t>(slots_) * static_cast<std::size_t>(modes_));
+  for (std::size_t power = 1; power < tables_.size(); ++power)
+    double_table(tables_[power - 1].data(), rotations_[power - 1].data(), tables_[power].data());
+  next_.resize(static_cast<std::size_t>(slots_) * n);
+}
+
+// (2), all modes at once.
+void FlightMotion::double_table(const double* change, const double* turn, double* __restrict twice) const {
+  const int n = modes_, drives = width_ - slots_;
+  const auto entry = [&](int i, int j) { return static_cast<std::ptrdiff_t>(i * width_ + j) * n; };
+  for (int i = 0; i < slots_; ++i)
+    for (int j = 0; j < width_; ++j) {
+      double* const out = twice + entry(i, j);
+      const auto add = [&](const double* a, auto&& factor) {
+        for (int m = 0; m < n; ++m) out[m] += a[m] * factor(m);
+      };
+      for (int k = 0; k < slots_; ++k) {
+        const double* const b = change + entry(k, j);
+        add(change + entry(i, k), [b](int m) { return b[m]; });
+      }
+      const double* const own = change + entry(i, j);
+      for (int m = 0; m < n; ++m) out[m] = 2 * own[m] + out[m];
+      for (int l = 0; j >= slots_ && l < drives; ++l)
+        if (const double turned = turn[l * drives + j - slots_]; turned != 0)
+          add(change + entry(i, slots_ + l), [turned](int) { return turned; });
+    }
 }
 
 void FlightMotion::leap(int power, double* x, double* e) const {

@@ -20,6 +20,10 @@ class FlightMotion {
   int slots() const { return slots_; }
   const FlightDrive& drive() const { return drive_; }
   long long longest() const { return (1LL << tables_.size()) - 1; }
+  /// D and B of 2^power steps: slots × (slots + drives) arrays, one number per mode; and their R, drives × drives.
+  const double* table(int power) const { return tables_[static_cast<std::size_t>(power)].data(); }
+  const double* rotation(int power) const { return rotations_[static_cast<std::size_t>(power)].data(); }
+  int powers() const { return static_cast<int>(tables_.size()); }
   /// One step from x to `next`, which is another place; e with it.
   void step(const double* x, double* e, double* next) const { leap_to(0, x, e, next); }
   /// x of all modes and e, 2^power steps later. `x`: slots × r numbers, slot by slot.
@@ -28,6 +32,7 @@ class FlightMotion {
   void advance(long long k, double* x, double* e) const;
 
  private:
+  void double_table(const double* change, const double* turn, double* twice) const;
   void leap_to(int power, const double* x, double* e, double* next) const;
 
   int modes_, slots_, width_;

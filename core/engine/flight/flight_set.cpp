@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
@@ -116,6 +117,7 @@ void FlightSet::hold(const Program& program) {
   const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
   const SymmetricModes modes = symmetric_modes(null.transpose() * own_mass_.asDiagonal() * null);
   basis_ = null * modes.vectors;
+  basis_rows_ = basis_.transpose();
   // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
   // a static lever would move the whole structure by it.
   const FoldedStage& folded = program.stages.front().folded;
@@ -123,7 +125,7 @@ void FlightSet::hold(const Program& program) {
       (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
   settle_ = basis_.transpose() * response *
             (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
-  apart_.resize(held_rows_.rows());
+  apart_.resize(held_rows_.rows(), slots_);
   lever_ = held_rows_.transpose() *
            (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
 }
@@ -243,27 +245,19 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   cause_ = bound_->cause();
   if (!cause_.empty()) return;
 
-  FlightWatch tip;
-  tip.stage = after;
-  tip.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
-  tip.value.slots[0] = 1;
+  // Where the tip is after the step.
+  tip_watch_.stage = after;
+  tip_watch_.value.slots.assign(static_cast<std::size_t>(slots_), 0.0);
+  tip_watch_.value.slots[0] = 1;
   const MatrixXd tip_row = dense(program.model->tip(), rows_);
-  tip.rows = onto(tip_row);
-  tip.drive = (tip_row * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
-              harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
-  tip.lower = {-infinity};
-  tip.upper = {infinity};
-  FlightWatch change = tip;
-  change.difference = true;
-  change.drive = tip.drive * drive_.change(1);
-  tip_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{tip, change});
-  if (tip_->alternates()) {
-    change.drive = tip.drive * drive_.change(4);
-    tip_by_four_ = std::make_unique<FlightBound>(rows, std::vector<FlightWatch>{std::move(tip), std::move(change)}, 2);
-    if (!tip_by_four_->cause().empty()) tip_by_four_.reset();
-  }
+  tip_watch_.rows = onto(tip_row);
+  tip_watch_.drive = (tip_row * (lift_[0] + lift_[0] * drive_.change(1))).rowwise() +
+                     harmonic(PhaseWeights({{1, 1}}, program.problem->support.pulsation, program.h), drive_);
+  tip_watch_.lower = {-infinity};
+  tip_watch_.upper = {infinity};
   motion_ = std::make_unique<FlightMotion>(rows, powers);
-  works_ = std::make_unique<FlightWorks>(rows, forms(program, rows, mass, lifted), powers);
+  clear_steps_ = std::make_unique<ClearSteps>(rows, *bound_, *motion_);
+  works_ = std::make_unique<FlightWorks>(*motion_, forms(program, rows, mass, lifted));
 }
 
 // Held points are watched by their efforts.
@@ -308,13 +302,15 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
     for (std::size_t i = 0; i < held_.size(); ++i) {
       const auto row = held_rows_.row(static_cast<Index>(i));
       if (j == 0) size = std::max(size, row.cwiseAbs().dot(slot.cwiseAbs()));
-      apart_[static_cast<Index>(i)] = row.dot(slot) - rest_[i].row(j).dot(drive);
-      if (!(std::abs(metres_[static_cast<std::size_t>(j)] * apart_[static_cast<Index>(i)]) <= over * size))
+      apart_(static_cast<Index>(i), j) = row.dot(slot) - rest_[i].row(j).dot(drive);
+      if (!(std::abs(metres_[static_cast<std::size_t>(j)] * apart_(static_cast<Index>(i), j)) <= over * size))
         return false;
     }
+  }
+  for (int j = 0; j < slots_; ++j) {
     Eigen::Map<VectorXd> mode(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
-    mode.noalias() = basis_.transpose() * slot;
-    mode.noalias() -= settle_ * apart_;
+    flight_kernels().dots(rows_, modes_, basis_.data(), slots[j], mode.data());
+    mode.noalias() -= settle_ * apart_.col(j);
   }
   return true;
 }
@@ -327,21 +323,29 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
   const Eigen::Map<const VectorXd> drive(e, drive_.count());
   for (int j = 0; j < slots_; ++j) {
     Eigen::Map<VectorXd> slot(slots[j], rows_);
-    slot.noalias() = basis_ * Eigen::Map<const VectorXd>(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
+    flight_kernels().dots(modes_, rows_, basis_rows_.data(), x.data() + static_cast<std::ptrdiff_t>(j) * modes_,
+                          slot.data());
     slot.noalias() += lift_[static_cast<std::size_t>(j)] * drive;
   }
 }
 
-const TipReadings& FlightSet::readings() {
-  if (!readings_) {
-    const FlightWatch& tip = tip_->watch(0);
-    readings_ = std::make_unique<TipReadings>(*step_rows_, tip.rows.row(0), tip.drive.row(0));
-  }
-  return *readings_;
+FlightBound& FlightSet::tip() {
+  if (tip_) return *tip_;
+  FlightWatch change = tip_watch_;
+  change.difference = true;
+  change.drive = tip_watch_.drive * drive_.change(1);
+  tip_ = std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{tip_watch_, change});
+  if (!tip_->alternates()) return *tip_;
+  change.drive = tip_watch_.drive * drive_.change(4);
+  tip_by_four_ = std::make_unique<FlightBound>(*step_rows_, std::vector<FlightWatch>{tip_watch_, std::move(change)}, 2);
+  if (!tip_by_four_->cause().empty()) tip_by_four_.reset();
+  return *tip_;
 }
 
-void FlightSet::efforts(const double* x, const double* e, double* out) {
-  bound_->values(effort_watch_, x, e, out);
+const TipReadings& FlightSet::readings() {
+  if (!readings_)
+    readings_ = std::make_unique<TipReadings>(*step_rows_, tip_watch_.rows.row(0), tip_watch_.drive.row(0));
+  return *readings_;
 }
 
 }  // namespace ricochet

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 #include <ricochet/engine/compile.hpp>
-#include <ricochet/engine/flight/flight_bound.hpp>
+#include <ricochet/engine/flight/clear_steps.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_works.hpp>
 #include <ricochet/engine/flight/tip_readings.hpp>
@@ -36,16 +36,18 @@ class FlightSet {
   void leave(const std::vector<double>& x, const double* e, double* const* slots) const;
 
   FlightBound& bound() { return *bound_; }
+  /// The steps in which nothing of it is reached.
+  ClearSteps& clear_steps() { return *clear_steps_; }
   const FlightMotion& motion() const { return *motion_; }
   const FlightWorks& works() const { return *works_; }
-  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded.
-  FlightBound& tip() { return *tip_; }
-  /// The same of every fourth step; null where no mode alternates.
+  /// The tip after the step (watch 0), and its change to the next (watch 1), unbounded; made when first asked for.
+  FlightBound& tip();
+  /// The same of every fourth step, once tip() was asked for; null where no mode alternates.
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
   const TipReadings& readings();
-  /// Efforts of the held points in the step that begins at (x, e), N.
-  void efforts(const double* x, const double* e, double* out);
+  /// The effort of a held point in each step, N.
+  const StepReadings& effort(std::size_t held) { return clear_steps_->readings(effort_watch_, static_cast<int>(held)); }
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -69,16 +71,19 @@ class FlightSet {
   std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
   Eigen::VectorXd own_mass_;    // M of the structure's modes
   Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd basis_rows_;  // Ψᵀ
   Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
-  mutable Eigen::VectorXd apart_;
+  mutable Eigen::MatrixXd apart_;
   Eigen::MatrixXd lever_;                         // L, rows × held
   std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
   Eigen::MatrixXd held_rows_;                     // H_I
   std::unique_ptr<const StepRows> step_rows_;
+  FlightWatch tip_watch_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;
   std::unique_ptr<FlightMotion> motion_;
+  std::unique_ptr<ClearSteps> clear_steps_;
   std::unique_ptr<FlightWorks> works_;
   std::unique_ptr<TipReadings> readings_;
   int effort_watch_ = -1;

@@ -19,14 +19,14 @@ FlightSums& FlightSums::operator+=(const FlightSums& other) {
   return *this;
 }
 
-FlightWorks::FlightWorks(const StepRows& rows, const Forms& forms, int powers)
-    : modes_(rows.modes()),
-      slots_(rows.slots()),
-      drives_(rows.drive().count()),
-      damping_(tables(rows, forms.damping, powers)),
-      loads_(tables(rows, forms.loads, powers)),
-      scheme_(tables(rows, forms.scheme, powers)) {
-  const int width = rows.width();
+FlightWorks::FlightWorks(const FlightMotion& motion, const Forms& forms)
+    : modes_(motion.modes()),
+      slots_(motion.slots()),
+      drives_(motion.drive().count()),
+      damping_(tables(motion, forms.damping)),
+      loads_(tables(motion, forms.loads)),
+      scheme_(tables(motion, forms.scheme)) {
+  const int width = slots_ + drives_;
   for (int mode = 0; mode < modes_; ++mode) {
     MatrixXd lost = MatrixXd::Zero(width, width);
     for (const Form* form : {&forms.damping, &forms.scheme})
@@ -40,28 +40,46 @@ FlightWorks::FlightWorks(const StepRows& rows, const Forms& forms, int powers)
   }
 }
 
-FlightWorks::Tables FlightWorks::tables(const StepRows& rows, const Form& form, int powers) {
+// (5), all modes at once.
+FlightWorks::Tables FlightWorks::tables(const FlightMotion& motion, const Form& form) {
   Tables tables;
   if (form.empty()) return tables;
-  const int width = rows.width(), slots = rows.slots(), drives = rows.drive().count();
-  const auto n = static_cast<std::size_t>(rows.modes());
-  tables.assign(static_cast<std::size_t>(powers),
-                std::vector<double>(static_cast<std::size_t>(width * (width + 1) / 2) * n));
-  for (int mode = 0; mode < rows.modes(); ++mode) {
-    MatrixXd G = form[static_cast<std::size_t>(mode)], change = rows.change(mode);
-    for (int power = 0; power < powers; ++power) {
-      std::size_t entry = 0;
-      for (Index a = 0; a < width; ++a)
-        for (Index b = a; b < width; ++b, ++entry)
-          tables[static_cast<std::size_t>(power)][entry * n + static_cast<std::size_t>(mode)] =
-              (a == b ? 1.0 : 2.0) * G(a, b);
-      const MatrixXd turn = rows.drive().change(static_cast<double>(1LL << power));
-      MatrixXd A = MatrixXd::Identity(width, width);
-      A.topRows(slots) += change;
-      A.bottomRightCorner(drives, drives) += turn;
-      G += A.transpose() * G.eval() * A;
-      double_change(change, slots, turn);
+  const int slots = motion.slots(), drives = motion.drive().count(), width = slots + drives, n = motion.modes();
+  const auto size = static_cast<std::size_t>(width * width) * static_cast<std::size_t>(n);
+  std::vector<double> G(size), GA(size), A(size);
+  const auto at = [&](std::vector<double>& all, int a, int b) {
+    return all.data() + static_cast<std::ptrdiff_t>(a * width + b) * n;
+  };
+  for (int a = 0; a < width; ++a)
+    for (int b = 0; b < width; ++b)
+      for (int m = 0; m < n; ++m) at(G, a, b)[m] = form[static_cast<std::size_t>(m)](a, b);
+  // out += x y
+  const auto add_product = [n](const double* x, const double* y, double* __restrict out) {
+    for (int m = 0; m < n; ++m) out[m] += x[m] * y[m];
+  };
+  for (int power = 0; power < motion.powers(); ++power) {
+    std::vector<double>& table = tables.emplace_back();
+    table.reserve(static_cast<std::size_t>(width * (width + 1) / 2) * static_cast<std::size_t>(n));
+    for (int a = 0; a < width; ++a)
+      for (int b = a; b < width; ++b)
+        for (int m = 0; m < n; ++m) table.push_back((a == b ? 1.0 : 2.0) * at(G, a, b)[m]);
+    std::copy_n(motion.table(power), static_cast<std::ptrdiff_t>(slots * width) * n, A.data());
+    for (int a = 0; a < width; ++a) {
+      for (int b = 0; b < width && a >= slots; ++b) {
+        const double turned = b >= slots ? motion.rotation(power)[(a - slots) * drives + b - slots] : 0.0;
+        std::fill_n(at(A, a, b), n, turned);
+      }
+      for (int m = 0; m < n; ++m) at(A, a, a)[m] += 1;
     }
+    std::fill(GA.begin(), GA.end(), 0.0);
+    for (int a = 0; a < width; ++a)
+      for (int b = 0; b < width; ++b)
+        for (int c = 0; c < width; ++c)
+          if (c < slots || b >= slots) add_product(at(G, a, c), at(A, c, b), at(GA, a, b));
+    for (int a = 0; a < width; ++a)
+      for (int b = 0; b < width; ++b)
+        for (int c = 0; c < width; ++c)
+          if (c < slots || a >= slots) add_product(at(A, c, a), at(GA, c, b), at(G, a, b));
   }
   return tables;
 }

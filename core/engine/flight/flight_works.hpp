@@ -25,7 +25,7 @@ class FlightWorks {
   struct Forms {
     Form damping, loads, scheme;
   };
-  FlightWorks(const StepRows& rows, const Forms& forms, int powers);
+  FlightWorks(const FlightMotion& motion, const Forms& forms);
 
   /// Adds what 2^power steps from (x, e) on bring.
   void add(int power, const double* x, const double* e, FlightSums& sums) const;
@@ -34,7 +34,7 @@ class FlightWorks {
 
  private:
   using Tables = std::vector<std::vector<double>>;  // of a power: width(width+1)/2 × modes; empty: zero
-  static Tables tables(const StepRows& rows, const Form& form, int powers);
+  static Tables tables(const FlightMotion& motion, const Form& form);
 
   int modes_, slots_, drives_;
   Tables damping_, loads_, scheme_;

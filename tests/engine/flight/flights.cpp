@@ -236,6 +236,55 @@ TEST_CASE("every value that a bound promises to hold stays within it") {
   CHECK(tight > 10);
 }
 
+TEST_CASE("steps are clear up to the first in which a point reaches its stop") {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const Methods methods{
+      {GENERATE("consistent", "singular")},
+      {"signorini"},
+      GENERATE(Choice{"newmark-dumont-paoli", {{"beta", 0.5}}}, Choice{"bathe"}, Choice{"hht-alpha"})};
+  const double amplitude = GENERATE(0.0, 0.02);
+  SceneSpec scene = swinging(1e-5, amplitude);
+  scene.stops.place = StopsSpec::Place::nodes;
+  const auto made = compiled(problem_of(scene, 4, methods.mass), methods, 2e-5, flights());
+  REQUIRE(std::holds_alternative<Program>(made));
+  FlightSet set(std::get<Program>(made), 0, {}, 12);
+  REQUIRE(set.cause().empty());
+  FlightBound& bound = set.bound();
+  std::vector<double> x(static_cast<std::size_t>(set.modes()) * std::get<Program>(made).plan.slots.size());
+  int reached = 0;
+  for (int draw = 0; draw < 30; ++draw) {
+    // Slow modes, which are the last, reach far. The second slot is the change of a step or the velocity.
+    const double moves = methods.time.name == "newmark-dumont-paoli" ? 1e-3 : 50;
+    for (int i = 0; i < static_cast<int>(x.size()); ++i) {
+      const int slot = i / set.modes(), mode = i % set.modes();
+      x[static_cast<std::size_t>(i)] = 2 * normal(random) * std::pow(0.2, set.modes() - 1 - mode) *
+                                       (slot == 0   ? 1
+                                        : slot == 1 ? moves
+                                                    : 0);
+    }
+    double e[3] = {amplitude * std::sin(draw), amplitude * std::cos(draw), 1};
+    constexpr long long most = 3000;
+    long long pace = 16;
+    const long long clear = set.clear_steps().count(x, e, most, pace);
+    long long known = -1;
+    for (bool inside = true; inside && known < most;) {
+      for (int w = 0; w < bound.watches(); ++w) {
+        const FlightWatch& watch = bound.watch(w);
+        std::vector<double> values(watch.lower.size());
+        bound.values(w, x.data(), e, values.data());
+        for (std::size_t i = 0; i < values.size(); ++i)
+          inside = inside && values[i] > watch.lower[i] && values[i] < watch.upper[i];
+      }
+      if (inside) ++known;
+      set.motion().leap(0, x.data(), e);
+    }
+    CHECK(clear == known);
+    reached += known < most && known > 10;
+  }
+  CHECK(reached > 0);
+}
+
 TEST_CASE("many steps at once are these steps one by one") {
   const Methods methods{
       {"consistent"},

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ricochet/engine/flight/clear_steps.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr int block = StepReadings::block;
+constexpr long long least_leap = 4;  // below it steps are read one by one
+
+// The largest whole k with g − k s > 0 or g + k d − ½ k (k−1) z > 0: steps that cannot use up g, of what changes by d
+// in the next of them, at most by s in any, and its change by z.
+double steps_within(double g, double d, double s, double z) {
+  const double by_pace = g / s, slope = d + 0.5 * z, by_bend = (slope + std::sqrt(slope * slope + 2 * z * g)) / z;
+  const double most = std::max(by_pace, by_bend);
+  return most > 0 ? std::floor(0.999 * most) : 0.0;
+}
+
+}  // namespace
+
+const StepReadings& ClearSteps::readings(int watch, int point) {
+  readings_.resize(static_cast<std::size_t>(bound_.watches()));
+  auto& points = readings_[static_cast<std::size_t>(watch)];
+  points.resize(static_cast<std::size_t>(bound_.watch(watch).rows.rows()));
+  auto& made = points[static_cast<std::size_t>(point)];
+  if (!made) made = std::make_unique<StepReadings>(rows_, bound_.watch(watch), point, bound_.row(watch, point));
+  return *made;
+}
+
+void ClearSteps::advance(long long k) {
+  motion_.advance(k, x_.data(), e_);
+}
+
+long long ClearSteps::count(const std::vector<double>& x, const double* e, long long most, long long& pace) {
+  x_ = x;
+  std::copy_n(e, 3, e_);
+  long long done = 0;
+  while (done < most) {
+    const long long left = std::min(most - done, bound_.longest());
+    bound_.look(x_.data(), e_);
+    long long k = std::min(pace, left);
+    while (!bound_.find_exposed(k, exposed_, k > block ? few : static_cast<std::size_t>(-1))) k /= 2;
+    const bool all = exposed_.empty();
+    while (all && k < left && bound_.holds(std::min(2 * k, left))) k = std::min(2 * k, left);
+    pace = std::max<long long>(k, block);
+    if (all) {
+      if (done + k < most) advance(k);
+      done += k;
+      continue;
+    }
+    const long long clear = follow(k);
+    if (clear < k) return done + clear;
+    done += k;
+    pace = 2 * k;
+  }
+  return done;
+}
+
+// Goes on by up to `steps` steps, as long as the exposed points are between their bounds in each; the bound has looked
+// at where they begin. Returns over how many they are; −1: not in the first.
+long long ClearSteps::follow(long long steps) {
+  followed_.clear();
+  for (const auto& [watch, point] : exposed_)
+    followed_.push_back({&readings(watch, point), bound_.pace(watch, point),
+                         bound_.watch(watch).lower[static_cast<std::size_t>(point)],
+                         bound_.watch(watch).upper[static_cast<std::size_t>(point)]});
+  long long gone = 0;
+  while (gone < steps) {
+    // Points of which enough is known are not read.
+    long long clear = steps;
+    for (Followed& one : followed_) {
+      if (one.clear < std::min(steps, gone + least_leap)) {
+        const long long more = clear_steps(one);
+        if (more < 0) return gone - 1;
+        one.clear = gone + more;
+      }
+      clear = std::min(clear, one.clear);
+    }
+    long long leap = clear - gone;
+    if (leap >= least_leap) {
+      // In one leap: what it leaves costs less than another.
+      leap = static_cast<long long>(std::bit_floor(static_cast<unsigned long long>(leap)));
+    } else {
+      leap = std::min<long long>(block, steps - gone);
+      for (int step = 1; step <= leap; ++step)
+        for (const Followed& one : followed_)
+          if (one.clear < gone + step && !inside(one, step)) return gone + step - 1;
+    }
+    advance(leap);
+    gone += leap;
+  }
+  return steps;
+}
+
+// How many steps a point stays between its bounds from here on: by where it is, how far it goes in the next step, and
+// what steps can do at most. −1: it is not between them.
+long long ClearSteps::clear_steps(const Followed& one) const {
+  const auto& [step, bend, margin] = one.pace;
+  const double value = (*one.reading)(0, x_.data(), e_), change = (*one.reading)(1, x_.data(), e_) - value;
+  // Its round-off counts once a step.
+  const double slower = 1e-3 * margin, below = value - one.lower - margin, above = one.upper - value - margin;
+  if (!(below > 0 && above > 0)) return -1;
+  return static_cast<long long>(
+      std::min({static_cast<double>(motion_.longest()), steps_within(below, change - slower, step, bend),
+                steps_within(above, -change - slower, step, bend)}));
+}
+
+// Whether it is, `step` steps on.
+bool ClearSteps::inside(const Followed& one, int step) const {
+  const double value = (*one.reading)(step, x_.data(), e_);
+  return value - one.pace.margin > one.lower && value + one.pace.margin < one.upper;
+}
+
+}  // namespace ricochet
