@@ -100,7 +100,7 @@ class ImpactRecorder final : public StepObserver {
     std::size_t row = 0;  // of its last impact; beyond the list where that is full
   };
   struct Lane {
-    explicit Lane(int points) : closed(points), points(static_cast<std::size_t>(points)) {}
+    explicit Lane(int count_of_points) : closed(count_of_points), points(static_cast<std::size_t>(count_of_points)) {}
     ClosedPoints closed;
     std::vector<Point> points;
     std::vector<int> leaving;  // points whose speed out is open
