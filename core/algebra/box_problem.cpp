@@ -86,18 +86,17 @@ bool BoxSolver::read(const double* free, const double* lower, const double* uppe
   const Eigen::Map<const Eigen::ArrayXd> y(f, points), low(l, points), up(u, points);
   depth_ = std::max(0.0, (low - y).max(y - up).maxCoeff());
   size_ = y.abs().maxCoeff();
-  bool proper = true;
-  int violated = 0, first = 0;
+  // Counts as wide as the numbers, which are then compared in vectors.
+  long long improper = 0, violated = 0;
   for (int i = 0; i < points; ++i) {
     assert(!(l[i] > u[i]) && l[i] < infinity && u[i] > -infinity);
-    proper &= (f[i] - f[i] == 0) & (l[i] <= u[i]);
-    const bool beyond = (f[i] < l[i]) | (f[i] > u[i]);
-    violated += beyond;
-    first = beyond ? i : first;
+    improper += !(f[i] - f[i] == 0) | !(l[i] <= u[i]);
+    violated += (f[i] < l[i]) | (f[i] > u[i]);
   }
-  violated_ = violated;
-  first_ = first;
-  return proper;
+  violated_ = static_cast<int>(violated);
+  first_ = violated > 0 ? points - 1 : 0;
+  while (first_ > 0 && !((f[first_] < l[first_]) | (f[first_] > u[first_]))) --first_;
+  return improper == 0;
 }
 
 // A single violated point by its closed form: most often that is the whole contact.

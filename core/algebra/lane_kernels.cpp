@@ -2,6 +2,8 @@
 #include <ricochet/algebra/lane_band.hpp>
 #include <ricochet/algebra/lane_combinations.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/algebra/lane_modes.hpp>
+#include <ricochet/algebra/lane_nodes.hpp>
 #include <ricochet/algebra/lane_rows.hpp>
 #include <stdexcept>
 
@@ -35,6 +37,8 @@ using namespace lane_bodies;
       else update_any<false>(n, c, x, z, w, next, o);                                                                  \
     }                                                                                                                  \
     TARGET static void band_step(const BandStep& step) { band_step_body<T>(step); }                                    \
+    TARGET static void node_step(const NodeStep& step) { node_step_body<T>(step); }                                    \
+    TARGET static void mode_step(const ModeStep& step) { mode_step_body<T>(step); }                                    \
     [[gnu::noinline]] TARGET static void diagonal_many(int n, int c, const double* f, const double* const* x,          \
                                                        const double* a, double* z) {                                   \
       diagonal_general<T>(n, c, f, x, a, z);                                                                           \
@@ -54,13 +58,13 @@ using namespace lane_bodies;
     }                                                                                                                  \
     TARGET static void add_column(int n, const double* s, const double* a, double* y) { add_column_body<T>(n, s, a, y); } \
     TARGET static std::uint32_t outside(int n, const double* y, const double* l, const double* u) {                    \
-      return outside_body<Row<T>::lanes>(n, y, l, u);                                                                              \
+      return outside_body<T>(n, y, l, u);                                                                              \
     }                                                                                                                  \
     TARGET static double triple_product(long n, const double* a, const double* x, const double* y) {                   \
       return triple_product_body(n, a, x, y);                                                                          \
     }                                                                                                                  \
-    static constexpr LaneKernels table{combine, update,  band_step, diagonal_step, measure, add_column,                 \
-                                       outside, triple_product};                                                       \
+    static constexpr LaneKernels table{combine,   update,  band_step,  node_step, diagonal_step,                        \
+                                       mode_step, measure, add_column, outside,   triple_product};                     \
   };
 // clang-format on
 

@@ -36,6 +36,61 @@ struct BandStep {
   double* z = nullptr;        ///< solve_rows × T, v zero rows before and after
 };
 
+/// What a free step may do besides, while the rows are at hand: the update x_1 ← x_1 + last, x_0 ← x_0 + x_1 that the
+/// stage before left to it, with k = Σ next_j x_j of the slots that come of it.
+struct IncrementUpdate {
+  double* const* x = nullptr;    ///< two slots
+  const double* last = nullptr;  ///< z of the stage before; may be the block that the step writes
+  double next[2] = {0, 0};       ///< β^K; not read where the operator is diagonal
+};
+
+/// Points that a free step measures and tests, y = value (w_0 x_0 + w_1 x_1 + w_2 z) + offset.
+struct PointTest {
+  const double* const* x = nullptr;  ///< two slots
+  double weight[3] = {0, 0, 0};
+  const double* offset = nullptr;  ///< T
+  const double* lower = nullptr;   ///< points × T, as upper
+  const double* upper = nullptr;
+  double* y = nullptr;        ///< points × T
+  std::uint32_t outside = 0;  ///< a bit for each lane that is beyond a bound or not a number
+};
+
+/// The step of a BandStep whose rows come by nodes: two dofs each (deflection and rotation of Hermite elements) or,
+/// with `border`, an unknown of the border between them, every node coupled with its neighbours alone. The operations
+/// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the bits are the
+/// same. Update and measures included, each block is read twice per step, once down the nodes and once up. One lane
+/// multiplies and measures in vectors of rows and points.
+struct NodeStep {
+  int nodes = 0;
+  bool border = false;
+  /// Per node, as node_band.hpp packs them: K, shape and L of the rows; 1/D and Lᵀ of them.
+  const double* down = nullptr;
+  const double* up = nullptr;
+  const double* K = nullptr;      ///< T = 1 alone: K by diagonals, 7 × 2 nodes, as in BandStep
+  const double* shape = nullptr;  ///< T = 1 alone: load shapes
+  const double* k = nullptr;      ///< 2 nodes × T, 3 zero rows before and after; not read where there is an update
+  const double* scale = nullptr;  ///< T
+  double* z = nullptr;            ///< 2 nodes × T
+  double* r = nullptr;            ///< nodes × T, scratch of the border
+  const IncrementUpdate* update = nullptr;  ///< null: the slots are what they are
+  PointTest* test = nullptr;                ///< null: nothing is measured
+  const int* point = nullptr;               ///< per node: the point at its deflection, −1: none
+  const double* value = nullptr;            ///< per node: its entry of H
+  bool everywhere = false;                  ///< whether the points are those of all nodes
+};
+
+/// The step of a diagonal operator with update and test of one point: z as by diagonal_step of two slots.
+struct ModeStep {
+  int rows = 0;
+  const double* coefficient = nullptr;  ///< rows × 3; by columns where T = 1, each padded to a multiple of four
+  const double* const* x = nullptr;
+  const double* scale = nullptr;
+  double* z = nullptr;
+  const IncrementUpdate* update = nullptr;
+  PointTest* test = nullptr;
+  const double* value = nullptr;  ///< rows: the point's row of H
+};
+
 /// A row-compressed matrix with few columns per row (H, B).
 struct LaneRows {
   int rows = 0;
@@ -52,10 +107,12 @@ struct LaneKernels {
   void (*update)(long size, int count, double* const* x, const double* z, const double* weight, const double* next,
                  double* combined);
   void (*band_step)(const BandStep& step);
+  void (*node_step)(const NodeStep& step);
   /// z[i] = Σ_j coefficient[i·(count+1)+j] x_j[i] + coefficient[i·(count+1)+count] scale[lane]: the whole free step of
   /// a diagonal operator; count ≤ most_lane_slots.
   void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
                         double* z);
+  void (*mode_step)(const ModeStep& step);
   /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset
   /// may be null.
   void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,

@@ -100,28 +100,16 @@ RICOCHET_INLINE void measure_general(const LaneRows& matrix, int count, const do
   }
 }
 
-// By vectors of four: comparisons of eight are undone lane by lane (ten times as long).
 template <int T>
 RICOCHET_INLINE std::uint32_t outside_body(int rows, const double* y, const double* lower, const double* upper) {
-  if constexpr (T == 1) {
-    bool outside = false;
-    // Written so that a value that is no number counts as outside.
-    for (long i = 0; i < rows; ++i) outside |= !((y[i] >= lower[i]) & (y[i] <= upper[i]));
-    return outside;
-  } else {
-    using Mask = decltype(V<T>{} < V<T>{});
-    Mask inside[Row<T>::count];
-    for (int k = 0; k < Row<T>::count; ++k) inside[k] = V<T>{} == V<T>{};
-    for (long i = 0; i < rows; ++i)
-      for (int k = 0; k < Row<T>::count; ++k) {
-        const V<T> value = row<T>(y, i)[k];
-        inside[k] &= (value >= row<T>(lower, i)[k]) & (value <= row<T>(upper, i)[k]);
-      }
-    constexpr int lanes = Row<T>::lanes, per = lanes / Row<T>::count;
-    std::uint32_t mask = 0;
-    for (int l = 0; l < lanes; ++l) mask |= static_cast<std::uint32_t>(inside[l / per][l % per] == 0) << l;
-    return mask;
-  }
+  constexpr int per = Row<T>::lanes / Row<T>::count;
+  Inside<T> inside[Row<T>::count];
+  for (long i = 0; i < rows; ++i)
+    for (int k = 0; k < Row<T>::count; ++k) {
+      const long place = i * Row<T>::lanes + k * per;
+      inside[k].test(row<T>(y, i)[k], lower + place, upper + place);
+    }
+  return outside_lanes<T, Row<T>::count>(inside, 0);
 }
 
 // Four vector sums: enough to hide the latency of an addition.

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
@@ -5,6 +6,39 @@
 #include <ricochet/engine/stage_state.hpp>
 
 namespace ricochet {
+namespace {
+
+// Row by row, all lanes at once: down the columns of a wide block every number is another cache line.
+template <int Lanes>
+void add_rows(const Block& q, const Block& force, int first, double* energies) {
+  double sum[Lanes] = {};
+  for (int i = 0; i < q.rows(); ++i) {
+    const double *a = q.row(i) + first, *b = force.row(i) + first;
+    for (int lane = 0; lane < Lanes; ++lane) sum[lane] += 0.5 * a[lane] * b[lane];
+  }
+  for (int lane = 0; lane < Lanes; ++lane) energies[first + lane] = sum[lane];
+}
+
+void add_products(const Block& q, const Block& force, double* energies) {
+  if (q.lanes() == 1) return add_rows<1>(q, force, 0, energies);
+  for (int first = 0; first < q.lanes(); first += q.lanes() < 8 ? 2 : 8)
+    q.lanes() < 8 ? add_rows<2>(q, force, first, energies) : add_rows<8>(q, force, first, energies);
+}
+
+// x − x is zero, or not a number where x is not finite.
+bool finite(const Block& block) {
+  double sum[8] = {};
+  const double* x = block.data();
+  std::size_t e = 0;
+  for (; e + 8 <= block.size(); e += 8)
+    for (std::size_t k = 0; k < 8; ++k) sum[k] += x[e + k] - x[e + k];
+  for (; e < block.size(); ++e) sum[0] += x[e] - x[e];
+  bool all = true;
+  for (const double nothing : sum) all = all && nothing == 0;
+  return all;
+}
+
+}  // namespace
 
 void Marcher::check_lanes() {
   BandStep step;
@@ -14,14 +48,17 @@ void Marcher::check_lanes() {
   step.k = slots_[0];
   step.b = elastic_.data();
   kernels_.band_step(step);
+  std::array<double, 32> energies{};
+  add_products(blocks_[0], elastic_, energies.data());
+  bool all_finite = true;
+  for (std::size_t j = 1; j < blocks_.size(); ++j) all_finite = all_finite && finite(blocks_[j]);
   for (int lane = 0; lane < lanes(); ++lane) {
     if (!status_[static_cast<std::size_t>(lane)].running) continue;
-    double energy = 0;
-    for (int i = 0; i < step.rows; ++i) energy += 0.5 * blocks_[0].at(i, lane) * elastic_.at(i, lane);
-    bool finite = std::isfinite(energy);
-    for (std::size_t j = 1; j < blocks_.size() && finite; ++j)
-      for (int i = 0; i < step.rows; ++i) finite = finite && std::isfinite(blocks_[j].at(i, lane));
-    if (!finite)
+    const double energy = energies[static_cast<std::size_t>(lane)];
+    bool sound = std::isfinite(energy);
+    for (std::size_t j = 1; j < blocks_.size() && !all_finite && sound; ++j)
+      for (int i = 0; i < step.rows; ++i) sound = sound && std::isfinite(blocks_[j].at(i, lane));
+    if (!sound)
       freeze(lane, {.cause = EndCause::state_not_finite, .count = check_interval});
     else if (beyond_bound(lane, energy))
       freeze(lane, {.cause = EndCause::elastic_energy_beyond,

@@ -38,6 +38,8 @@ Marcher::Marcher(Program program)
   status_.resize(program_.lanes.size());
   touched_.reserve(static_cast<std::size_t>(T));
   pushed_.reserve(static_cast<std::size_t>(points));
+  pushing_.reserve(static_cast<std::size_t>(points));
+  pushes_.resize(static_cast<std::size_t>(points));
   scratch_.resize(static_cast<std::size_t>(std::max(rows, points)));
   if (program_.contact) {
     lower_ = Block(points, T);
@@ -64,6 +66,7 @@ Marcher::Marcher(Program program)
   for (std::size_t k = 0; k < stage_states_.size(); ++k) stage_states_[k]->view = view_of(false, k, *stage_states_[k]);
   connect_efforts();
   connect_works();
+  connect_tests();
   for (const auto& state : stage_states_)
     quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()) + 1);
 }
@@ -73,6 +76,26 @@ void Marcher::connect_works() {
   for (std::size_t k = 0; k < program_.stages.size(); ++k)
     if (const int before = program_.stages[k].restores; before > 0)
       stage_states_[k]->restored = stage_states_[k - static_cast<std::size_t>(before)].get();
+}
+
+// Which operators measure what the law reads: positions that no effort has moved yet, where no load is added to the
+// free step apart and one lane alone does not fly, which sums modes in another order.
+void Marcher::connect_tests() {
+  if (program_.load || program_.flight || slot_count() != 2) return;
+  const auto connect = [&](StageProgram& program, StageState& state) {
+    if (!state.delassus || !program.driven || program.gate || state.restored || program.effort.size() > 1) return;
+    if (state.rate.rows() > 0 || state.before.rows() > 0) return;
+    if (!program.op->takes_points(program_.model->measured().view())) return;
+    PointTest& test = state.test.emplace();
+    test.x = slot_pointers_.data();
+    std::copy_n(state.measure_weights.begin(), 3, test.weight);
+    test.offset = offset_.data();
+    test.lower = lower_.data();
+    test.upper = upper_.data();
+    test.y = state.free.data();
+  };
+  for (std::size_t k = 0; k < start_states_.size(); ++k) connect(program_.start[k], *start_states_[k]);
+  for (std::size_t k = 0; k < stage_states_.size(); ++k) connect(program_.stages[k], *stage_states_[k]);
 }
 
 // Storage of a stage, and its combinations as the kernels read them.
@@ -91,6 +114,7 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
     state->update.insert(state->update.end(), row.begin(), row.end());
     state->update_w.push_back(c.w);
   }
+  state->increments = state->update == std::vector<double>{1, 1, 1, 0, 1, 1};
   if (!program_.contact || !stage.reads_contact) return state;
   const bool product = model.inertia().inverted() && stage.folded.stiffness == 0;
   const bool band = (program_.kind == OperatorKind::band || program_.kind == OperatorKind::diagonal) && !product;
@@ -136,7 +160,7 @@ void Marcher::start(StepObserver* observer) {
   const FlushDenormals flush;
   clamp_.set_time(time());
   for (std::size_t k = 0; k < program_.start.size(); ++k)
-    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer);
+    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer, false);
   keep_start_efforts();
   if (program_.plan.start_advances) {
     ++step_;
@@ -150,8 +174,10 @@ long long Marcher::march(long long steps, StepObserver* observer) {
   for (long long n = 0; n < steps; ++n) {
     if (program_.flight) n += fly(steps - n - 1, observer);
     if (program_.support) clamp_.set_time(time());
+    // Whether nobody looks at the slots between this step and the next.
+    const bool goes_on = !observer && !program_.flight && n + 1 < steps && (step_ + 1) % check_interval != 0;
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
-      run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer);
+      run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer, goes_on);
     ++step_;
     ++visited_;
     if (clear_ > 0) --clear_;
@@ -176,14 +202,21 @@ void Marcher::combine_for(const StageProgram& program) {
 }
 
 // z° = S⁻¹ b.
-void Marcher::free_step(StageProgram& program, const Stage& plan) {
+void Marcher::free_step(StageProgram& program, const Stage& plan, StageState& state) {
   if (!program.driven) {
     std::fill_n(program.op->unknown(), program_.model->rows() * program_.width, 0.0);
     return;
   }
   FreeStepInput input;
   input.slots = slot_pointers_.data();
-  if (program.op->keeps_combination()) {
+  IncrementUpdate update;
+  if (waiting_) {
+    const std::vector<double>& next = program.folded.stiffness_history;
+    update = {slots_.data(), waiting_, {next[0], next[1]}};
+    input.update = &update;
+    waiting_ = nullptr;
+    combined_for_ = nullptr;
+  } else if (program.op->keeps_combination()) {
     combine_for(program);
     input.k = combination_.data();
   }
@@ -191,16 +224,20 @@ void Marcher::free_step(StageProgram& program, const Stage& plan) {
     clamp_.accelerations(program.load_phase, scale_.data());
     input.scale = scale_.data();
   }
+  if (state.test) {
+    if (program_.support) clamp_.offsets(program.measure_phase, offset_.data(), false);
+    input.test = &*state.test;
+  }
   input.load = distributed_load(plan.load, time());
   program.op->free_step(input);
   if (program_.tangents > 0 && input.load) remove_load(program, input.load);
 }
 
-void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index,
-                        StepObserver* observer) {
+void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
+                        bool may_wait) {
   const double* z = elastic_.data();
   if (program.op) {
-    free_step(program, plan);
+    free_step(program, plan, state);
     if (state.delassus) contact(program, state, program.op->unknown());
     z = program.op->unknown();
   } else {
@@ -215,6 +252,11 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   if (!state.jumped && following.op && following.driven && following.op->keeps_combination() &&
       &program >= program_.stages.data() && &program < program_.stages.data() + program_.stages.size())
     next = &following;
+  if (may_wait && state.increments && !state.jumped && frozen_now_ == 0 && following.op && following.driven &&
+      following.op->takes_update() && !program_.load) {
+    waiting_ = z;
+    return;
+  }
   kernels_.update(static_cast<long>(combination_.size()), slot_count(), slots_.data(), z, state.update.data(),
                   next ? next->folded.stiffness_history.data() : nullptr, combination_.data());
   combined_for_ = next;
@@ -224,20 +266,18 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
 }
 
 // The points with an effort, in any lane.
-void Marcher::find_pushed(const StageState& state) {
-  pushed_.clear();
-  if (state.contact_lanes == 0) return;
-  const Block& effort = state.effort[0];
-  const int T = program_.width;
+void Marcher::find_pushed(const Block& effort, std::vector<int>& points) {
+  points.clear();
+  const int T = effort.lanes();
   if (T == 1) {
     const double* p = effort.data();
     for (int i = 0; i < effort.rows(); ++i)
-      if (p[i] != 0) pushed_.push_back(i);
+      if (p[i] != 0) points.push_back(i);
     return;
   }
   for (int i = 0; i < effort.rows(); ++i) {
     const double* p = effort.row(i);
-    if (std::any_of(p, p + T, [](double x) { return x != 0; })) pushed_.push_back(i);
+    if (std::any_of(p, p + T, [](double x) { return x != 0; })) points.push_back(i);
   }
 }
 
@@ -269,7 +309,8 @@ void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
     view.efforts = static_cast<int>(state.effort_pointers.size());
     view.touched_lanes = state.touched_lanes;
     view.contact_lanes = state.contact_lanes;
-    find_pushed(state);
+    pushed_.clear();
+    if (state.contact_lanes != 0) find_pushed(state.effort[0], pushed_);
     view.pushed = pushed_;
   }
   observer.stage_solved(*this, view);

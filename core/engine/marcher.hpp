@@ -7,6 +7,7 @@
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/lane_status.hpp>
 #include <ricochet/engine/step_observer.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -105,10 +106,12 @@ class Marcher {
   // marcher.cpp: the loop.
   std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
   void connect_works();
-  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer);
-  void free_step(StageProgram& program, const Stage& plan);
+  void connect_tests();
+  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
+                 bool may_wait);
+  void free_step(StageProgram& program, const Stage& plan, StageState& state);
   void combine_for(const StageProgram& program);
-  void find_pushed(const StageState& state);
+  static void find_pushed(const Block& effort, std::vector<int>& points);
   StageView view_of(bool starting, std::size_t index, const StageState& state) const;
   void show(StageState& state, const double* z, StepObserver& observer);
 
@@ -122,7 +125,7 @@ class Marcher {
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
   void contact(StageProgram& program, StageState& state, double* z);
   void remember_efforts(const StageProgram& program, StageState& state, double* z);
-  void correct(StageState& state, const double* effort, double* z);
+  void correct(StageState& state, const double* effort, std::span<const int> pushing, double* z);
   void jump(StageState& state, double* z);
   void add_jump(StageState& state);
   void choose_touched(StageState& state, std::uint32_t mask);
@@ -164,11 +167,13 @@ class Marcher {
   std::vector<const double*> slot_pointers_;
   Block combination_;  // Σ β^K_j x_j of the stage to come
   const StageProgram* combined_for_ = nullptr;
+  const double* waiting_ = nullptr;  // z of an update that the next free step makes
   std::vector<std::unique_ptr<StageState>> start_states_, stage_states_;
   ClampMotion clamp_;
   Block scale_, offset_, lower_, upper_;
-  Block memory_;  // of the law, points × T for each number that it keeps
-  std::vector<int> touched_, pushed_;
+  Block memory_;                                 // of the law, points × T for each number that it keeps
+  std::vector<int> touched_, pushed_, pushing_;  // lanes looked at; points with an effort, as shown and as corrected
+  std::vector<unsigned char> pushes_;            // of each point, whether some lane has one
   std::vector<LaneOutcome> outcome_;
   std::vector<LaneStatus> status_;
   std::uint32_t frozen_now_ = 0;  // lanes that froze since the last update of the slots

@@ -8,10 +8,14 @@
 namespace ricochet {
 namespace {
 
+// Without a branch per number: x − x is zero, or not a number where x is not finite.
 bool finite_in(const Block& block, int lane) {
-  for (int i = 0; i < block.rows(); ++i)
-    if (!std::isfinite(block.at(i, lane))) return false;
-  return true;
+  bool finite = true;
+  for (int i = 0; i < block.rows(); ++i) {
+    const double x = block.at(i, lane);
+    finite &= x - x == 0;
+  }
+  return finite;
 }
 
 // z += S⁻¹Hᵀ p of the lanes with many efforts, each in one solve; which they are.
@@ -49,29 +53,29 @@ void Marcher::contact(StageProgram& program, StageState& state, double* z) {
   if (state.impulse) {
     if (state.contact_lanes != 0) jump(state, z);
   } else if (program.effort[0] == 1.0) {
-    if (state.contact_lanes != 0) correct(state, state.effort[0].data(), z);
+    if (state.contact_lanes != 0) correct(state, state.effort[0].data(), pushing_, z);
   } else if (program.effort[0] != 0 && state.contact_lanes != 0) {
     const auto size = state.effort[0].size();
     for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[0] * state.effort[0].data()[e];
-    correct(state, state.weighted.data(), z);
+    correct(state, state.weighted.data(), pushing_, z);
   }
   if (state.way.rows() > 0 && state.contact_lanes != 0) measure_way(program, state, z);
 }
 
-// z += S⁻¹Hᵀ p, column by column where some lane has an effort; a lane that has many, in one solve.
-void Marcher::correct(StageState& state, const double* effort, double* z) {
+// z += S⁻¹Hᵀ p, column by column of the points where some lane has an effort; a lane that has many, in one solve.
+void Marcher::correct(StageState& state, const double* effort, std::span<const int> pushing, double* z) {
   const int rows = program_.model->rows(), T = program_.width, points = lower_.rows();
   const std::uint32_t solved =
       points > BoxSolver::many ? correct_at_once(*state.delassus, effort, points, z, rows, T) : 0;
   alignas(64) double others[32];
-  for (int j = 0; j < points; ++j) {
+  for (const int j : pushing) {
     const double* p = effort + static_cast<std::size_t>(j) * static_cast<std::size_t>(T);
     if (solved != 0) {
       for (int lane = 0; lane < T; ++lane) others[lane] = (solved >> lane & 1u) != 0 ? 0.0 : p[lane];
       p = others;
+      if (std::none_of(p, p + T, [](double x) { return x != 0; })) continue;
     }
-    if (std::any_of(p, p + T, [](double x) { return x != 0; }))
-      kernels_.add_column(rows, state.delassus->response(j), p, z);
+    kernels_.add_column(rows, state.delassus->response(j), p, z);
   }
 }
 
@@ -105,7 +109,8 @@ void Marcher::remember_efforts(const StageProgram& program, StageState& state, d
   for (std::size_t k = 1; k < program.effort.size() && k < state.effort_pointers.size(); ++k) {
     if (program.effort[k] == 0 || !state.effort_pointers[k]) continue;
     for (std::size_t e = 0; e < size; ++e) state.weighted.data()[e] = program.effort[k] * state.effort_pointers[k][e];
-    correct(state, state.weighted.data(), z);
+    find_pushed(state.weighted, pushing_);
+    correct(state, state.weighted.data(), pushing_, z);
   }
 }
 
@@ -144,16 +149,18 @@ void Marcher::solve_law(const StageProgram& program, StageState& state) {
   program_.law->solve(problem);
 }
 
-// Which lanes push now; those that the law failed stop.
+// Which lanes push now, and at which points; those that the law failed stop.
 void Marcher::keep_contact(StageState& state) {
   const int points = lower_.rows();
   state.contact_lanes = 0;
+  std::fill(pushes_.begin(), pushes_.end(), false);
   for (const int lane : touched_) {
     bool active = false, finite = true;
     for (int i = 0; i < points; ++i) {
       const double p = state.effort[0].at(i, lane);
-      active = active || p != 0;
-      finite = finite && std::isfinite(p);
+      active |= p != 0;
+      pushes_[static_cast<std::size_t>(i)] |= p != 0;
+      finite &= p - p == 0;
     }
     const LaneOutcome& outcome = outcome_[static_cast<std::size_t>(lane)];
     if (!outcome.converged || !finite) {
@@ -166,6 +173,10 @@ void Marcher::keep_contact(StageState& state) {
     }
     if (active) state.contact_lanes |= 1u << lane;
   }
+  // Every effort of this stage is one of these lanes'.
+  pushing_.clear();
+  for (int i = 0; i < points; ++i)
+    if (pushes_[static_cast<std::size_t>(i)]) pushing_.push_back(i);
 }
 
 }  // namespace ricochet

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/node_band.hpp>
 #include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/algebra/weighted_system.hpp>
+#include <ricochet/engine/modal_operator.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {
@@ -44,6 +46,9 @@ class Assembly {
   int border() const { return border_; }
   bool mass_through_border() const { return coupling_.rows() > 0; }
   bool keeps_combination() const { return !K_.empty(); }
+  /// Whether b is K k and loads, without M.
+  bool stiffness_alone() const { return !K_.empty() && m_.rows() == 0; }
+  const double* shape() const { return shape_; }
   Block& right_hand_side() { return b_; }
 
   BandStep describe(const FreeStepInput& input) {
@@ -79,14 +84,22 @@ class Assembly {
 };
 
 /// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved
-/// border.
+/// border; by nodes where the matrices come so, which has the same bits.
 class BandOperator final : public StageOperator {
  public:
   BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
-      : assembly_(model, stage, lanes), kernels_(lane_kernels(lanes)), lanes_(lanes), rows_(model.rows()) {}
+      : assembly_(model, stage, lanes),
+        kernels_(lane_kernels(lanes)),
+        stiffness_(model.stiffness()),
+        slots_(static_cast<int>(stage.mass_history.size())),
+        lanes_(lanes),
+        rows_(model.rows()) {}
 
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
     if (auto wrong = ldlt_.factorise(matrix)) return wrong;
+    if (assembly_.stiffness_alone()) nodes_ = NodeBand(stiffness_, assembly_.shape(), ldlt_);
+    if (nodes_.border()) border_ = Block(nodes_.nodes(), lanes_);
+    zero_scale_ = Block(1, lanes_);
     from_ = column_from_ = ldlt_.order();
     // The border's part of the right-hand side is zero, unless M x goes through it.
     for (int& row : column_from_)
@@ -103,8 +116,14 @@ class BandOperator final : public StageOperator {
   }
 
   bool keeps_combination() const override { return assembly_.keeps_combination(); }
+  // One lane's is faster apart, by vectors of rows.
+  bool takes_update() const override { return !nodes_.empty() && slots_ == 2 && lanes_ > 1; }
+  bool takes_points(const LaneRows& rows) override {
+    return !nodes_.empty() && slots_ == 2 && nodes_.place_points(rows);
+  }
 
   void free_step(const FreeStepInput& input) override {
+    if (!nodes_.empty() && !input.load) return step_by_nodes(input);
     BandStep step = assembly_.describe(input);
     step.from = ldlt_.natural() ? nullptr : from_.data();
     ldlt_.substitute_in(step, solution_.data());
@@ -129,12 +148,25 @@ class BandOperator final : public StageOperator {
   }
 
  private:
+  void step_by_nodes(const FreeStepInput& input) {
+    NodeStep step = nodes_.step();
+    step.k = input.k;
+    step.scale = input.scale ? input.scale : zero_scale_.data();
+    step.z = unknown();
+    step.r = border_.data();
+    step.update = input.update;
+    step.test = input.test;
+    kernels_.node_step(step);
+  }
+
   Assembly assembly_;
   const LaneKernels& kernels_;
-  int lanes_, rows_;
+  const SparseMatrix& stiffness_;
+  int slots_, lanes_, rows_;
   BandLdlt ldlt_;
+  NodeBand nodes_;
   std::vector<int> from_, place_, column_from_;
-  Block solution_, unknown_, column_;
+  Block solution_, unknown_, column_, border_, zero_scale_;
 };
 
 /// S = s_M M with M⁻¹ known: z = (M⁻¹ (Σ β^K_j K x_j + …) + Σ β^M_j x_j) / s_M, products in place of a solve.
@@ -255,57 +287,6 @@ class SparseOperator final : public StageOperator {
   Block unknown_;
 };
 
-/// Modal coordinates: S, K and M are diagonal, one multiplication per slot and mode.
-class ModalOperator final : public StageOperator {
- public:
-  ModalOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
-      : kernels_(lane_kernels(lanes)),
-        rows_(model.rows()),
-        slots_(static_cast<int>(stage.mass_history.size())),
-        lanes_(lanes) {
-    const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
-    zero_scale_ = Block(1, lanes);
-    unknown_ = Block(rows_, lanes);
-    for (int i = 0; i < rows_; ++i) {
-      const double inverse = 1 / (stage.mass * M[i] + stage.stiffness * K[i]);
-      inverse_.push_back(inverse);
-      for (std::size_t j = 0; j < stage.mass_history.size(); ++j)
-        coefficient_.push_back((stage.mass_history[j] * M[i] + stage.stiffness_history[j] * K[i]) * inverse);
-      coefficient_.push_back(model.support_shape()[i] * inverse);
-    }
-  }
-
-  std::optional<std::string> check() const {
-    for (const double inverse : inverse_)
-      if (!std::isfinite(inverse) || inverse <= 0) return std::string("the matrix of the step is singular on a mode");
-    return std::nullopt;
-  }
-
-  bool keeps_combination() const override { return false; }
-
-  void free_step(const FreeStepInput& input) override {
-    kernels_.diagonal_step(rows_, slots_, coefficient_.data(), input.slots,
-                           input.scale ? input.scale : zero_scale_.data(), unknown_.data());
-    if (!input.load) return;
-    for (int i = 0; i < rows_; ++i) {
-      const double push = input.load[i] * inverse_[static_cast<std::size_t>(i)];
-      for (int lane = 0; lane < lanes_; ++lane) unknown_.at(i, lane) += push;
-    }
-  }
-
-  double* unknown() override { return unknown_.data(); }
-
-  void solve_column(const double* rhs, double* x) override {
-    for (int i = 0; i < rows_; ++i) x[i] = rhs[i] * inverse_[static_cast<std::size_t>(i)];
-  }
-
- private:
-  const LaneKernels& kernels_;
-  int rows_, slots_, lanes_;
-  std::vector<double> coefficient_, inverse_;
-  Block unknown_, zero_scale_;
-};
-
 template <class Operator>
 OperatorOrRefusal factorised(std::unique_ptr<Operator> made, const QuasiDefinite& matrix) {
   if (const auto wrong = made->factorise(matrix)) return Refusal{*wrong};
@@ -357,11 +338,7 @@ FoldedStage fold(const Stage& stage, const Damping& damping, int slots) {
 }
 
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes) {
-  if (kind == OperatorKind::modal) {
-    auto modal = std::make_unique<ModalOperator>(model, stage, lanes);
-    if (const auto wrong = modal->check()) return Refusal{*wrong};
-    return std::unique_ptr<StageOperator>(std::move(modal));
-  }
+  if (kind == OperatorKind::modal) return make_modal_operator(model, stage, lanes);
   const Inertia& inertia = model.inertia();
   if (inertia.inverted() && stage.stiffness == 0) return std::make_unique<InverseOperator>(model, stage, lanes);
   if (!inertia.assembled() && stage.mass < 0)

@@ -29,10 +29,12 @@ FoldedStage fold(const OperatorWeights& weights, const Damping& damping);
 
 /// What the marcher hands over for a free step. All blocks have the width that the operator was made for.
 struct FreeStepInput {
-  const double* const* slots = nullptr;  ///< n × T each
-  const double* k = nullptr;             ///< Σ β^K_j x_j, kept by the marcher (only where keeps_combination())
-  const double* scale = nullptr;         ///< T: Σ φ_k A ω² sin(ω(t+c_k h)+ψ); null: no support motion
-  const double* load = nullptr;          ///< n: Σ φ_k F(t+c_k h) of the distributed load; null: none
+  const double* const* slots = nullptr;     ///< n × T each
+  const double* k = nullptr;                ///< Σ β^K_j x_j, kept by the marcher (only where keeps_combination())
+  const double* scale = nullptr;            ///< T: Σ φ_k A ω² sin(ω(t+c_k h)+ψ); null: no support motion
+  const double* load = nullptr;             ///< n: Σ φ_k F(t+c_k h) of the distributed load; null: none
+  const IncrementUpdate* update = nullptr;  ///< to be made first (only where takes_update(), without load)
+  PointTest* test = nullptr;                ///< to be made last (only where takes_points(), without load)
 };
 
 /// z° = S⁻¹ b for every lane of a block.
@@ -41,6 +43,10 @@ class StageOperator {
   virtual ~StageOperator() = default;
   /// Whether it reads `k`: the marcher then combines slots as it updates them.
   virtual bool keeps_combination() const = 0;
+  /// Whether it makes the update of two slots that came before it by itself, and needs no `k` then.
+  virtual bool takes_update() const { return false; }
+  /// Whether it measures such points by itself from now on; `rows` stays where it is.
+  virtual bool takes_points([[maybe_unused]] const LaneRows& rows) { return false; }
   virtual void free_step(const FreeStepInput& input) = 0;
   /// The unknown, n × T; free_step writes it and the marcher corrects it.
   virtual double* unknown() = 0;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/restoring_solver.hpp>
 #include <ricochet/engine/active_system.hpp>
@@ -27,6 +28,8 @@ struct StageState {
   std::uint32_t touched_lanes = 0;  ///< lanes that the law looked at in this stage
   std::vector<double> update;       ///< slots × (slots + 1)
   std::vector<double> update_w;     ///< of each slot, the weight of w
+  bool increments = false;          ///< whether the update is x_1 ← x_1 + z, x_0 ← x_0 + x_1
+  std::optional<PointTest> test;    ///< where the operator measures what the law reads
   StageView view;                   ///< what an observer is shown
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait

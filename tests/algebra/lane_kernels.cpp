@@ -9,7 +9,10 @@
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 
+#include "tests/instruction_sets.hpp"
+
 using namespace ricochet;
+using ricochet::testing::instruction_sets;
 
 namespace {
 
@@ -179,14 +182,6 @@ struct BandCase {
     return z;
   }
 };
-
-/// Those that this processor has.
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> sets;
-  for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512})
-    if (set <= best_instruction_set()) sets.push_back(set);
-  return sets;
-}
 
 }  // namespace
 

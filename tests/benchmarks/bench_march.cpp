@@ -2,7 +2,7 @@
 // each mass and operator, and at the tip. Medians of interleaved rounds with their spread, beside the FMA peak of the
 // core in the same run.
 //
-//     bench_march [--rounds N] [--rows TEXT]      those rows alone whose name holds TEXT
+//     bench_march [--rounds N] [--rows TEXT] [--lanes T]      those rows alone whose name holds TEXT, of T lanes
 //     bench_march --schemes [--rounds N]   each time scheme on a lumped beam of 10 elements, against the three-level
 //     one bench_march --calibrate      the rates of core/engine/cost_model.cpp: nanoseconds per multiply-add of each
 //     kernel
@@ -179,11 +179,12 @@ int main(int argc, char** argv) {
   }
   const bool schemes = argc > 1 && std::strcmp(argv[1], "--schemes") == 0;
   const int next = schemes ? 2 : 1;
-  int rounds = 7;
+  int rounds = 7, only_lanes = 0;
   std::string rows;
   for (int k = next; k + 1 < argc; k += 2) {
     if (std::strcmp(argv[k], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[k + 1]));
     if (std::strcmp(argv[k], "--rows") == 0) rows = argv[k + 1];
+    if (std::strcmp(argv[k], "--lanes") == 0) only_lanes = std::atoi(argv[k + 1]);
   }
   Catalogue catalogue = Catalogue::standard();
   Registry registry;
@@ -204,6 +205,7 @@ int main(int argc, char** argv) {
     if (name.find(rows) == std::string::npos) return;
     for (const int lanes : {1, 8, 16, 32}) {
       if (watch != Watch::nothing && lanes > 1) continue;
+      if (only_lanes != 0 && lanes != only_lanes) continue;
       Case one{name, place, mass, velocity, kind, lanes, {}, nullptr, nullptr, nullptr, nullptr, 0};
       const auto* mass_entry = registry.mass(mass);
       std::map<std::string, ParameterValue> values;

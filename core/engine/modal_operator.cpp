@@ -1,0 +1,98 @@
+#include <cmath>
+#include <ricochet/engine/modal_operator.hpp>
+
+namespace ricochet {
+namespace {
+
+// As ModeStep reads them for one lane.
+std::vector<double> mode_columns(int rows, const std::vector<double>& coefficient) {
+  const std::size_t stride = static_cast<std::size_t>(rows + 3) / 4 * 4;
+  std::vector<double> columns(3 * stride, 0.0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i)
+    for (std::size_t j = 0; j < 3; ++j) columns[j * stride + i] = coefficient[3 * i + j];
+  return columns;
+}
+
+/// Modal coordinates: S, K and M are diagonal, one multiplication per slot and mode.
+class ModalOperator final : public StageOperator {
+ public:
+  ModalOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
+      : kernels_(lane_kernels(lanes)),
+        rows_(model.rows()),
+        slots_(static_cast<int>(stage.mass_history.size())),
+        lanes_(lanes) {
+    const Eigen::VectorXd K = model.stiffness().diagonal(), M = model.inertia().mass.diagonal();
+    zero_scale_ = Block(1, lanes);
+    unknown_ = Block(rows_, lanes);
+    for (int i = 0; i < rows_; ++i) {
+      const double inverse = 1 / (stage.mass * M[i] + stage.stiffness * K[i]);
+      inverse_.push_back(inverse);
+      for (std::size_t j = 0; j < stage.mass_history.size(); ++j)
+        coefficient_.push_back((stage.mass_history[j] * M[i] + stage.stiffness_history[j] * K[i]) * inverse);
+      coefficient_.push_back(model.support_shape()[i] * inverse);
+    }
+    if (lanes == 1 && slots_ == 2) columns_ = mode_columns(rows_, coefficient_);
+  }
+
+  std::optional<std::string> check() const {
+    for (const double inverse : inverse_)
+      if (!std::isfinite(inverse) || inverse <= 0) return std::string("the matrix of the step is singular on a mode");
+    return std::nullopt;
+  }
+
+  bool keeps_combination() const override { return false; }
+  bool takes_update() const override { return slots_ == 2; }
+
+  // One row is summed up with the modes; more of them wait for modes that are there.
+  bool takes_points(const LaneRows& rows) override {
+    if (slots_ != 2 || rows.rows != 1 || rows.start[1] != rows_) return false;
+    point_ = rows.value;
+    return true;
+  }
+
+  void free_step(const FreeStepInput& input) override {
+    if (input.update || input.test) {
+      ModeStep step;
+      step.rows = rows_;
+      step.coefficient = lanes_ == 1 ? columns_.data() : coefficient_.data();
+      step.x = input.slots;
+      step.scale = input.scale ? input.scale : zero_scale_.data();
+      step.z = unknown_.data();
+      step.update = input.update;
+      step.test = input.test;
+      step.value = point_;
+      kernels_.mode_step(step);
+      return;
+    }
+    kernels_.diagonal_step(rows_, slots_, coefficient_.data(), input.slots,
+                           input.scale ? input.scale : zero_scale_.data(), unknown_.data());
+    if (!input.load) return;
+    for (int i = 0; i < rows_; ++i) {
+      const double push = input.load[i] * inverse_[static_cast<std::size_t>(i)];
+      for (int lane = 0; lane < lanes_; ++lane) unknown_.at(i, lane) += push;
+    }
+  }
+
+  double* unknown() override { return unknown_.data(); }
+
+  void solve_column(const double* rhs, double* x) override {
+    for (int i = 0; i < rows_; ++i) x[i] = rhs[i] * inverse_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  const LaneKernels& kernels_;
+  int rows_, slots_, lanes_;
+  std::vector<double> coefficient_, inverse_, columns_;
+  const double* point_ = nullptr;
+  Block unknown_, zero_scale_;
+};
+
+}  // namespace
+
+OperatorOrRefusal make_modal_operator(const MarchModel& model, const FoldedStage& stage, int lanes) {
+  auto modal = std::make_unique<ModalOperator>(model, stage, lanes);
+  if (const auto wrong = modal->check()) return Refusal{*wrong};
+  return std::unique_ptr<StageOperator>(std::move(modal));
+}
+
+}  // namespace ricochet
