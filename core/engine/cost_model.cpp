@@ -78,7 +78,7 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
 
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps) {
   const double n = problem.dofs(),
-               visited = std::min(static_cast<double>(steps), 10 * std::sqrt(static_cast<double>(steps)));
+               visited = std::min(static_cast<double>(steps), 4 * std::sqrt(static_cast<double>(steps)));
   return 3e-9 * n * n * n + 1.5e-5 * n + visited * visit_seconds(problem, work);
 }
 

@@ -22,12 +22,12 @@ constexpr int most_elements = 200;
 // made. A march that leaves out steps is tried on finer ones, and on its own.
 constexpr double worth_refining = 4, refinement = 16;
 // How the time of flights grows with the number n of steps, as n^p: measured from 1e4 to 1e9 steps.
-constexpr double flight_growth = 0.4;
+constexpr double flight_growth = 0.2;
 constexpr double long_parts = 2;  // one that is cut off, and that on the case's own step
 // What a step that is left out in contact costs where that is not seen: a share of one that is visited, and no more than
 // the works and efforts of so many dofs come to (0.1 to 0.4 µs measured at 100 of them).
-constexpr double share_of_visit = 0.2, held_step = 5e-8, held_dof = 2.5e-9;  // –, s, s
-// Of so many steps, visiting most is not what any march does that begins: some 10 √n of n steps are visited.
+constexpr double share_of_visit = 0.2, held_step = 5e-8, held_dof = 1.5e-9;  // –, s, s
+// Of so many steps, visiting most is not what any march does that begins: up to 4 √n of n steps are visited.
 constexpr long long telling_steps = 4000;
 constexpr double telling_time = 3;  // times what another part may take
 constexpr long long enough_contact = 500;  // steps
