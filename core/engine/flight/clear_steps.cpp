@@ -35,6 +35,7 @@ void ClearSteps::advance(long long k) {
 long long ClearSteps::count(const std::vector<double>& x, const double* e, long long most, long long& pace) {
   x_ = x;
   std::copy_n(e, 3, e_);
+  read_ = 0;
   long long done = 0;
   while (done < most) {
     const long long left = std::min(most - done, bound_.longest());
@@ -97,6 +98,7 @@ long long ClearSteps::follow(long long steps) {
 // what steps can do at most. −1: it is not between them.
 long long ClearSteps::clear_steps(const Followed& one) const {
   const auto& [step, bend, margin] = one.pace;
+  read_ += 2;
   const double value = (*one.reading)(0, x_.data(), e_), change = (*one.reading)(1, x_.data(), e_) - value;
   // Its round-off counts once a step.
   const double slower = 1e-3 * margin, below = value - one.lower - margin, above = one.upper - value - margin;
@@ -108,6 +110,7 @@ long long ClearSteps::clear_steps(const Followed& one) const {
 
 // Whether it is, `step` steps on.
 bool ClearSteps::inside(const Followed& one, int step) const {
+  ++read_;
   const double value = (*one.reading)(step, x_.data(), e_);
   return value - one.pace.margin > one.lower && value + one.pace.margin < one.upper;
 }

@@ -16,6 +16,8 @@ class ClearSteps {
   /// The largest k ≤ `most` for which they do in the steps that begin 0, 1, …, k steps after (x, e); −1: not in the
   /// first. `pace`: over how many steps to ask first, kept from one count to the next.
   long long count(const std::vector<double>& x, const double* e, long long most, long long& pace);
+  /// How many times a point was read for the last count: what it cost beside steps that are marched, which measure all.
+  long long read() const { return read_; }
   /// A point of a watch in each step.
   const StepReadings& readings(int watch, int point);
 
@@ -43,6 +45,7 @@ class ClearSteps {
   double e_[3] = {};
   std::vector<WatchedPoint> exposed_;
   std::vector<Followed> followed_;
+  mutable long long read_ = 0;
 };
 
 }  // namespace ricochet

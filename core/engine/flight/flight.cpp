@@ -8,12 +8,15 @@ namespace {
 constexpr long long longest_wait = 64;  // steps between two looks that found nothing
 // Steps after which the tip is read sooner than searched for: at all, and where its ends do not tell.
 constexpr long long at_once = 32, soon_read = 256;
+// Steps that are marched between two looks after which points had to be followed; readings that cost what a step does.
+constexpr long long longest_march = 16384, readings_of_step = 8;
 constexpr long long brief = 8;  // steps in contact that are marched before any is left out
 
 }  // namespace
 
 Flight::Flight(const Program& program, double layer, long long steps)
     : layer_(layer),
+      worth_reading_(std::max<long long>(readings_of_step, program.problem->points() / 2)),
       powers_(flight_powers(steps)),
       most_sets_(most_flight_sets(
           flight_set_bytes(program.model->rows(), static_cast<int>(program.plan.slots.size()), powers_))) {
@@ -131,8 +134,17 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   // What is reached is known to the step: until then there is nothing to look for.
   if (k < most) pace->wait = k < least ? k + 1 : 1;
   if (k < 0) return fails();
+  if (k < least) {
+    pace->penalty = 1;
+    return 0;
+  }
   pace->penalty = 1;
-  return k < least ? 0 : k;
+  // Points that are near a bound in nearly every step cost as much to follow as steps that are marched: those come
+  // next.
+  const bool dear = set->clear_steps().read() > k * worth_reading_;
+  pace->dear = dear ? std::min(std::max(2 * pace->dear, k), longest_march) : pace->dear / 2;
+  pace->wait = std::max(pace->wait, pace->dear);
+  return k;
 }
 
 FlightSums Flight::fly(long long k, Columns columns, HeldSteps::Past past, bool works) {

@@ -95,6 +95,7 @@ class Flight {
   struct Pace {
     long long next = 16;  // steps to ask for first
     long long wait = 0, penalty = 1;
+    long long dear = 0;  // steps to march after one that cost as much as marching
   };
   struct Kept {
     std::vector<HeldPoint> held;
@@ -120,6 +121,7 @@ class Flight {
   void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
 
   double layer_;
+  long long worth_reading_;  // readings of points for each step that is left out
   int powers_;
   std::size_t most_sets_;
   std::unique_ptr<FlightSet> free_;

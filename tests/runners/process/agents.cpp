@@ -320,7 +320,7 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
     ScriptedWorld world;
     prepare(world, study, seed, 0.2);
     Exchange exchange(ranks);
-    std::atomic<int> there{0};
+    std::atomic<int> there{0}, served{0};  // what threads find is checked once they have ended
     std::vector<std::thread> agents;
     for (int rank = 1; rank < ranks; ++rank)
       agents.emplace_back([&, rank] {
@@ -328,7 +328,8 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
         HostFacts facts;
         facts.rank = rank;
         facts.name = "machine " + std::to_string(rank);
-        CHECK(serve_as_agent(end, facts, [&] { return std::make_unique<CountedWorker>(world, there); }));
+        served +=
+            static_cast<int>(serve_as_agent(end, facts, [&] { return std::make_unique<CountedWorker>(world, there); }));
       });
     Kept kept;
     {
@@ -341,6 +342,7 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
       check_all(study, kept);
     }
     for (std::thread& one : agents) one.join();
+    CHECK(served == ranks - 1);
     CHECK(there == 0);
   }
 }
