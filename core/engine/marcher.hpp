@@ -186,7 +186,7 @@ class Marcher {
   int stiffness_width_ = 0;
   long long step_ = 0, visited_ = 0, held_left_out_ = 0, closed_visits_ = 0;
   int quiet_ = 0, quiet_after_ = 0;         // steps without contact, and how many until nothing of it acts any more
-  long long clear_ = 0;  // steps to come of which a flight has seen that no point closes in them
+  long long clear_ = 0;                     // steps to come of which a flight has seen that no point closes in them
   std::vector<HeldPoint> held_;             // closed points, where flights ask for them
   std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before
   // Slots by column, where a flight takes tangents along: numbers, and pointers to them for each column.
