@@ -190,7 +190,7 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, dots, add, quadratic};                      \
+    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, dots, add, quadratic};                \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

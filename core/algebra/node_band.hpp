@@ -7,10 +7,9 @@ namespace ricochet {
 
 /// What NodeStep reads of each node, numbers in the order in which they are needed.
 ///
-///     down:  K of the deflection's row (6: deflection and rotation of the node before, of the node, of the next one),
-///     of
-///            the rotation's row (6), their load shapes (2), then L: without border w (2), t (3); with it w (3), r (4),
-///            t (5)
+///     down:  K of the deflection's row (6: deflection and rotation of the node before, of the node, of the next
+///            one) and of the rotation's row (6), their load shapes (2), then L: without border w (2), t (3); with it
+///            w (3), r (4), t (5)
 ///     up:    1/D and the column of L below it, farthest row first: t, (r,) w
 ///
 /// Rows of a node in the factor are w, (r,) t.

@@ -20,7 +20,7 @@ struct StepWork {
 /// `width`: T.
 Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork& work, int width);
 
-/// A march of so many steps by flights: of them about ten times their root are visited, as bench_flight counts on
+/// A march of so many steps by flights: of them up to four times their root are visited, as bench_flight counts on
 /// beams, each with a step in modes and a look at what may come. Seconds, set-up included.
 double predict_flights(const SemiDiscrete& problem, const StepWork& work, long long steps);
 

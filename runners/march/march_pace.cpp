@@ -24,12 +24,12 @@ constexpr double worth_refining = 4, refinement = 16;
 // How the time of flights grows with the number n of steps, as n^p: measured from 1e4 to 1e9 steps.
 constexpr double flight_growth = 0.2;
 constexpr double long_parts = 2;  // one that is cut off, and that on the case's own step
-// What a step that is left out in contact costs where that is not seen: a share of one that is visited, and no more than
-// the works and efforts of so many dofs come to (0.1 to 0.4 µs measured at 100 of them).
+// What a step that is left out in contact costs where that is not seen: a share of one that is visited, and no more
+// than the works and efforts of so many dofs come to (0.1 to 0.4 µs measured at 100 of them).
 constexpr double share_of_visit = 0.2, held_step = 5e-8, held_dof = 1.5e-9;  // –, s, s
 // Of so many steps, visiting most is not what any march does that begins: up to 4 √n of n steps are visited.
 constexpr long long telling_steps = 4000;
-constexpr double telling_time = 3;  // times what another part may take
+constexpr double telling_time = 3;         // times what another part may take
 constexpr long long enough_contact = 500;  // steps
 
 struct Part {
@@ -38,11 +38,11 @@ struct Part {
   long long visited = 0, held = 0;  ///< of those marched: not left out; left out in contact
   long long closed = 0;             ///< marched in contact, visited or not
   long long dofs = 0;
-  bool standing = false;            ///< no lane stopped on the way
-  bool whole = false;               ///< and its end was reached
-  bool flies = false;               ///< steps are left out
-  bool leaves_contact = false;      ///< in contact too
-  bool marginal = false;            ///< see Prepared
+  bool standing = false;        ///< no lane stopped on the way
+  bool whole = false;           ///< and its end was reached
+  bool flies = false;           ///< steps are left out
+  bool leaves_contact = false;  ///< in contact too
+  bool marginal = false;        ///< see Prepared
 
   /// Hardly a step is left out: a finer one would leave out more.
   bool visits_most() const { return 2 * visited > steps; }

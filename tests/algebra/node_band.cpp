@@ -93,15 +93,19 @@ struct March {
     kernels.measure(rows, 3, terms, weight, offset.data(), y.data());
     outside = kernels.outside(rows.rows, y.data(), lower.data(), upper.data());
   }
-  PointTest test(const double* const* slots) {
-    PointTest test;
-    test.x = slots;
-    std::copy_n(weight, 3, test.weight);
-    test.offset = offset.data();
-    test.lower = lower.data();
-    test.upper = upper.data();
-    test.y = y.data();
-    return test;
+  // A step in one pass, with update and measures where they are asked for.
+  template <class Step>
+  void make(void (*kernel)(const Step&), Step step, bool updates, bool tests) {
+    double* slots[] = {q.data(), d.data()};
+    const IncrementUpdate update{slots, last.data(), {next[0], next[1]}};
+    PointTest test{slots, {weight[0], weight[1], weight[2]}, offset.data(), lower.data(), upper.data(), y.data()};
+    if constexpr (requires { step.x; }) step.x = slots;
+    step.scale = scale.data();
+    step.z = z.data();
+    if (updates) step.update = &update;
+    if (tests) step.test = &test;
+    kernel(step);
+    outside = test.outside;
   }
   void require_same(const March& other) const {
     const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
@@ -167,18 +171,10 @@ TEST_CASE("a step by nodes has the bits of a band's, update and measures include
   REQUIRE(by_nodes.border() == border);
   REQUIRE(by_nodes.place_points(H));
   Block r(nodes, T);
-  double* slots[] = {found.q.data(), found.d.data()};
-  const IncrementUpdate update{slots, found.last.data(), {found.next[0], found.next[1]}};
-  PointTest test = found.test(slots);
   NodeStep whole = by_nodes.step();
   whole.k = found.k.data();
-  whole.scale = found.scale.data();
-  whole.z = found.z.data();
   whole.r = r.data();
-  if (updates) whole.update = &update;
-  if (tests) whole.test = &test;
-  kernels.node_step(whole);
-  found.outside = test.outside;
+  found.make(kernels.node_step, whole, updates, tests);
   found.require_same(expected);
 }
 
@@ -200,9 +196,6 @@ TEST_CASE("a step by modes has the bits of a diagonal one, update and measure in
   kernels.diagonal_step(dofs, 2, coefficient.data(), read, expected.scale.data(), expected.z.data());
   if (tests) expected.measure(kernels, H);
 
-  double* slots[] = {found.q.data(), found.d.data()};
-  const IncrementUpdate update{slots, found.last.data(), {0, 0}};
-  PointTest test = found.test(slots);
   ModeStep step;
   step.rows = dofs;
   // One lane reads them by columns, of whole vectors of four.
@@ -210,14 +203,8 @@ TEST_CASE("a step by modes has the bits of a diagonal one, update and measure in
   for (std::size_t i = 0; i < dofs; ++i)
     for (std::size_t s = 0; s < 3; ++s) columns[s * 16 + i] = coefficient[3 * i + s];
   step.coefficient = T == 1 ? columns.data() : coefficient.data();
-  step.x = slots;
-  step.scale = found.scale.data();
-  step.z = found.z.data();
   step.value = value.data();
-  if (updates) step.update = &update;
-  if (tests) step.test = &test;
-  kernels.mode_step(step);
-  found.outside = test.outside;
+  found.make(kernels.mode_step, step, updates, tests);
   found.require_same(expected);
 }
 

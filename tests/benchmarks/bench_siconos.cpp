@@ -20,6 +20,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 #include <optional>
 #include <ricochet/algebra/flush_denormals.hpp>
 #include <ricochet/engine/flight/flight.hpp>
@@ -42,7 +43,6 @@ namespace {
 constexpr long long study_steps = 100000;  // of a march of this marcher
 constexpr long long common_steps = 12000;  // that both march first
 constexpr long long siconos_steps = 3000;  // of a round: half a period
-constexpr double pi = 3.14159265358979324;
 
 struct Scene {
   std::string name;
@@ -54,7 +54,7 @@ std::vector<Scene> scenes() {
   std::vector<Scene> list;
   for (const auto place : {StopsSpec::Place::nodes, StopsSpec::Place::tip}) {
     const char* where = place == StopsSpec::Place::nodes ? "stops at all nodes" : "stops at the tip";
-    list.push_back({fmt::format("forced, {}", where), reference_beam(place), 2 * pi / 10 / 6000});
+    list.push_back({fmt::format("forced, {}", where), reference_beam(place), 2 * std::numbers::pi / 10 / 6000});
     Scene swing{fmt::format("free swing, {}", where), reference_beam(place), 1e-5};
     swing.scene.support.amplitude = 0;
     swing.scene.initial.displacement = Formula("0.04*x^2", "/scene/initial/displacement", "x");

@@ -24,7 +24,7 @@ const StepReadings& ClearSteps::readings(int watch, int point) {
   auto& points = readings_[static_cast<std::size_t>(watch)];
   points.resize(static_cast<std::size_t>(bound_.watch(watch).rows.rows()));
   auto& made = points[static_cast<std::size_t>(point)];
-  if (!made) made = std::make_unique<StepReadings>(rows_, bound_.watch(watch), point, bound_.row(watch, point));
+  if (!made) made = std::make_unique<StepReadings>(rows_, bound_.watch(watch), point);
   return *made;
 }
 
@@ -96,7 +96,7 @@ long long ClearSteps::follow(long long steps) {
 
 // How many steps a point stays between its bounds from here on: by where it is, how far it goes in the next step, and
 // what steps can do at most. −1: it is not between them.
-long long ClearSteps::clear_steps(const Followed& one) const {
+long long ClearSteps::clear_steps(const Followed& one) {
   const auto& [step, bend, margin] = one.pace;
   read_ += 2;
   const double value = (*one.reading)(0, x_.data(), e_), change = (*one.reading)(1, x_.data(), e_) - value;
@@ -109,7 +109,7 @@ long long ClearSteps::clear_steps(const Followed& one) const {
 }
 
 // Whether it is, `step` steps on.
-bool ClearSteps::inside(const Followed& one, int step) const {
+bool ClearSteps::inside(const Followed& one, int step) {
   ++read_;
   const double value = (*one.reading)(step, x_.data(), e_);
   return value - one.pace.margin > one.lower && value + one.pace.margin < one.upper;

@@ -32,8 +32,8 @@ class ClearSteps {
   };
 
   long long follow(long long steps);
-  long long clear_steps(const Followed& one) const;
-  bool inside(const Followed& one, int step) const;
+  long long clear_steps(const Followed& one);
+  bool inside(const Followed& one, int step);
   void advance(long long k);
 
   const StepRows& rows_;
@@ -45,7 +45,7 @@ class ClearSteps {
   double e_[3] = {};
   std::vector<WatchedPoint> exposed_;
   std::vector<Followed> followed_;
-  mutable long long read_ = 0;
+  long long read_ = 0;
 };
 
 }  // namespace ricochet

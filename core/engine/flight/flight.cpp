@@ -134,11 +134,8 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   // What is reached is known to the step: until then there is nothing to look for.
   if (k < most) pace->wait = k < least ? k + 1 : 1;
   if (k < 0) return fails();
-  if (k < least) {
-    pace->penalty = 1;
-    return 0;
-  }
   pace->penalty = 1;
+  if (k < least) return 0;
   // Points that are near a bound in nearly every step cost as much to follow as steps that are marched: those come
   // next.
   const bool dear = set->clear_steps().read() > k * worth_reading_;
@@ -247,7 +244,7 @@ bool Flight::told_by_ends(FlightBound& tip, const Leg& leg, long long k, int str
 // The tip after each of some steps from a leg on.
 void Flight::read_all(const Leg& leg, long long steps, double& low, double& high) {
   last_ = leg;
-  set_->readings().each(set_->motion(), steps, last_.x.data(), last_.e, [&](double tip) {
+  set_->tip_readings().each(set_->motion(), steps, last_.x.data(), last_.e, [&](double tip) {
     low = std::min(low, tip);
     high = std::max(high, tip);
   });

@@ -70,7 +70,7 @@ class Flight {
       return;
     }
     last_ = start_;
-    set_->readings().each(set_->motion(), flown_, last_.x.data(), last_.e, see);
+    set_->tip_readings().each(set_->motion(), flown_, last_.x.data(), last_.e, see);
   }
   /// Each stage of each of them: `see`(stage, efforts of the held points in their order, N, and their absolute places
   /// before the stage, m; none where they rest). A stage that reads no contact has no efforts. Found once for all who

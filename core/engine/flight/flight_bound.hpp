@@ -1,7 +1,6 @@
 #pragma once
 #include <limits>
 #include <ricochet/engine/flight/step_rows.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -55,8 +54,6 @@ class FlightBound {
   long long longest() const { return longest_; }
   /// Whether every measure stays strictly between its bounds at this step and the k that follow it.
   bool holds(long long k);
-  /// The same of some points only.
-  bool holds(long long k, std::span<const WatchedPoint> points);
   /// The points of which that is not known, k ≤ longest(); false where they are more than `most`.
   bool find_exposed(long long k, std::vector<WatchedPoint>& exposed, std::size_t most);
 

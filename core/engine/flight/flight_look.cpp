@@ -136,12 +136,6 @@ bool FlightBound::holds(long long k) {
   return true;
 }
 
-bool FlightBound::holds(long long k, std::span<const WatchedPoint> points) {
-  return k <= longest_ && std::all_of(points.begin(), points.end(), [&](const WatchedPoint& one) {
-           return inside(watches_[static_cast<std::size_t>(one.watch)], static_cast<std::size_t>(one.point), k);
-         });
-}
-
 bool FlightBound::find_exposed(long long k, std::vector<WatchedPoint>& exposed, std::size_t most) {
   exposed.clear();
   for (std::size_t w = 0; w < watches_.size(); ++w)
@@ -180,9 +174,7 @@ FlightBound::Pace FlightBound::pace(int watch, int point) {
 
 double FlightBound::value(int watch, int point) {
   const Watched& watched = watches_[static_cast<std::size_t>(watch)];
-  return flight_kernels().dot(
-             modes_, watched.points.data() + static_cast<std::size_t>(point) * static_cast<std::size_t>(modes_),
-             watched.now.data()) +
+  return flight_kernels().dot(modes_, row(watch, point), watched.now.data()) +
          watched.offset[static_cast<std::size_t>(point)];
 }
 
@@ -191,7 +183,7 @@ void FlightBound::values(int watch, const double* x, const double* e, double* ou
   const FlightKernels& kernels = flight_kernels();
   kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, real_.data());
   for (std::size_t i = 0; i < watched.offset.size(); ++i) {
-    out[i] = kernels.dot(modes_, watched.points.data() + i * static_cast<std::size_t>(modes_), real_.data());
+    out[i] = kernels.dot(modes_, row(watch, static_cast<int>(i)), real_.data());
     for (int k = 0; k < drives_; ++k) out[i] += watched.watch.drive(static_cast<Index>(i), k) * e[k];
   }
 }

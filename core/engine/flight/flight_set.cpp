@@ -342,10 +342,9 @@ FlightBound& FlightSet::tip() {
   return *tip_;
 }
 
-const TipReadings& FlightSet::readings() {
-  if (!readings_)
-    readings_ = std::make_unique<TipReadings>(*step_rows_, tip_watch_.rows.row(0), tip_watch_.drive.row(0));
-  return *readings_;
+const StepReadings& FlightSet::tip_readings() {
+  if (!tip_readings_) tip_readings_ = std::make_unique<StepReadings>(*step_rows_, tip_watch_, 0);
+  return *tip_readings_;
 }
 
 }  // namespace ricochet

@@ -4,7 +4,6 @@
 #include <ricochet/engine/flight/clear_steps.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_works.hpp>
-#include <ricochet/engine/flight/tip_readings.hpp>
 #include <ricochet/engine/held_point.hpp>
 
 /// \file
@@ -45,7 +44,7 @@ class FlightSet {
   /// The same of every fourth step, once tip() was asked for; null where no mode alternates.
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
-  const TipReadings& readings();
+  const StepReadings& tip_readings();
   /// The effort of a held point in each step, N.
   const StepReadings& effort(std::size_t held) { return clear_steps_->readings(effort_watch_, static_cast<int>(held)); }
   int modes() const { return modes_; }
@@ -85,7 +84,7 @@ class FlightSet {
   std::unique_ptr<FlightMotion> motion_;
   std::unique_ptr<ClearSteps> clear_steps_;
   std::unique_ptr<FlightWorks> works_;
-  std::unique_ptr<TipReadings> readings_;
+  std::unique_ptr<StepReadings> tip_readings_;
   int effort_watch_ = -1;
 };
 

@@ -3,7 +3,7 @@
 
 namespace ricochet {
 
-StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int point, const double* row)
+StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int point)
     : size_(rows.slots() * rows.modes()), drives_(rows.drive().count()) {
   const int modes = rows.modes(), slots = rows.slots();
   weights_.resize(static_cast<std::size_t>((block + 1) * size_));
@@ -15,7 +15,7 @@ StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int p
   Eigen::RowVectorXd own, more(rows.width());
   for (int mode = 0; mode < modes; ++mode) {
     const Eigen::MatrixXd& change = rows.change(mode);
-    own = row[mode] * rows.of(mode, watch.stage, watch.value);
+    own = watch.rows(point, mode) * rows.of(mode, watch.stage, watch.value);
     for (int step = 0; step <= block; ++step) {
       for (int j = 0; j < slots; ++j) weights_[static_cast<std::size_t>(step * size_ + j * modes + mode)] = own[j];
       add_drive(step, own.tail(drives_));

@@ -1,20 +1,29 @@
 #pragma once
+#include <algorithm>
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 
 namespace ricochet {
 
 /// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone: by
-/// rows h r, h r A, h r A², …
+/// rows h r, h r A, h r A², …; h is the point over the modes.
 class StepReadings {
  public:
   static constexpr int block = 8;
 
-  /// `row`: the point over the modes; `point`: which of the watch.
-  StepReadings(const StepRows& rows, const FlightWatch& watch, int point, const double* row);
+  StepReadings(const StepRows& rows, const FlightWatch& watch, int point);
 
   /// `step` ≤ block steps after (x, e).
   double operator()(int step, const double* x, const double* e) const;
+  /// `see`(value) in each of `steps` steps from (x, e) on, which go on to where the last block ends.
+  template <class See>
+  void each(const FlightMotion& motion, long long steps, double* x, double* e, See&& see) const {
+    for (long long first = 0; first < steps; first += block) {
+      const int count = static_cast<int>(std::min<long long>(block, steps - first));
+      for (int step = 0; step < count; ++step) see((*this)(step, x, e));
+      motion.advance(block, x, e);
+    }
+  }
 
  private:
   int size_, drives_;
