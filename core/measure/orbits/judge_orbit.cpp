@@ -80,6 +80,31 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   return out;
 }
 
+void keep_end(Orbit& orbit, const SectionPlan& plan) {
+  if (orbit.stage == Orbit::Stage::complete && !orbit.verdict) {
+    orbit.verdict = judge(orbit, plan, std::nullopt).verdict;
+    orbit.verdict->evidence.clear();
+    const int wanted = orbit.verdict->period > 0 ? orbit.verdict->period : longest_end;
+    const std::size_t first = orbit.strobed.size() - std::min(orbit.strobed.size(), static_cast<std::size_t>(wanted));
+    const auto width = static_cast<std::size_t>(orbit.readings.width);
+    SectionSeries displacements{.width = 1, .values = {}};
+    for (std::size_t i = first; i < orbit.strobed.size(); ++i)
+      displacements.values.push_back(orbit.readings.values[i * width]);
+    orbit.readings = std::move(displacements);
+    orbit.strobed = {orbit.strobed.begin() + static_cast<std::ptrdiff_t>(first), orbit.strobed.end()};
+  }
+  if (orbit.stage == Orbit::Stage::stopped) {
+    orbit.readings = {};
+    orbit.strobed = {};
+  }
+  orbit.points = {};
+  orbit.impacts = {};
+  orbit.impact_counts = {};
+  orbit.settling = {};
+  orbit.lane = {};
+  orbit.entry = orbit.now = {};
+}
+
 std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& plan) {
   if (orbit.stage != Orbit::Stage::complete) return std::nullopt;
   if (!touches(orbit)) return MotionClass{Regime::no_contact};

@@ -49,6 +49,13 @@ struct JudgedOrbit {
 /// Reads a complete orbit; its largest exponent where it is known. Nothing is told of an orbit that is not complete.
 JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::optional<Interval>& exponent);
 
+/// Points of an orbit's end that are kept where nothing repeats, at most.
+constexpr int longest_end = 64;
+/// Judges a complete orbit without an exponent, and leaves of its readings what its end is drawn from: the strobed
+/// points of one period of what repeats, else the last 64, and of `readings` their displacements alone (width 1).
+/// Of one that stopped the cause and the counts are left. No states: it cannot go on.
+void keep_end(Orbit& orbit, const SectionPlan& plan);
+
 /// The class of a complete orbit as far as its readings tell without K and exponents: what does not repeat is one
 /// class, undecided. Nothing for an orbit that is not complete.
 std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& plan);

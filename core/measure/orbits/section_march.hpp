@@ -3,6 +3,7 @@
 #include <optional>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,8 @@ struct Orbit {
   double rebounds = 0;
   double rebounds_so_far = 0;  ///< in the present period
   BriefContact brief[2];       ///< per side
+  /// Of a complete one of which only its end is left (keep_end): its class and period, without evidence.
+  std::optional<RegimeVerdict> verdict;
   LaneSpec lane;
   LaneState entry;  ///< when the kept periods began, one step after a strobe
   LaneState now;    ///< the latest one

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "runners/kinds/sweep/orbit_bytes.hpp"
+#include "runners/kinds/sweep/orbit_archive.hpp"
+#include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/march/bytes.hpp"
 
 namespace ricochet {
@@ -14,34 +15,20 @@ constexpr const char* ends_mark = "ends of cells 4";
 }  // namespace
 
 template <class Archive>
-void serialize(Archive& archive, MotionClass& motion) {
-  archive(motion.regime, motion.period);
-}
-
-template <class Archive>
 void serialize(Archive& archive, CellEnd& end) {
   archive(end.motion, end.period, end.periods, end.status, end.reason, end.lost, end.section, end.displacements);
 }
 
-CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan) {
-  OrbitView view;
-  view.orbit = &orbit;
-  judge(view, plan);
-  const RegimeVerdict& verdict = view.judged.verdict;
+CellEnd cell_end(const Orbit& orbit) {
   CellEnd end;
-  std::tie(end.status, end.reason) = status_of(view);
+  std::tie(end.status, end.reason) = status_of(orbit);
   end.lost = orbit.end.cause == EndCause::process_ended;
   end.periods = orbit.transient_periods + orbit.kept_periods;
   if (orbit.stage != Orbit::Stage::complete) return end;
-  end.motion = verdict.motion;
-  end.period = verdict.period;
-  const std::size_t wanted = static_cast<std::size_t>(end.period > 0 ? end.period : longest_cell_section);
-  const std::size_t first = orbit.strobed.size() - std::min(orbit.strobed.size(), wanted);
-  const auto width = static_cast<std::size_t>(orbit.readings.width);
-  for (std::size_t i = first; i < orbit.strobed.size(); ++i) {
-    end.section.push_back(orbit.strobed[i]);
-    end.displacements.push_back(orbit.readings.values[i * width]);
-  }
+  end.motion = orbit.verdict.value().motion;
+  end.period = orbit.verdict->period;
+  end.section = orbit.strobed;
+  end.displacements = orbit.readings.values;
   return end;
 }
 

@@ -7,9 +7,6 @@
 
 namespace ricochet {
 
-/// Points of a cell that are kept, at most.
-constexpr int longest_cell_section = 64;
-
 /// What the orbit of one cell of a grid ended in.
 struct CellEnd {
   MotionClass motion{Regime::failed};
@@ -21,8 +18,8 @@ struct CellEnd {
   std::vector<double> displacements;  ///< of the same strobes, without the sawtooth of single steps
 };
 
-/// The end of a finished orbit; its readings are judged here and may then be dropped.
-CellEnd cell_end(const Orbit& orbit, const SectionPlan& plan);
+/// The end of a finished orbit of which its end is kept (keep_end).
+CellEnd cell_end(const Orbit& orbit);
 CellEnd refused_end(const std::string& sentence);
 
 /// Ends as bytes and back, bit for bit. Bytes that to_bytes() did not write throw std::runtime_error.

@@ -118,7 +118,7 @@ class BasinsRun {
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
                                                 .seats = desk_.seats,
                                                 .budget = budget_of(case_) - record_.run_seconds,
-                                                .lean = true,
+                                                .ends_only = true,
                                                 .blocks = desk_.blocks,
                                                 .case_id = case_.id});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
@@ -134,7 +134,7 @@ class BasinsRun {
     for (std::size_t k = 0; k < places.size(); ++k) {
       if (!over_budget_ && !scheduler.finished(static_cast<int>(k))) throw Interrupted{};
       if (scheduler.finished(static_cast<int>(k)))
-        *places[k] = cell_end(scheduler.orbit(static_cast<int>(k)), section_);
+        *places[k] = cell_end(scheduler.orbit(static_cast<int>(k)));
       else
         *places[k] = unmarched();
     }

@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* order_mark = "block 1";
-constexpr const char* answer_mark = "answer of a block 1";
+constexpr const char* order_mark = "block 2";
+constexpr const char* answer_mark = "answer of a block 2";
 constexpr std::size_t most_scenes = 8192, most_kept_cases = 8;  // that are kept for later blocks
 
 std::vector<double> numbers(const Eigen::VectorXd& vector) {
@@ -42,7 +42,7 @@ void serialize(Archive& archive, OrderedOrbit& orbit) {
 
 template <class Archive>
 void serialize(Archive& archive, BlockOrder& order) {
-  archive(order.scenes, order.section, order.lanes, order.leave, order.lean, order.interval, order.orbits,
+  archive(order.scenes, order.section, order.lanes, order.leave, order.ends_only, order.interval, order.orbits,
           order.marched, order.exponents, order.sawtooth);
 }
 
@@ -132,7 +132,7 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
                                        .lanes = order.lanes,
                                        .leave = order.leave,
                                        .interval = order.interval,
-                                       .lean = order.lean});
+                                       .ends_only = order.ends_only});
   for (const OrderedOrbit& orbit : order.orbits)
     scheduler.add({scenes.at(static_cast<std::size_t>(orbit.scene)), lane_of(orbit), -1, -1});
   scheduler.restore(std::move(order.marched));

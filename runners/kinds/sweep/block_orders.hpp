@@ -29,7 +29,7 @@ struct BlockOrder {
   SectionPlan section;
   int lanes = 8;
   int leave = 0;  ///< see ScheduleOptions
-  bool lean = false;
+  bool ends_only = false;
   double interval = 5;  ///< s between two tellings of what would be lost
   std::vector<OrderedOrbit> orbits;
   MarchedOrbits marched;  ///< numbers of tasks are places in `orbits`; for exponents: finished ones with their entries

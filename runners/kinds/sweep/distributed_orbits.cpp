@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <stdexcept>
 
 #include "runners/march/prepare_case.hpp"
@@ -51,7 +52,7 @@ void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
   for (const int number : batch.fresh) add(number);
   block.running = std::move(batch.orbits);
   orders.order().lanes = options_.lanes;
-  orders.order().lean = options_.lean;
+  orders.order().ends_only = options_.ends_only;
   // The last ones of a block march in company with those of the next.
   if (!alone && queue_.ready() > 0 && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
   // One that is suspected tells each of its periods.
@@ -87,7 +88,7 @@ void DistributedOrbits::hear(Block& block, const std::string& bytes) {
   const auto number = [&](const Orbit& orbit) { return block.tasks.at(static_cast<std::size_t>(orbit.task)); };
   for (Orbit& orbit : answer.marched.finished) {
     orbit.task = number(orbit);
-    orbit.lane = queue_.task(orbit.task).lane;
+    if (!options_.ends_only) orbit.lane = queue_.task(orbit.task).lane;
     if (!queue_.finished(orbit.task)) queue_.finish(std::move(orbit));
   }
   block.running = std::move(answer.marched.running);
@@ -117,6 +118,7 @@ void DistributedOrbits::lose(Block block, const std::string& cause) {
     orbit.stopped_period = orbit.transient_periods + orbit.kept_periods + 1;
     orbit.end = {.cause = EndCause::process_ended};
     orbit.end_words = cause;
+    if (options_.ends_only) keep_end(orbit, options_.section);
     queue_.finish(std::move(orbit));
   }
 }

@@ -82,7 +82,9 @@ CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPl
   const std::atomic<bool> stop = false;
   scheduler.run(stop, [](const MarchedOrbits&) {});
   const Orbit& orbit = scheduler.orbit(number);
-  const CellEnd end = cell_end(orbit, options.section);
+  Orbit ended = orbit;
+  keep_end(ended, options.section);
+  const CellEnd end = cell_end(ended);
   if (end.status == "done") march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
   return end;
 }

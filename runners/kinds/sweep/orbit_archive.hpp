@@ -1,4 +1,6 @@
 #pragma once
+#include <cereal/types/optional.hpp>
+#include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 
 #include "runners/kinds/sweep/orbit_bytes.hpp"
@@ -38,11 +40,21 @@ void serialize(Archive& archive, BriefContact& contact) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, MotionClass& motion) {
+  archive(motion.regime, motion.period);
+}
+
+template <class Archive>
+void serialize(Archive& archive, RegimeVerdict& verdict) {
+  archive(verdict.motion, verdict.period, verdict.evidence);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Orbit& orbit) {
   archive(orbit.task, orbit.stage, orbit.transient_periods, orbit.kept_periods, orbit.settled, orbit.end,
           orbit.end_words, orbit.stopped_period, orbit.settling, orbit.readings, orbit.strobed, orbit.points,
           orbit.impacts, orbit.impact_counts, orbit.contact_steps, orbit.most_on_a_side, orbit.closed, orbit.rebounds,
-          orbit.rebounds_so_far, orbit.brief, orbit.entry, orbit.now);
+          orbit.rebounds_so_far, orbit.brief, orbit.verdict, orbit.entry, orbit.now);
 }
 
 template <class Archive>

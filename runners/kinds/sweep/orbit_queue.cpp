@@ -18,7 +18,7 @@ void OrbitQueue::restore(MarchedOrbits marched) {
     const auto number = static_cast<std::size_t>(orbit.task);
     if (number >= tasks_.size()) continue;
     done_[number] = true;
-    orbit.lane = tasks_[number].lane;
+    if (!orbit.verdict) orbit.lane = tasks_[number].lane;
     orbits_[number] = std::move(orbit);
   }
   for (Orbit& orbit : marched.running) {
@@ -114,13 +114,7 @@ void OrbitQueue::finish(Orbit orbit) {
     orbit.now = follows(orbit.task) ? begin(orbit.task).now : LaneState{};
     orbit.entry = {};
   }
-  if (lean_) {
-    orbit.impacts = {};
-    orbit.points = {};
-    orbit.settling = {};
-    orbit.entry = orbit.now = {};
-  }
-  fresh_.push_back(orbit);
+  fresh_.push_back(orbit.task);
   orbits_[number] = std::move(orbit);
   done_[number] = true;
   --open_;
@@ -130,7 +124,7 @@ void OrbitQueue::finish(Orbit orbit) {
 
 MarchedOrbits OrbitQueue::stock(const std::vector<std::vector<Orbit>>& marching) {
   MarchedOrbits marched;
-  marched.finished = std::move(fresh_);
+  for (const int number : fresh_) marched.finished.push_back(orbits_[static_cast<std::size_t>(number)]);
   fresh_.clear();
   for (const auto& block : marching)
     for (const Orbit& orbit : block)

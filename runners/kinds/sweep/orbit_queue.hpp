@@ -24,8 +24,7 @@ struct MarchedOrbits {
 /// orbit that stops hands the state it began with to its follower, so that one bad value does not end a sweep.
 class OrbitQueue {
  public:
-  /// `lean`: finished orbits keep what classifies them: no impacts, no states; none may be followed.
-  OrbitQueue(const ForcedScenes& scenes, bool lean) : scenes_(scenes), lean_(lean) {}
+  explicit OrbitQueue(const ForcedScenes& scenes) : scenes_(scenes) {}
 
   int add(OrbitTask task);
   const OrbitTask& task(int number) const { return tasks_[static_cast<std::size_t>(number)]; }
@@ -73,14 +72,13 @@ class OrbitQueue {
   Orbit begin(int number) const;
 
   const ForcedScenes& scenes_;
-  bool lean_;
   std::vector<OrbitTask> tasks_;
   std::vector<Orbit> orbits_;
   std::vector<bool> done_;
   std::vector<Orbit> waiting_;  // on their way when the last run was interrupted
   std::deque<int> ready_;       // tasks that may begin
   std::deque<Orbit> resumed_;   // orbits that may go on
-  std::vector<Orbit> fresh_;    // finished since the last stock
+  std::vector<int> fresh_;      // finished since the last stock
   int open_ = 0;                // tasks not finished
 };
 

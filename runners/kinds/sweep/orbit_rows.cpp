@@ -97,10 +97,13 @@ std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector
 }
 
 std::pair<std::string, std::string> status_of(const OrbitView& view) {
-  if (!view.orbit) return {"refused", view.refusal};
-  if (view.orbit->stage != Orbit::Stage::stopped) return {"done", ""};
-  return {view.orbit->end.failed() ? "failed" : "diverged",
-          fmt::format("period {}: {}", view.orbit->stopped_period, end_text(*view.orbit))};
+  return view.orbit ? status_of(*view.orbit) : std::pair(std::string("refused"), view.refusal);
+}
+
+std::pair<std::string, std::string> status_of(const Orbit& orbit) {
+  if (orbit.stage != Orbit::Stage::stopped) return {"done", ""};
+  return {orbit.end.failed() ? "failed" : "diverged",
+          fmt::format("period {}: {}", orbit.stopped_period, end_text(orbit))};
 }
 
 SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes) {

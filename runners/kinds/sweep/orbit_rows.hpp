@@ -40,6 +40,7 @@ void judge(OrbitView& view, const SectionPlan& plan);
 
 /// Status (done, refused, diverged, failed) and reason of a value, as of a case.
 std::pair<std::string, std::string> status_of(const OrbitView& view);
+std::pair<std::string, std::string> status_of(const Orbit& orbit);
 
 /// Neighbours in a row of motions that are of different classes, those that are not known passed over.
 std::vector<std::pair<std::size_t, std::size_t>> class_changes(const std::vector<std::optional<MotionClass>>& row);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <ricochet/measure/orbits/judge_orbit.hpp>
 
 #include "runners/kinds/sweep/case_workers.hpp"
 #include "runners/kinds/sweep/distributed_orbits.hpp"
@@ -162,7 +163,7 @@ class OrbitScheduler::Shared {
 };
 
 OrbitScheduler::OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options)
-    : scenes_(scenes), options_(std::move(options)), queue_(scenes, options_.lean) {
+    : scenes_(scenes), options_(std::move(options)), queue_(scenes) {
   if (scenes.flies()) options_.lanes = 1;
 }
 
@@ -182,6 +183,7 @@ std::vector<Orbit> OrbitScheduler::start(const std::vector<int>& numbers) {
       orbit.stage = Orbit::Stage::stopped;
       orbit.end = started.ends[i];
       orbit.stopped_period = 1;
+      if (options_.ends_only) keep_end(orbit, options_.section);
     }
     orbits.push_back(std::move(orbit));
   }
@@ -212,6 +214,8 @@ std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, CaseWorker& worke
   for (Orbit& orbit : orbits) block.load(running++, std::move(orbit));
   while (running > 0) {
     std::vector<Orbit> ended = block.period();
+    if (options_.ends_only)
+      for (Orbit& orbit : ended) keep_end(orbit, options_.section);
     const int before = running;
     running -= static_cast<int>(ended.size());
     const double now = thread_seconds(), seconds = now - counted;

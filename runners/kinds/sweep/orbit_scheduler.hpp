@@ -22,7 +22,7 @@ struct ScheduleOptions {
   int leave = 0;
   double interval = 5;             ///< s between checkpoints
   double budget = 1e300;           ///< processor seconds
-  bool lean = false;               ///< see OrbitQueue
+  bool ends_only = false;          ///< of what has ended only its end is kept (keep_end); no task may be followed
   BlockService* blocks = nullptr;  ///< other processes that march; null: threads of this one
   std::string case_id = {};        ///< for them
 };
