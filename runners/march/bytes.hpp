@@ -22,7 +22,9 @@ std::string to_bytes(const T& value, const std::string& mark) {
   std::ostringstream stream;
   cereal::BinaryOutputArchive archive(stream);
   archive(value);
-  return mark + content_hash(stream.view()) + stream.str();
+  std::string bytes = mark + content_hash(stream.view());
+  bytes += stream.view();
+  return bytes;
 }
 
 /// The value that to_bytes() was given. Throws std::runtime_error for bytes of another mark, and for those that are not

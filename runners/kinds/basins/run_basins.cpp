@@ -123,9 +123,12 @@ class BasinsRun {
                                                 .case_id = case_.id});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
     OrbitCheckpoints checkpoints(desk_.shelf, under_way);
-    scheduler.restore(checkpoints.find());
+    MarchedOrbits found = checkpoints.find();
+    std::size_t ended = found.finished.size();
+    scheduler.restore(std::move(found));
     scheduler.run(stop_, [&](const MarchedOrbits& so_far) {
-      checkpoints.save(so_far);
+      ended += so_far.finished.size();
+      if (ended < places.size()) checkpoints.save(so_far);  // else the batches are kept at once
       show_partial();
     });
     record_.run_seconds += scheduler.seconds();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "runners/kinds/sweep/orbit_bytes.hpp"
@@ -29,7 +30,13 @@ MarchedOrbits OrbitCheckpoints::find() {
 
 void OrbitCheckpoints::save(const MarchedOrbits& marched) {
   if (!shelf_.keep) return;
-  if (!marched.finished.empty()) shelf_.keep(part(parts_++), to_bytes(MarchedOrbits{marched.finished, {}}));
+  // What thousands of workers have ended meanwhile is in memory several times while it becomes bytes.
+  constexpr std::ptrdiff_t together = 1024;
+  for (auto from = marched.finished.begin(); from != marched.finished.end();) {
+    const auto to = from + std::min(together, marched.finished.end() - from);
+    shelf_.keep(part(parts_++), to_bytes(MarchedOrbits{{from, to}, {}}));
+    from = to;
+  }
   shelf_.keep(part(-1), to_bytes(MarchedOrbits{{}, marched.running}));
 }
 
