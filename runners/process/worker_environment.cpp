@@ -22,6 +22,10 @@ std::vector<std::string> worker_environment() {
     if (const std::string_view text = *one; std::none_of(of_launchers.begin(), of_launchers.end(),
                                                          [&](std::string_view head) { return text.starts_with(head); }))
       variables.emplace_back(text);
+  // A worker is one thread: those of a BLAS would wait beside it, as many as there are processors, in every worker.
+  for (const std::string_view name : {"OPENBLAS_NUM_THREADS=", "OMP_NUM_THREADS="})
+    if (std::none_of(variables.begin(), variables.end(), [&](const auto& one) { return one.starts_with(name); }))
+      variables.push_back(std::string(name) + "1");
   return variables;
 }
 

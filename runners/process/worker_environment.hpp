@@ -9,7 +9,7 @@ namespace ricochet {
 const std::string& worker_program();
 
 /// The environment variables of a worker, "NAME=value": those of this process without what a parallel launcher put
-/// there for its own ranks.
+/// there for its own ranks, and with one thread for its BLAS where nothing else is said.
 std::vector<std::string> worker_environment();
 
 }  // namespace ricochet

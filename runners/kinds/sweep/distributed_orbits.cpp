@@ -29,11 +29,11 @@ DistributedOrbits::DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scen
 }
 
 // Orbits of a block: as many as take some seconds, fewer where all processes would not have a share, and where there
-// are enough a full block of lanes.
+// are enough a full block of lanes. A rest of half a block marches with the others.
 int DistributedOrbits::block_size() const {
-  const int share = options_.blocks->share(), ready = std::max(1, queue_.ready());
-  const int fair = (ready + share - 1) / share, half = (ready + 2 * share - 1) / (2 * share);
-  return std::max(std::min(options_.lanes, fair), std::min(half, timed_));
+  const int share = options_.blocks->share(), waiting = std::max(1, queue_.waiting());
+  const int fair = (waiting + share - 1) / share, half = (waiting + 2 * share - 1) / (2 * share);
+  return std::max(std::min(options_.lanes + options_.lanes / 2, fair), std::min(half, timed_));
 }
 
 void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
@@ -53,8 +53,9 @@ void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
   block.running = std::move(batch.orbits);
   orders.order().lanes = options_.lanes;
   orders.order().ends_only = options_.ends_only;
-  // The last ones of a block march in company with those of the next.
-  if (!alone && queue_.ready() > 0 && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
+  // The last ones of a block march in company with those of the next, or of the one that it waits behind.
+  const bool company = queue_.ready() > 0 || static_cast<int>(service_.count()) >= options_.blocks->share();
+  if (!alone && company && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
   // One that is suspected tells each of its periods.
   orders.order().interval = alone ? 0 : options_.interval;
   blocks_[service_.begin(to_bytes(orders.order()))] = std::move(block);
