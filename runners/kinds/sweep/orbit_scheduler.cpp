@@ -81,8 +81,8 @@ class OrbitScheduler::Shared {
   }
 
   /// After a period of `running` lanes that took `seconds`: orbits that ended are put away, and others taken for the
-  /// places that are free.
-  OrbitQueue::Batch settle(std::vector<Orbit> ended, int running, double seconds, int group, int places) {
+  /// places that are free: the next of a chain, or single ones; those of a narrow block are for its chain alone.
+  OrbitQueue::Batch settle(std::vector<Orbit> ended, int running, double seconds, int group, bool chained, int places) {
     const std::lock_guard guard(mutex_);
     spent_ += seconds;
     owner_.lane_periods_ += running;
@@ -90,7 +90,7 @@ class OrbitScheduler::Shared {
     for (Orbit& orbit : ended) queue_.finish(std::move(orbit));
     changed_.notify_all();
     if (running >= places || queue_.ready() == 0) return {};
-    return queue_.take(group, places - running);
+    return queue_.take(group, places - running, chained);
   }
 
   /// Between two periods of a block: stops everyone where that is asked for, and saves what is due. Whether the block
@@ -207,6 +207,7 @@ std::vector<Orbit> OrbitScheduler::begin(Shared& shared, OrbitQueue::Batch batch
 std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, CaseWorker& worker, int place, std::vector<Orbit> orbits,
                                                double& counted) {
   const int group = queue_.group(orbits.front().task);
+  const bool chained = queue_.chained(orbits.front().task);
   int running = 0;
   const std::vector<LaneSpec> places(static_cast<std::size_t>(lane_width(static_cast<int>(orbits.size()))),
                                      orbits.front().lane);
@@ -220,7 +221,8 @@ std::vector<Orbit> OrbitScheduler::march_block(Shared& shared, CaseWorker& worke
     running -= static_cast<int>(ended.size());
     const double now = thread_seconds(), seconds = now - counted;
     counted = now;
-    std::vector<Orbit> more = begin(shared, shared.settle(std::move(ended), before, seconds, group, block.places()));
+    std::vector<Orbit> more =
+        begin(shared, shared.settle(std::move(ended), before, seconds, group, chained, block.places()));
     for (int i = 0; i < block.places() && !more.empty(); ++i) {
       if (!block.idle(i)) continue;
       block.load(i, std::move(more.back()));
