@@ -12,6 +12,7 @@
 #include "runners/report/page.hpp"
 #include "runners/report/page_data.hpp"
 #include "runners/report/scene_sketch.hpp"
+#include "runners/report/shown_cases.hpp"
 #include "runners/report/status_counts.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/report/table_view.hpp"
@@ -107,7 +108,10 @@ std::string answer_html(const CaseView& view, const KindPage& kind) {
 std::string render_page(const StudyResults& results, const KindPage& kind, std::string_view library,
                         std::string_view library_version) {
   const CaseView view(results);
-  const PageData data = library.empty() ? PageData() : page_data(view, kind);
+  const std::optional<StudyResults> some = shown_cases(results);
+  const CaseView shown(some ? *some : results);
+  PageData data = library.empty() ? PageData() : page_data(shown, kind);
+  if (some) data.thinning = shown_sentence(*some, results) + (data.thinning.empty() ? "" : " ") + data.thinning;
   const auto truth = [](bool value) { return value ? Fill::type::bool_true : Fill::type::bool_false; };
   Fill page;
   page.set("name", results.name);
@@ -126,7 +130,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   if (const std::string methods = kind.methods ? kind.methods(view) : ""; !methods.empty())
     page.set("methods", html_section(methods));
   if (const std::string effects = effects_html(view); !effects.empty()) page.set("effects", html_section(effects));
-  page.set("cases", case_table_html(view));
+  page.set("cases", case_table_html(shown));
   if (const std::string tables = derived_tables_html(results); !tables.empty())
     page.set("tables", html_section(tables));
   page.set("left_out", left_out_html(view));

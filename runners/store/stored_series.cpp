@@ -45,6 +45,7 @@ Series StoredSeries::series(std::vector<StoredPiece> pieces) {
 }
 
 std::vector<double> StoredSeries::read(const StoredPiece& piece) {
+  if (piece.size == 0) return {};
   const std::lock_guard guard(mutex_);
   std::vector<double> found;
   guarded(file_, database_.get(), [&] {
