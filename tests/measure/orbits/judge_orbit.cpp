@@ -78,6 +78,44 @@ TEST_CASE("the rough class of an orbit is its class where it repeats or never to
   CHECK_FALSE(judge(stopped, plan, std::nullopt).verdict.motion.decided());
 }
 
+TEST_CASE("of an orbit whose end alone is kept class, period and the points of what repeats are left, and no state") {
+  const SectionPlan plan = plan_of_section();
+  for (const int period : {1, 3}) {
+    Orbit orbit = kept(period, other);
+    orbit.now.slots = {1, 2, 3};
+    orbit.entry.slots = {1, 2};
+    const Orbit before = orbit;
+    keep_end(orbit, plan);
+    REQUIRE(orbit.verdict);
+    CHECK(orbit.verdict->motion == judge(before, plan, std::nullopt).verdict.motion);
+    CHECK(orbit.verdict->period == period);
+    REQUIRE(orbit.strobed.size() == static_cast<std::size_t>(period));
+    CHECK(orbit.readings.width == 1);
+    for (std::size_t k = 0; k < orbit.strobed.size(); ++k) {
+      const std::size_t at = before.strobed.size() - orbit.strobed.size() + k;
+      CHECK(orbit.strobed[k].displacement == before.strobed[at].displacement);
+      CHECK(orbit.readings.values[k] == before.readings.values[4 * at]);
+    }
+    CHECK((orbit.now.slots.empty() && orbit.entry.slots.empty() && orbit.impact_counts.empty()));
+    // Once more: what is left is not judged again, from what is left.
+    keep_end(orbit, plan);
+    CHECK(orbit.strobed.size() == static_cast<std::size_t>(period));
+  }
+  Orbit wandering = kept(1, same);
+  for (std::size_t k = 0; k < 80; ++k)
+    wandering.readings.values[4 * k] = 0.05 * std::sin(2.399963 * static_cast<double>(k * k));
+  keep_end(wandering, plan);
+  CHECK(wandering.verdict->period == 0);
+  CHECK(wandering.strobed.size() == static_cast<std::size_t>(longest_end));
+  Orbit stopped = kept(1, same);
+  stopped.stage = Orbit::Stage::stopped;
+  stopped.stopped_period = 7;
+  keep_end(stopped, plan);
+  CHECK_FALSE(stopped.verdict);
+  CHECK(stopped.strobed.empty());
+  CHECK(stopped.stopped_period == 7);
+}
+
 TEST_CASE("a class is claimed where the step resolves it") {
   const SectionPlan plan = plan_of_section();
   const double h = 2 * std::acos(-1.0) / (plan.pulsation * plan.steps_per_period);
