@@ -7,8 +7,6 @@ namespace ricochet {
 CaseWorkers::CaseWorkers(ThreadSeats* seats) : seats_(seats), arena_(seats ? seats->count() : 1) {}
 
 void CaseWorkers::work(CaseWorker& worker) {
-  // What the caller wrote is seen by this, and not only by what the library does to start a task.
-  static_cast<void>(at_work_.load(std::memory_order_acquire));
   const CaseScope scope(ticket_);
   const double began = thread_seconds();
   std::exception_ptr thrown;
@@ -41,6 +39,8 @@ void CaseWorkers::call(int most) {
   for (int i = 0; seats_ && i < most && seats_->take(); ++i) {
     ++at_work_;
     group_.run([this] {
+      // What the caller wrote is seen by this, and not only by what the library does to start a task.
+      static_cast<void>(at_work_.load(std::memory_order_acquire));
       CaseWorker worker;
       worker.seats_ = seats_;
       worker.joined_ = true;

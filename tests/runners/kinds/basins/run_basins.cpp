@@ -163,16 +163,16 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
   CaseDesk desk{{}, "key", &seats};
-  desk.shelf.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
-  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
-    kept[key] = bytes;
-    stop = true;
+  desk.shelf.find = [&](const std::string& key) {
+    stop = key.starts_with("orbits/");  // looked for when the march begins
+    return kept.count(key) ? kept[key] : "";
   };
+  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
   CHECK_THROWS_AS(run_basins(opened.study.cases.front(), opened.registry, desk, stop), Interrupted);
   CHECK_FALSE(kept.empty());
   stop = false;
   desk.seats = nullptr;
-  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
+  desk.shelf.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
   CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, desk, stop)) == wanted));
 }
 
@@ -187,10 +187,13 @@ TEST_CASE("Threads, interruptions and damage to what was stored do not change th
 
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
-  int saves = 0;
+  int saves = 0, looks = 0;
   CaseDesk desk;
   desk.key = "key";
-  desk.shelf.find = [&](const std::string& key) { return kept.contains(key) ? kept.at(key) : std::string(); };
+  desk.shelf.find = [&](const std::string& key) {
+    if (key.starts_with("orbits/") && ++looks % 5 == 0) stop = true;  // a march that ends in its first periods
+    return kept.contains(key) ? kept.at(key) : std::string();
+  };
   desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
     bytes.empty() ? void(kept.erase(key)) : void(kept[key] = bytes);
     if (++saves % 5 == 0) stop = true;
