@@ -19,10 +19,22 @@
 namespace ricochet {
 namespace {
 
+/// The tables that a folder's dictionary tells of: what stands before the first comma of its lines.
+std::set<std::string> told_tables(const std::filesystem::path& dictionary) {
+  std::set<std::string> names;
+  std::ifstream lines(dictionary);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string name = line.substr(0, line.find(','));
+        !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos)
+      names.insert(name);
+  return names;
+}
+
 /// The tables of one folder, each written as CSV and remembered for the dictionary.
 class TableFolder {
  public:
-  explicit TableFolder(const std::filesystem::path& folder) : folder_(folder) {}
+  explicit TableFolder(const std::filesystem::path& folder)
+      : folder_(folder), before_(told_tables(folder / "dictionary.csv")) {}
 
   void write(const Table& table) {
     write_file(file(table), table_csv(table));
@@ -50,11 +62,20 @@ class TableFolder {
          "from the files of this folder."});
     write(dictionary);
   }
+  /// Those of an earlier study of this folder, or of what this one was, that no longer are. What an export wrote beside
+  /// stays.
+  void remove_stale_tables() {
+    for (const char* one : {"measures", "left_out", "notes", "environment", "curves", "table"}) before_.erase(one);
+    for (const Table& head : heads_) before_.erase(head.name);
+    std::error_code ignored;
+    for (const std::string& name : before_) std::filesystem::remove(folder_ / (name + ".csv"), ignored);
+  }
 
  private:
   std::filesystem::path file(const Table& table) const { return folder_ / (table.name + ".csv"); }
 
   const std::filesystem::path& folder_;
+  std::set<std::string> before_;
   std::vector<Table> heads_;
 };
 
@@ -113,6 +134,7 @@ void write_outputs(const std::filesystem::path& folder, const StudyResults& resu
   TableFolder tables(folder);
   write_results(tables, results, has_curve_files(results) ? curves_head(results) : Table());
   tables.write_dictionary();
+  tables.remove_stale_tables();
   write_failures(folder / "failures", results);
   write_file(folder / "report.html", render(results));
 }

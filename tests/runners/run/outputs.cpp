@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <fstream>
 
 #include "runners/store/curve_files.hpp"
 #include "runners/store/store.hpp"
@@ -41,6 +42,21 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
   CHECK(std::filesystem::exists(folder / "cases.csv"));
   write_tables(folder / "export", results_with_points());
   CHECK(read_text(folder / "export/points.csv") == points);
+}
+
+TEST_CASE("outputs: of tables that the folder had, those that the results have no longer go, and a stranger's stay") {
+  const ScratchFolder folder;
+  const auto page = [](const StudyResults&) { return std::string("page"); };
+  write_outputs(folder.path(), results_with_points(), page);
+  for (const char* name : {"mine.csv", "notes.csv"}) std::ofstream(folder / name) << "a,b\n1,2\n";
+  REQUIRE(std::filesystem::exists(folder / "points.csv"));
+  StudyResults other = results_with_points();
+  other.name = "another";
+  other.cases[0].numbers.clear();
+  write_outputs(folder.path(), other, page);
+  CHECK_FALSE(std::filesystem::exists(folder / "points.csv"));
+  for (const char* name : {"mine.csv", "notes.csv", "cases.csv", "dictionary.csv"})
+    CHECK(std::filesystem::exists(folder / name));
 }
 
 TEST_CASE("outputs: tables of one study are not written over those of another") {
