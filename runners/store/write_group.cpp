@@ -1,6 +1,5 @@
 #include "runners/store/write_group.hpp"
 
-#include <SQLiteCpp/Savepoint.h>
 #include <sqlite3.h>
 
 #include <utility>
@@ -11,6 +10,8 @@ WriteGroup::WriteGroup(SQLite::Database& database, std::mutex& mutex, std::funct
     : database_(database),
       mutex_(mutex),
       begun_(std::move(begun)),
+      own_(database, "SAVEPOINT own"),
+      kept_(database, "RELEASE own"),
       pace_([this](std::stop_token stop) { keep_pace(std::move(stop)); }) {}
 
 WriteGroup::~WriteGroup() {
@@ -31,12 +32,13 @@ void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
   if (first) begin();
   waiting_ = true;
   try {
-    SQLite::Savepoint own(database_, "own");
+    step(own_);
     rows();
-    own.release();
+    step(kept_);
   } catch (...) {
     // An error of the disk takes the whole transaction back.
     waiting_ = sqlite3_get_autocommit(database_.getHandle()) == 0;
+    if (waiting_) database_.tryExec("ROLLBACK TO own; RELEASE own");
     throw;
   }
   bytes_ += bytes;
@@ -44,6 +46,11 @@ void WriteGroup::write(std::size_t bytes, const std::function<void()>& rows) {
     commit();
   else if (first)
     changed_.notify_all();
+}
+
+void WriteGroup::step(SQLite::Statement& statement) {
+  statement.reset();
+  statement.exec();
 }
 
 void WriteGroup::write_alone(const std::function<void()>& rows) {

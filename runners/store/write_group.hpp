@@ -1,5 +1,6 @@
 #pragma once
 #include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -42,10 +43,12 @@ class WriteGroup {
   void keep_pace(std::stop_token stop);
   void begin();
   void take_back();
+  static void step(SQLite::Statement& statement);
 
   SQLite::Database& database_;
   std::mutex& mutex_;
   const std::function<void()> begun_;
+  SQLite::Statement own_, kept_;  // around one write: its own rows can be taken back
   bool waiting_ = false;        // a transaction is open
   std::size_t bytes_ = 0;       // that wait
   Clock::time_point due_ = {};  // when what is written next, or waits, is to be durable
