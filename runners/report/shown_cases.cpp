@@ -7,7 +7,6 @@
 #include <unordered_set>
 
 #include "runners/report/case_view.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {

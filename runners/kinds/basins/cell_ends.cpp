@@ -1,6 +1,5 @@
 #include "runners/kinds/basins/cell_ends.hpp"
 
-#include <algorithm>
 #include <tuple>
 
 #include "runners/kinds/sweep/orbit_archive.hpp"
