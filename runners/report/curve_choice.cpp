@@ -38,13 +38,13 @@ std::set<std::size_t> chosen(const std::vector<CaseGroup>& groups, const std::st
 
 }  // namespace
 
-CurveChoice::CurveChoice(const CaseView& view) {
+CurveChoice::CurveChoice(const CaseView& view, const StudyResults& all) {
   Cases drawn;
   for (const CaseRecord* record : view.all())
     if (!record->curve.columns.empty()) drawn.push_back(record);
   with_curves_ = drawn.size();
-  files_ = has_curve_files(view.results());
-  where_ = where_curves_are(view.results());
+  files_ = has_curve_files(all);
+  where_ = where_curves_are(all);
   const std::vector<CaseGroup> groups = view.group(drawn, view.varying_without({"step"}));
   all_ = groups.size() <= most_curve_rows || drawn.size() <= most_curve_cases;
   if (all_) return;

@@ -11,7 +11,7 @@ namespace ricochet::report {
 /// speaks of first, and others spread evenly over the study.
 class CurveChoice {
  public:
-  explicit CurveChoice(const CaseView& view);
+  CurveChoice(const CaseView& view, const StudyResults& all);
   bool holds(const std::string& id) const { return all_ || ids_.count(id) > 0; }
   /// "Curves over time: this page holds those of 70 of 912 cases …", and where the others are; "" where all are held
   /// and each has its file.

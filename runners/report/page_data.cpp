@@ -154,10 +154,10 @@ void share_times(PageJson& curves, PageJson& blocks) {
 
 }  // namespace
 
-PageData page_data(const CaseView& view, const KindPage& kind) {
+PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all) {
   const StudyResults& results = view.results();
   size_t series = 0;
-  const CurveChoice choice(view);
+  const CurveChoice choice(view, all);
   for (const CaseRecord& record : results.cases)
     if (!record.curve.columns.empty() && choice.holds(record.id)) series += kind.curves.size() + 1;
   CurveData curves(sample_limit(series));
@@ -168,12 +168,12 @@ PageData page_data(const CaseView& view, const KindPage& kind) {
   out["tables"] = tables_json(view, kind);
   out["own"] = own_json(view, kind);
   out["curves"] = curves_json(view, kind, choice, curves);
-  out["curve_files"] = has_curve_files(results);
+  out["curve_files"] = has_curve_files(all);
   out["panel"] = panel_data(view, curves);
   out["snapshots"] = snapshot_data(view, curves);
   if (kind.data) out[kind.data_key] = kind.data(view, curves);
   std::string less = kind.curves.empty() ? "" : choice.sentence();
-  if (const std::string thinned = curves.thinning(has_curve_files(results)); !thinned.empty())
+  if (const std::string thinned = curves.thinning(has_curve_files(all)); !thinned.empty())
     less += (less.empty() ? "" : " ") + thinned;
   PageJson blocks = curves.blocks();
   share_times(out["curves"], blocks);

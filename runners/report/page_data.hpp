@@ -23,6 +23,7 @@ struct PageData {
 ///   curve_files  whether each case with a curve has its file
 ///   and what the kind adds under its own key
 /// Nothing that figures of the kind do not read is written, but for the cases with their measures.
-PageData page_data(const CaseView& view, const KindPage& kind);
+/// `all`: results of which the view may hold a part; they decide whether there are files of curves.
+PageData page_data(const CaseView& view, const KindPage& kind, const StudyResults& all);
 
 }  // namespace ricochet::report

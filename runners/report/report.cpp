@@ -111,7 +111,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   const std::optional<StudyResults> some = shown_cases(results);
   const std::optional<CaseView> fewer = some ? std::make_optional<CaseView>(*some) : std::nullopt;
   const CaseView& shown = fewer ? *fewer : view;
-  PageData data = library.empty() ? PageData() : page_data(shown, kind);
+  PageData data = library.empty() ? PageData() : page_data(shown, kind, results);
   if (some) data.thinning = shown_sentence(*some, results) + (data.thinning.empty() ? "" : " ") + data.thinning;
   const auto truth = [](bool value) { return value ? Fill::type::bool_true : Fill::type::bool_false; };
   Fill page;
