@@ -29,16 +29,6 @@ RICOCHET_BODY void row_body(int n, int slots, int drives, const double* row, con
   add_row(n, slots - 1, drives, row + n, x + n, e, out);
 }
 
-RICOCHET_BODY void leap_body(int n, int slots, int drives, const double* table, const double* x, const double* e,
-                             double* __restrict out) {
-  const int width = slots + drives;
-  for (int i = 0; i < slots; ++i, table += static_cast<long>(width) * n, out += n) {
-    row_body(n, slots, drives, table, x, e, out);
-    const double* own = x + static_cast<long>(i) * n;
-    for (int j = 0; j < n; ++j) out[j] += own[j];
-  }
-}
-
 RICOCHET_BODY void modulus_body(int n, const double* re, const double* im, const double* weight,
                                 double* __restrict amplitude, double* __restrict bend) {
   for (int j = 0; j < n; ++j) {
@@ -65,6 +55,64 @@ RICOCHET_BODY void cone_body(int n, double k, const double* value, const double*
 RICOCHET_BODY Wide load(const double* x) {
   return *reinterpret_cast<const Loose*>(x);
 }
+// One pass for up to four modes; all that is read of a mode is read before any of it is written.
+template <int slots, int drives>
+RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const double* e, double* out) {
+  const int width = slots + drives;
+  const auto at = [n](int row) { return static_cast<long>(row) * n; };
+  const auto leap = [&](int j, auto load_one, auto store) {
+    decltype(load_one(x)) own[slots], next[slots];
+#pragma GCC unroll 4
+    for (int k = 0; k < slots; ++k) own[k] = load_one(x + at(k) + j);
+#pragma GCC unroll 4
+    for (int i = 0; i < slots; ++i) {
+      const double* const row = table + at(i * width) + j;
+      next[i] = load_one(row) * own[0];
+#pragma GCC unroll 4
+      for (int k = 1; k < slots; ++k) next[i] += load_one(row + at(k)) * own[k];
+#pragma GCC unroll 4
+      for (int k = 0; k < drives; ++k) next[i] += load_one(row + at(slots + k)) * e[k];
+      next[i] += own[i];
+    }
+#pragma GCC unroll 4
+    for (int i = 0; i < slots; ++i) store(out + at(i) + j, next[i]);
+  };
+  int j = 0;
+  for (; j + wide <= n; j += wide)
+    leap(
+        j, [](const double* from) { return load(from); },
+        [](double* to, Wide value) { *reinterpret_cast<Loose*>(to) = value; });
+  for (; j < n; ++j)
+    leap(
+        j, [](const double* from) { return *from; },
+        [](double* to, double value) { *to = value; });
+}
+
+// Any number of slots, by a pass for each; `out` is another place.
+RICOCHET_BODY void leap_any(int n, int slots, int drives, const double* table, const double* x, const double* e,
+                            double* __restrict out) {
+  const int width = slots + drives;
+  for (int i = 0; i < slots; ++i, table += static_cast<long>(width) * n, out += n) {
+    row_body(n, slots, drives, table, x, e, out);
+    const double* own = x + static_cast<long>(i) * n;
+    for (int j = 0; j < n; ++j) out[j] += own[j];
+  }
+}
+
+RICOCHET_BODY void leap_body(int n, int slots, int drives, const double* table, const double* x, const double* e,
+                             double* out) {
+  switch (4 * slots + drives) {
+#define RICOCHET_LEAP(SLOTS, DRIVES) \
+  case 4 * SLOTS + DRIVES:           \
+    return leap_slots<SLOTS, DRIVES>(n, table, x, e, out);
+#define RICOCHET_LEAPS(SLOTS) \
+  RICOCHET_LEAP(SLOTS, 0) RICOCHET_LEAP(SLOTS, 1) RICOCHET_LEAP(SLOTS, 2) RICOCHET_LEAP(SLOTS, 3)
+    RICOCHET_LEAPS(1) RICOCHET_LEAPS(2) RICOCHET_LEAPS(3) RICOCHET_LEAPS(4)
+    default:
+      return leap_any(n, slots, drives, table, x, e, out);
+  }
+}
+
 RICOCHET_BODY Wide size_of(Wide x) {
   return x < 0 ? -x : x;
 }
@@ -96,6 +144,36 @@ RICOCHET_BODY void reach_body(int n, long stride, const double* h, const double*
   out[1] = total(b, Wide{});
   out[2] = total(c, Wide{});
   out[3] = total(d, Wide{});
+}
+
+// Of points from i on, as many as a vector holds.
+template <class Number, class Load, class Store>
+RICOCHET_BODY void reaches_from(int i, int n, long stride, int points, const double* h, const double* places,
+                                double* out, Load load_one, Store store) {
+  Number a{}, b{}, c{}, d{};
+  for (int j = 0; j < n; ++j) {
+    const Number weight = load_one(h + static_cast<long>(j) * points + i), size = weight < 0 ? -weight : weight;
+    a += weight * places[j];
+    b += size * places[stride + j];
+    c += weight * places[2 * stride + j];
+    d += size * places[3 * stride + j];
+  }
+  store(out + i, a);
+  store(out + points + i, b);
+  store(out + 2L * points + i, c);
+  store(out + 3L * points + i, d);
+}
+
+RICOCHET_BODY void reaches_body(int n, long stride, int points, const double* h, const double* places, double* out) {
+  int i = 0;
+  for (; i + wide <= points; i += wide)
+    reaches_from<Wide>(
+        i, n, stride, points, h, places, out, [](const double* from) { return load(from); },
+        [](double* to, Wide value) { *reinterpret_cast<Loose*>(to) = value; });
+  for (; i < points; ++i)
+    reaches_from<double>(
+        i, n, stride, points, h, places, out, [](const double* from) { return *from; },
+        [](double* to, double value) { *to = value; });
 }
 
 // Σ_j f_j over n, f given for four at a time and for one.
@@ -184,13 +262,16 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     TARGET static void reach(int n, long stride, const double* h, const double* p, double* o) {                        \
       reach_body(n, stride, h, p, o);                                                                                  \
     }                                                                                                                  \
+    TARGET static void reaches(int n, long stride, int points, const double* h, const double* p, double* o) {          \
+      reaches_body(n, stride, points, h, p, o);                                                                        \
+    }                                                                                                                  \
     TARGET static double dot(int n, const double* h, const double* x) { return dot_body(n, h, x); }                    \
     TARGET static void dots(int n, int r, const double* m, const double* x, double* o) { dots_body(n, r, m, x, o); }   \
     TARGET static void add(int n, double a, const double* x, double* o) { add_body(n, a, x, o); }                      \
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, dot, dots, add, quadratic};                \
+    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, reaches, dot, dots, add, quadratic};       \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

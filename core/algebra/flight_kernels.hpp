@@ -6,7 +6,9 @@
 namespace ricochet {
 
 struct FlightKernels {
+  static constexpr int in_place = 4;
   /// out_i = x_i + Σ_k t_ik x_k + Σ_k t_i,s+k e_k, elementwise; x: s arrays, e: numbers, t: s × (s + drives) arrays.
+  /// `out` may be x itself where s ≤ in_place.
   void (*leap)(int n, int slots, int drives, const double* table, const double* x, const double* e, double* out);
   /// out = Σ_k r_k x_k + Σ_k r_s+k e_k.
   void (*row)(int n, int slots, int drives, const double* row, const double* x, const double* e, double* out);
@@ -19,6 +21,8 @@ struct FlightKernels {
                double* places);
   /// Σ h_j near_j, Σ |h_j| radius_j, and the same of far, over n modes of arrays that are `stride` numbers apart.
   void (*reach)(int n, long stride, const double* h, const double* places, double* out);
+  /// The same of `points` points at once, h by modes: `points` numbers of each. out: four arrays of them.
+  void (*reaches)(int n, long stride, int points, const double* h, const double* places, double* out);
   /// Σ_j h_j x_j.
   double (*dot)(int n, const double* h, const double* x);
   /// out_i = Σ_j m_ij x_j, m by rows: bit for bit that of each row alone.

@@ -94,6 +94,16 @@ bool PointwiseSolver::Lane::on_law(int i, double x, double terms, double p, cons
   return this->answer(i, x - width).force >= p - p_off && this->answer(i, x + width).force <= p + p_off;
 }
 
+// Of a p between the ends of a jump, as far from each as p is: not that of the end on which round-off has put x.
+double PointwiseSolver::Lane::dissipation_between(int i, double x, double terms, double p, const Answer& at) const {
+  const double width = slack(i, terms, at);
+  const Answer before = answer(i, x - width), after = answer(i, x + width);
+  const double jump = before.force - after.force;
+  if (!(jump > 0)) return at.dissipation;
+  const double share = std::clamp((p - after.force) / jump, 0.0, 1.0);
+  return share * before.dissipation + (1 - share) * after.dissipation;
+}
+
 // p = F(others + mobility·p): the left grows with p, the right falls, 0 and F(others) stand to either side.
 double PointwiseSolver::solve_point(const Lane& lane, int i, double others, double mobility, double guess) {
   const Answer still = lane.answer(i, others);
@@ -256,11 +266,11 @@ LaneOutcome PointwiseSolver::finish(const Lane& lane, bool converged, int iterat
   for (int i = 0; i < problem.points; ++i) {
     const Answer& answer = answer_[i];
     const double p = effort_[i], wrong = std::abs(p - answer.force);
-    outcome.dissipation += answer.dissipation;
+    const bool bridged = converged && wrong > lane.round_off(i, terms_[i], p, answer);
+    outcome.dissipation += bridged ? lane.dissipation_between(i, moved_[i], terms_[i], p, answer) : answer.dissipation;
     slopes_[static_cast<std::size_t>(i) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane.lane)] = {
         answer.stiffness, answer.viscosity, answer.before};
     if (wrong == 0) continue;
-    const bool bridged = converged && wrong > lane.round_off(i, terms_[i], p, answer);
     const double mobility = problem.delassus->column(i)[i];
     // By how much the measure, or where no effort moves it the depth, is off.
     double apart = wrong / (1 + lane.weight(answer) * mobility);

@@ -67,6 +67,7 @@ class PointwiseSolver {
     Answer answer(int i, double x) const;
     double round_off(int i, double terms, double p, const Answer& answer) const;
     double slack(int i, double terms, const Answer& answer) const;
+    double dissipation_between(int i, double x, double terms, double p, const Answer& at) const;
     bool on_law(int i, double x, double terms, double p, const Answer& answer) const;
   };
 

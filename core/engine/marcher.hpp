@@ -85,7 +85,9 @@ class Marcher {
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
-  double penetration(int lane) const;
+  /// `law_saw_end`: where the last stage's law reads the position there, points that its own problem leaves between
+  /// their stops need not be measured.
+  double penetration(int lane, bool law_saw_end = false) const;
   /// The same at w = q − increment/2 and so on: one contact point's depth (> 0 beyond a stop) for a given H w.
   double depth(int lane, int point, double relative, double support) const;
   /// Σ φ_k F(t + c_k h) of the distributed load in model coordinates (n); null when there is none.
@@ -121,6 +123,9 @@ class Marcher {
   void scatter_columns();
   bool contact_set();
   void find_past();
+  // readings.cpp
+  template <class See>
+  bool may_be_beyond(See&& see) const;
 
   // stage_contact.cpp: efforts of a stage, and its unknown corrected by them.
   void contact(StageProgram& program, StageState& state, double* z);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/box_problem.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/load_window.hpp>
@@ -64,7 +65,41 @@ double Marcher::depth(int lane, int point, double relative, double support) cons
   return std::max(spec.lower[point] - (relative + support), relative + support - spec.upper[point]);
 }
 
-double Marcher::penetration(int lane) const {
+// `see`(point) of each that is beyond its stop, or within round-off of it, by the reduced problem of the law: y = y° +
+// W p. False where this is not what the step did, or would cost as much as the whole measure.
+template <class See>
+bool Marcher::may_be_beyond(See&& see) const {
+  constexpr double round_off = 1e-9;  // of the places: far more than W and z lose
+  constexpr std::size_t few = 8;
+  const StageState& state = *stage_states_.back();
+  const StageProgram& program = program_.stages.back();
+  const int points = lower_.rows();
+  if (stage_states_.size() != 1 || state.touched_lanes == 0 || state.impulse || program.effort.size() != 1 ||
+      program.effort[0] != 1 || pushing_.size() > few || points > BoxSolver::many)
+    return false;
+  const double* columns[few] = {};
+  double efforts[few] = {};
+  for (std::size_t k = 0; k < pushing_.size(); ++k) {
+    columns[k] = state.delassus->column(pushing_[k]);
+    efforts[k] = program.reach * state.effort[0].at(pushing_[k], 0);
+  }
+  const double *free = state.free.data(), *lower = lower_.data(), *upper = upper_.data();
+  double largest = 0;
+  for (int i = 0; i < points; ++i) largest = std::max(largest, std::abs(free[i]));
+  for (int i = 0; i < points; ++i) {
+    double place = free[i], moved = 0;
+    for (std::size_t k = 0; k < pushing_.size(); ++k) {
+      const double more = efforts[k] * columns[k][i];
+      place += more;
+      moved += std::abs(more);
+    }
+    const double near = round_off * (largest + moved);
+    if (!(place - near > lower[i] && place + near < upper[i])) see(i);
+  }
+  return true;
+}
+
+double Marcher::penetration(int lane, bool law_saw_end) const {
   if (!program_.contact) return 0;
   const RowMatrix& rows = program_.model->contact();
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
@@ -76,10 +111,11 @@ double Marcher::penetration(int lane) const {
     deepest = std::max({deepest, lower[j] - place, place - upper[j]});
   };
   if (program_.flight && program_.width == 1) {
-    // The rows of one lane are dense where flights leave out steps.
+    const int n = program_.model->rows();
+    // The rows of one lane are dense where flights leave out steps: those of points that may be beyond are measured.
+    if (law_saw_end && may_be_beyond([&](int j) { see(j, flight_kernels().dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(j) * n, q)); })) return deepest;
     constexpr int some = 16;
     double places[some];
-    const int n = program_.model->rows();
     for (int first = 0; first < rows.rows(); first += some) {
       const int count = std::min(some, rows.rows() - first);
       flight_kernels().dots(n, count, rows.value.data() + static_cast<std::ptrdiff_t>(first) * n, q, places);

@@ -43,7 +43,7 @@ struct Dashpot final : PointwiseLaw {
   PointForce force(const ContactState& s) const override {
     const double p = k * s.depth + c * s.rate;
     if (!(s.depth > 0) || !(p > 0)) return {};
-    return {p, k, c, 0, 0};
+    return {p, k, c, 0, c * s.rate * s.rate};
   }
 };
 
@@ -225,6 +225,13 @@ TEST_CASE("a jump is bridged, and a barrier is not passed", "[pointwise]") {
     CHECK(s.outcome.converged);
     CHECK(s.outcome.residual <= 1e-12);
     const VectorXd moved = problem.W * s.p, y = problem.free + problem.reach * moved, u = problem.rate + moved;
+    // The power that the efforts take, less what the springs keep of it: not what the whole jump would.
+    double power = 0;
+    for (int i = 0; i < problem.points(); ++i) {
+      const double depth = std::max({problem.lower[i] - y[i], y[i] - problem.upper[i], 0.0});
+      if (s.p[i] != 0) power -= (s.p[i] - std::copysign(dashpot.k * depth, s.p[i])) * u[i];
+    }
+    CHECK(s.outcome.dissipation == Approx(power).epsilon(1e-9).margin(1e-9));
     for (int i = 0; i < problem.points(); ++i) {
       const bool low = s.p[i] > 0;
       // Without effort: not there, or leaving faster than the spring follows.

@@ -17,6 +17,23 @@ double steps_within(double g, double d, double s, double z) {
   return most > 0 ? std::floor(0.999 * most) : 0.0;
 }
 
+// Whether gap + k d₁ + C(k, 2) d₂ + C(k, 3) d₃ − C(k, 4) m₄ > 0 for all k ≤ steps, by its Bernstein coefficients. The
+// first difference that round-off hides is put at its least, −m, for all of these steps, and ends the sum.
+bool stays(double gap, double sign, const double* now, const FlightBound::Pace& most, double lost, double steps) {
+  const double bounds[] = {most.first, most.second, most.third, most.fourth};
+  double d[5] = {gap, 0, 0, 0, 0};
+  for (int order = 1; order <= 4; ++order) {
+    const double bound = bounds[order - 1];
+    const bool known = order < 4 && lost < 0.5 * bound;
+    d[order] = known ? std::max(sign * now[order] - lost, -bound) : -bound;
+    if (!known) break;
+  }
+  const double a1 = (d[1] - d[2] / 2 + d[3] / 3) * steps, a2 = (d[2] - d[3]) / 2 * (steps * steps),
+               a3 = d[3] / 6 * (steps * steps * steps), a4 = d[4] / 24 * (steps * steps) * (steps * steps);
+  return gap + a1 / 4 > 0 && gap + a1 / 2 + a2 / 6 > 0 && gap + 0.75 * a1 + a2 / 2 + a3 / 4 > 0 &&
+         gap + a1 + a2 + a3 + a4 > 0;
+}
+
 }  // namespace
 
 const StepReadings& ClearSteps::readings(int watch, int point) {
@@ -94,18 +111,27 @@ long long ClearSteps::follow(long long steps) {
   return steps;
 }
 
-// How many steps a point stays between its bounds from here on: by where it is, how far it goes in the next step, and
-// what steps can do at most. −1: it is not between them.
+// How many steps a point stays between its bounds from here on: by where it is, how it moves now, and what its
+// differences can be at most. −1: it is not between them.
 long long ClearSteps::clear_steps(const Followed& one) {
-  const auto& [step, bend, margin] = one.pace;
-  read_ += 2;
-  const double value = (*one.reading)(0, x_.data(), e_), change = (*one.reading)(1, x_.data(), e_) - value;
-  // Its round-off counts once a step.
-  const double slower = 1e-3 * margin, below = value - one.lower - margin, above = one.upper - value - margin;
+  const auto& pace = one.pace;
+  read_ += 4;
+  double now[4];
+  one.reading->differences(x_.data(), e_, now);
+  const double below = now[0] - one.lower - pace.margin, above = one.upper - now[0] - pace.margin;
   if (!(below > 0 && above > 0)) return -1;
-  return static_cast<long long>(
-      std::min({static_cast<double>(motion_.longest()), steps_within(below, change - slower, step, bend),
-                steps_within(above, -change - slower, step, bend)}));
+  // The round-off of a difference is that of the values, once a step.
+  const double lost = 1e-3 * pace.margin;
+  const double by_bend = std::min(steps_within(below, now[1] - lost, pace.first, pace.second),
+                                  steps_within(above, -now[1] - lost, pace.first, pace.second));
+  const auto most = static_cast<long long>(std::min(by_bend, static_cast<double>(motion_.longest())));
+  // Of powers of two: leaps have no other lengths.
+  long long steps = most < least_leap ? least_leap : 2 * static_cast<long long>(std::bit_floor(
+                                                             static_cast<unsigned long long>(most)));
+  while (steps <= motion_.longest() && stays(below, 1, now, pace, lost, static_cast<double>(steps)) &&
+         stays(above, -1, now, pace, lost, static_cast<double>(steps)))
+    steps *= 2;
+  return steps / 2 > most && steps > least_leap ? steps / 2 : most;
 }
 
 // Whether it is, `step` steps on.

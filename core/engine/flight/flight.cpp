@@ -10,7 +10,8 @@ constexpr long long longest_wait = 64;  // steps between two looks that found no
 constexpr long long at_once = 32, soon_read = 256;
 // Steps that are marched between two looks after which points had to be followed; readings that cost what a step does.
 constexpr long long longest_march = 16384, readings_of_step = 8;
-constexpr long long brief = 8;  // steps in contact that are marched before any is left out
+constexpr long long modes_of_step = 20;  // n² numbers in the tables of a set that cost what a step does
+constexpr long long brief = 8;           // steps in contact that are marched before any is left out
 
 }  // namespace
 
@@ -71,6 +72,16 @@ Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
   return one;
 }
 
+// A set of the same points, otherwise closed, that was seen often enough to be made; null: there is none.
+const FlightSet* Flight::twin_of(const Kept& one, long long enough) const {
+  const auto same_point = [](const HeldPoint& a, const HeldPoint& b) { return a.point == b.point; };
+  for (const auto& other : sets_)
+    if (other.get() != &one && other->set && other->set->cause().empty() && other->seen >= enough &&
+        std::equal(other->held.begin(), other->held.end(), one.held.begin(), one.held.end(), same_point))
+      return other->set.get();
+  return nullptr;
+}
+
 bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
   set_ = free_.get();
   steps_ = nullptr;
@@ -86,10 +97,12 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
     set_pace_ = &one.pace;
   } else if (!held.empty()) {
     Kept& one = kept(held);
-    // Its modes cost about as much as so many steps with all the dofs.
-    const long long rows = program.model->rows();
-    if (++one.seen < std::max(brief, rows * rows / 20)) return false;
-    if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_);
+    // Its modes cost about as much as so many steps with all the dofs. Points that come back to one stop come back to
+    // the other one.
+    const long long rows = program.model->rows(), enough = std::max(brief, rows * rows / modes_of_step);
+    const FlightSet* const twin = twin_of(one, enough);
+    if (++one.seen < (twin ? brief : enough)) return false;
+    if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_, twin);
     if (!one.set->cause().empty()) return false;
     set_pace_ = &one.pace;
     set_ = one.set.get();
@@ -179,10 +192,10 @@ long long Flight::find_efforts(long long first) {
   for (long long k = 0; k < count; k += StepReadings::block) {
     const int steps = static_cast<int>(std::min<long long>(StepReadings::block, count - k));
     for (std::size_t i = 0; i < points; ++i) {
-      const StepReadings& effort = set_->effort(i);
+      double efforts[StepReadings::block];
+      set_->effort(i).first(steps, after_efforts_.x.data(), after_efforts_.e, efforts);
       for (int step = 0; step < steps; ++step)
-        efforts_[static_cast<std::size_t>(k + step) * points + i] =
-            effort(step, after_efforts_.x.data(), after_efforts_.e);
+        efforts_[static_cast<std::size_t>(k + step) * points + i] = efforts[step];
     }
     advance(steps, after_efforts_);
   }

@@ -112,6 +112,7 @@ class Flight {
   static std::string why_not_held(const Program& program);
   long long step_held(Columns columns, const double* e, HeldSteps::Past past, long long most);
   Kept& kept(std::span<const HeldPoint> held);
+  const FlightSet* twin_of(const Kept& one, long long enough) const;
   /// `leg` moved on by k steps.
   void advance(long long k, Leg& leg) const { set_->motion().advance(k, leg.x.data(), leg.e); }
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.

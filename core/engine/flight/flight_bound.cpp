@@ -24,6 +24,17 @@ std::size_t place(Index row, int modes, int mode) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(modes) + static_cast<std::size_t>(mode);
 }
 
+// Of unit columns; of two it is √((1 + c)/(1 − c)) with c = |v₁ᴴv₂|.
+double condition(const MatrixXcd& V) {
+  if (V.cols() < 2) return 1;
+  if (V.cols() == 2) {
+    const double cosine = std::abs(V.col(0).dot(V.col(1)));
+    return std::sqrt((1 + cosine) / std::max(1 - cosine, 0.0));
+  }
+  const Eigen::VectorXd sizes = singular_values(V);
+  return sizes[0] / sizes[sizes.size() - 1];
+}
+
 void put(std::vector<double>& table, const RowVectorXd& row, int modes, int mode) {
   for (Index k = 0; k < row.size(); ++k) table[place(k, modes, mode)] = row[k];
 }
@@ -56,10 +67,19 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches,
     watched.watch = std::move(watch);
     for (auto* table : {&watched.value, &watched.change}) table->assign(width * n, 0.0);
     for (auto* array : {&watched.steady_amplitude, &watched.steady_bend, &watched.rest, &watched.now, &watched.step,
-                        &watched.amplitude, &watched.bend, &watched.growth, &watched.doubled})
+                        &watched.amplitude, &watched.bend, &watched.growth, &watched.doubled, &watched.swiftest})
       array->assign(n, 0.0);
     for (auto* array : {&watched.offset, &watched.offset_step, &watched.offset_bend})
       array->assign(static_cast<std::size_t>(points), 0.0);
+    watched.columns.resize(watched.points.size());
+    watched.sizes.resize(watched.points.size());
+    const std::size_t all = watched.points.size() / std::max<std::size_t>(n, 1);
+    for (std::size_t at = 0; at < watched.points.size(); ++at) {
+      watched.columns[at % n * all + at / n] = watched.points[at];
+      watched.sizes[at] = std::abs(watched.points[at]);
+    }
+    reached_.resize(std::max(reached_.size(), 4 * all));
+    watched.paces.assign(5 * n, 0.0);
     watched.widest.assign(n, 0.0);
     for (std::size_t at = 0; at < watched.points.size(); ++at)
       watched.widest[at % n] = std::max(watched.widest[at % n], std::abs(watched.points[at]));
@@ -136,12 +156,9 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
     V.col(l) = modes.vectors.col(kept[static_cast<std::size_t>(l)]).normalized();
     found.change[l] = modes.values[kept[static_cast<std::size_t>(l)]];
   }
-  if (count > 0) {
-    const Eigen::VectorXd sizes = singular_values(V);
-    if (sizes[sizes.size() - 1] * ill_conditioned < sizes[0]) {
-      cause_ = "roots of a step coincide: it may grow with the number of steps";
-      return found;
-    }
+  if (condition(V) > ill_conditioned) {
+    cause_ = "roots of a step coincide: it may grow with the number of steps";
+    return found;
   }
   MatrixXcd W;
   if (count == slots_) {
@@ -206,6 +223,7 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
     put(watched.real[used], whole.real(), modes_, mode);
     put(watched.imaginary[used], whole.imag(), modes_, mode);
     watched.weight[used][at] = weight;
+    watched.swiftest[at] = std::max(watched.swiftest[at], std::sqrt(weight));
     ++used;
   };
   const RowVectorXcd own = row.head(slots_).cast<Complex>();
@@ -234,6 +252,7 @@ void FlightBound::shares(const StepRows& rows, int mode, const ModeRoots& found,
     const double turn = 2 * std::sin(drive_.angle / 2);
     watched.steady_amplitude[at] = std::abs(steady);
     watched.steady_bend[at] = turn * turn * std::abs(steady);
+    watched.swiftest[at] = std::max(watched.swiftest[at], std::abs(turn));
   }
   if (drive_.constant) {
     const int one = drive_.one();

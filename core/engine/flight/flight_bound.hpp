@@ -70,10 +70,10 @@ class FlightBound {
     double low = 0, high = 0, margin = 0;
   };
   Range range(int watch, int point, long long k);
-  /// What a point can do from the last look on, forever: change by so much in a step, and its change by so much; and
-  /// what its values have for round-off.
+  /// What a point can do from the last look on, forever: the largest of its first, second, third and fourth differences
+  /// from step to step; and what its values have for round-off.
   struct Pace {
-    double step = 0, bend = 0, margin = 0;
+    double first = 0, second = 0, third = 0, fourth = 0, margin = 0;
   };
   Pace pace(int watch, int point);
   /// Its value in the state itself.
@@ -85,23 +85,31 @@ class FlightBound {
   struct Watched {
     FlightWatch watch;
     std::vector<double> points;                        // rows, one after the other
+    std::vector<double> columns, sizes;                // the same by modes; and the size of each number of `points`
     std::vector<double> widest;                        // of each mode, the largest size in any of them
     std::vector<double> value, change;                 // rows of a mode, width × modes
     std::vector<std::vector<double>> real, imaginary;  // of the eigenvectors' shares, width × modes each
     std::vector<std::vector<double>> weight;           // |λ − 1|², modes
     std::vector<double> doubled;                       // |λ − 1|² of a double root, modes; else 0
+    std::vector<double> swiftest;                      // the largest |λ − 1| in it, modes
     std::vector<double> grows;                         // r N of a double root, width × modes; empty: there is none
     std::vector<double> steady_amplitude, steady_bend,
         rest;  // under a drive of amplitude 1, and under the constant one
     // Of the last look:
     std::vector<double> now, step, amplitude, bend, growth;
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
+    std::vector<double> paces;  // of each mode, what Pace adds up, five arrays
+    bool paced = false;         // whether they are of this look
     std::size_t tightest = 0;
   };
   void place(Watched& watched, long long k);
   void split(const Watched& watched);
   bool inside(Watched& watched, std::size_t point, long long k);
   Range cone(const Watched& watched, std::size_t point, double k, int first, int count, double more);
+  Range around(const Watched& watched, std::size_t point, double k, const double* sums, std::size_t stride,
+               double more) const;
+  template <class See>
+  bool see_exposed(Watched& watched, long long k, See&& see);
   struct ModeRoots;
   ModeRoots roots(const StepRows& rows, int mode);
   bool double_root(const Eigen::MatrixXd& D, ModeRoots& found);
@@ -114,7 +122,7 @@ class FlightBound {
   FlightDrive drive_;
   Eigen::MatrixXd turn_;  // R of one step
   std::vector<Watched> watches_;
-  std::vector<double> places_, real_, imaginary_, grown_amplitude_, grown_bend_;
+  std::vector<double> places_, reached_, real_, imaginary_, grown_amplitude_, grown_bend_;
   long long placed_ = -1;
   long long longest_ = std::numeric_limits<long long>::max();  // for which the bound holds
   const Watched* placed_of_ = nullptr;

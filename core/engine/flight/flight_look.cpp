@@ -25,6 +25,7 @@ void FlightBound::look(const double* x, const double* e) {
   for (int k = 0; k < drives_; ++k)
     for (int l = 0; l < drives_; ++l) turned[k] += turn_(k, l) * e[l];
   for (Watched& watched : watches_) {
+    watched.paced = false;
     kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, watched.now.data());
     kernels.row(modes_, slots_, drives_, watched.change.data(), x, e, watched.step.data());
     for (std::size_t j = 0; j < watched.amplitude.size(); ++j) {
@@ -96,54 +97,77 @@ FlightBound::Range FlightBound::cone(const Watched& watched, std::size_t point, 
   double sums[4];
   flight_kernels().reach(count, modes_, watched.points.data() + point * static_cast<std::size_t>(modes_) + first,
                          places_.data() + first, sums);
-  const double near = sums[0] + watched.offset[point], near_radius = sums[1] + more;
-  const double far = sums[2] + watched.offset[point] + k * watched.offset_step[point];
-  const double far_radius = sums[3] + more + 0.5 * k * (k - 1) * watched.offset_bend[point];
+  return around(watched, point, k, sums, 1, more);
+}
+
+FlightBound::Range FlightBound::around(const Watched& watched, std::size_t point, double k, const double* sums,
+                                       std::size_t stride, double more) const {
+  const double near = sums[0] + watched.offset[point], near_radius = sums[stride] + more;
+  const double far = sums[2 * stride] + watched.offset[point] + k * watched.offset_step[point];
+  const double far_radius = sums[3 * stride] + more + 0.5 * k * (k - 1) * watched.offset_bend[point];
   const double margin = slack * (std::abs(near) + std::abs(far) + near_radius + far_radius);
   return {std::min(near - near_radius, far - far_radius) - margin,
           std::max(near + near_radius, far + far_radius) + margin, margin};
 }
 
-// Whether a point stays strictly between its bounds; first by what the fast modes may add anywhere, which is one number
-// for all points and says enough of most of them.
+// Whether a point stays strictly between its bounds.
 bool FlightBound::inside(Watched& watched, std::size_t point, long long k) {
   const double lower = watched.watch.lower[point], upper = watched.watch.upper[point];
   if (lower == -infinity && upper == infinity) return true;
   place(watched, k);
-  split(watched);
-  const auto steps = static_cast<double>(k);
-  if (slow_to_ - slow_from_ < few_slow * modes_) {
-    const Range rough = cone(watched, point, steps, slow_from_, slow_to_ - slow_from_, fast_radius_);
-    if (rough.low > lower && rough.high < upper) return true;
-  }
-  const Range range = cone(watched, point, steps, 0, modes_, 0);
+  const Range range = cone(watched, point, static_cast<double>(k), 0, modes_, 0);
   return range.low > lower && range.high < upper;
+}
+
+// `see`(point) of each that may not stay there, until it says false; first all of them by what the fast modes may add
+// anywhere, which is one number and says enough of most.
+template <class See>
+bool FlightBound::see_exposed(Watched& watched, long long k, See&& see) {
+  const std::size_t points = watched.offset.size();
+  if (points == 0) return true;
+  place(watched, k);
+  split(watched);
+  const bool rough = slow_to_ - slow_from_ < few_slow * modes_;
+  const int first = rough ? slow_from_ : 0, count = rough ? slow_to_ - slow_from_ : modes_;
+  flight_kernels().reaches(count, modes_, static_cast<int>(points),
+                           watched.columns.data() + static_cast<std::size_t>(first) * points, places_.data() + first,
+                           reached_.data());
+  for (std::size_t i = 0; i < points; ++i) {
+    const double lower = watched.watch.lower[i], upper = watched.watch.upper[i];
+    const Range range =
+        around(watched, i, static_cast<double>(k), reached_.data() + i, points, rough ? fast_radius_ : 0);
+    if ((range.low > lower && range.high < upper) || (rough && inside(watched, i, k))) continue;
+    if (lower == -infinity && upper == infinity) continue;
+    if (!see(i)) return false;
+  }
+  return true;
 }
 
 bool FlightBound::holds(long long k) {
   if (k > longest_) return false;
   for (Watched& watched : watches_) {
-    const std::size_t points = watched.offset.size();
-    if (points == 0) continue;
+    if (watched.offset.empty()) continue;
     // The point that stopped the last flight is the first to ask.
     if (!inside(watched, watched.tightest, k)) return false;
-    for (std::size_t i = 0; i < points; ++i)
-      if (i != watched.tightest && !inside(watched, i, k)) {
-        watched.tightest = i;
-        return false;
-      }
+    const bool all = see_exposed(watched, k, [&](std::size_t point) {
+      watched.tightest = point;
+      return false;
+    });
+    if (!all) return false;
   }
   return true;
 }
 
 bool FlightBound::find_exposed(long long k, std::vector<WatchedPoint>& exposed, std::size_t most) {
   exposed.clear();
-  for (std::size_t w = 0; w < watches_.size(); ++w)
-    for (std::size_t i = 0; i < watches_[w].offset.size(); ++i) {
-      if (inside(watches_[w], i, k)) continue;
+  for (std::size_t w = 0; w < watches_.size(); ++w) {
+    const bool all = see_exposed(watches_[w], k, [&](std::size_t point) {
       if (exposed.size() == most) return false;
-      exposed.push_back({static_cast<int>(w), static_cast<int>(i)});
-    }
+      exposed.push_back({static_cast<int>(w), static_cast<int>(point)});
+      return true;
+    });
+    if (!all) return false;
+  }
   return true;
 }
 
@@ -153,23 +177,31 @@ FlightBound::Range FlightBound::range(int watch, int point, long long k) {
   return cone(watched, static_cast<std::size_t>(point), static_cast<double>(k), 0, modes_, 0);
 }
 
-// Of a share c λⁱ the change is |λ − 1| |c|: the root of its amplitude times its bend, as their sums have it at most.
+// Of a share c λⁱ the m-th difference is |λ − 1|ᵐ |c|: the first at most the root of its amplitude times its bend, as
+// their sums have it; the third and fourth by the fastest share.
 FlightBound::Pace FlightBound::pace(int watch, int point) {
   Watched& watched = watches_[static_cast<std::size_t>(watch)];
   const auto at = static_cast<std::size_t>(point);
-  if (!watched.grows.empty()) return {infinity, infinity, range(watch, point, 1).margin};
-  const double *h = row(watch, point), *amplitude = watched.amplitude.data(), *bend = watched.bend.data();
-  const double bent = watched.offset_bend[at], size = std::abs(watched.offset[at]),
-               turn = 2 * std::sin(drive_.angle / 2);
-  Pace pace{turn != 0 ? bent / std::abs(turn) : 0.0, bent, size};
-  for (int j = 0; j < modes_; ++j) {
-    const double weight = std::abs(h[j]);
-    pace.step += weight * std::sqrt(amplitude[j] * bend[j]);
-    pace.bend += weight * bend[j];
-    pace.margin += weight * amplitude[j];
+  if (!watched.grows.empty())
+    return {infinity, infinity, infinity, infinity, range(watch, point, 1).margin};
+  const auto n = static_cast<std::size_t>(modes_);
+  double* const paces = watched.paces.data();
+  if (!watched.paced) {
+    const double *amplitude = watched.amplitude.data(), *bend = watched.bend.data(), *swift = watched.swiftest.data();
+    for (std::size_t j = 0; j < n; ++j) {
+      paces[j] = amplitude[j];
+      paces[n + j] = std::sqrt(amplitude[j] * bend[j]);
+      paces[2 * n + j] = bend[j];
+      paces[3 * n + j] = bend[j] * swift[j];
+      paces[4 * n + j] = bend[j] * swift[j] * swift[j];
+    }
+    watched.paced = true;
   }
-  pace.margin *= slack;
-  return pace;
+  double sums[5];
+  flight_kernels().dots(modes_, 5, paces, watched.sizes.data() + at * n, sums);
+  const double bent = watched.offset_bend[at], turn = std::abs(2 * std::sin(drive_.angle / 2));
+  return {sums[1] + (turn != 0 ? bent / turn : 0.0), sums[2] + bent, sums[3] + turn * bent, sums[4] + turn * turn * bent,
+          slack * (sums[0] + std::abs(watched.offset[at]))};
 }
 
 double FlightBound::value(int watch, int point) {

@@ -56,6 +56,7 @@ void FlightMotion::double_table(const double* change, const double* turn, double
 }
 
 void FlightMotion::leap(int power, double* x, double* e) const {
+  if (slots_ <= FlightKernels::in_place) return leap_to(power, x, e, x);
   leap_to(power, x, e, next_.data());
   std::copy(next_.begin(), next_.end(), x);
 }

@@ -1,10 +1,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/algebra/constrained_modes.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
@@ -107,16 +105,24 @@ MatrixXd FlightSet::onto(const MatrixXd& points) const {
   return held_.empty() ? points : MatrixXd(points * basis_);
 }
 
-void FlightSet::hold(const Program& program) {
+void FlightSet::hold(const Program& program, const FlightSet* twin) {
+  apart_.resize(static_cast<Index>(held_.size()), slots_);
+  if (twin) {
+    held_rows_ = twin->held_rows_;
+    held_mass_ = twin->held_mass_;
+    basis_ = twin->basis_;
+    basis_rows_ = twin->basis_rows_;
+    settle_ = twin->settle_;
+    lever_ = twin->lever_;
+    return;
+  }
   const MatrixXd H = dense(program.model->contact(), rows_);
   held_rows_.resize(static_cast<Index>(held_.size()), rows_);
   for (std::size_t i = 0; i < held_.size(); ++i) held_rows_.row(static_cast<Index>(i)) = H.row(held_[i].point);
   // K = 1 in these coordinates.
-  const Eigen::HouseholderQR<MatrixXd> qr(held_rows_.transpose());
-  const MatrixXd Q = qr.householderQ();
-  const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
-  const SymmetricModes modes = symmetric_modes(null.transpose() * own_mass_.asDiagonal() * null);
-  basis_ = null * modes.vectors;
+  ConstrainedModes modes = constrained_modes(own_mass_, held_rows_);
+  basis_ = std::move(modes.basis);
+  held_mass_ = std::move(modes.mass);
   basis_rows_ = basis_.transpose();
   // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
   // a static lever would move the whole structure by it.
@@ -125,12 +131,12 @@ void FlightSet::hold(const Program& program) {
       (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
   settle_ = basis_.transpose() * response *
             (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
-  apart_.resize(held_rows_.rows(), slots_);
   lever_ = held_rows_.transpose() *
            (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
 }
 
-FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers)
+FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,
+                     const FlightSet* twin)
     : held_(std::move(held)), rows_(program.model->rows()), slots_(static_cast<int>(program.plan.slots.size())) {
   const bool holds = !held_.empty();
   for (const auto& [position, velocity] : program.plan.initial)
@@ -139,20 +145,17 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
   own_mass_ = program.model->inertia().mass.diagonal();
   VectorXd mass = own_mass_;
   if (holds) {
-    hold(program);
+    hold(program, twin);
     if (!rest(program)) {
       cause_ = "the scheme never rests at a stop";
       return;
     }
-    mass = (basis_.transpose() * own_mass_.asDiagonal() * basis_).diagonal().cwiseMax(0);
+    mass = held_mass_;
     // What holds of the structure's own massless modes holds of these.
     const double most = mass.maxCoeff(), nothing = 1e-14;
     const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - held_rows_.rows();
-    std::vector<Index> order(static_cast<std::size_t>(mass.size()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return mass[a] < mass[b]; });
     for (Index k = 0; k < massless; ++k)
-      if (double& light = mass[order[static_cast<std::size_t>(k)]]; light <= nothing * most) light = 0;
+      if (mass[k] <= nothing * most) mass[k] = 0;
   }
   modes_ = static_cast<int>(mass.size());
   for (int j = 0; j < slots_; ++j) {

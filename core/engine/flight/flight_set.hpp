@@ -19,8 +19,9 @@ namespace ricochet {
 class FlightSet {
  public:
   /// `program` marches one lane in modal coordinates; its `lanes.front()` says where the stops are. `layer` (m): the
-  /// law acts from so far before them.
-  FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers);
+  /// law acts from so far before them. `twin`: one that holds the same points, on whatever side; their modes are one.
+  FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,
+            const FlightSet* twin = nullptr);
 
   /// Why this motion cannot fly; empty where it can.
   const std::string& cause() const { return cause_; }
@@ -55,7 +56,7 @@ class FlightSet {
   /// Loads and the like in these modes, and rows of points.
   Eigen::MatrixXd project(const Eigen::MatrixXd& all) const;
   Eigen::MatrixXd onto(const Eigen::MatrixXd& points) const;
-  void hold(const Program& program);
+  void hold(const Program& program, const FlightSet* twin);
   bool rest(const Program& program);
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
@@ -69,6 +70,7 @@ class FlightSet {
   std::string cause_;
   std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
   Eigen::VectorXd own_mass_;    // M of the structure's modes
+  Eigen::VectorXd held_mass_;   // ΨᵀMΨ
   Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
   Eigen::MatrixXd basis_rows_;  // Ψᵀ
   Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹

@@ -15,19 +15,27 @@ class StepReadings {
 
   /// `step` ≤ block steps after (x, e).
   double operator()(int step, const double* x, const double* e) const;
+  /// It in each of the first `steps` ≤ block steps.
+  void first(int steps, const double* x, const double* e, double* out) const;
+  /// Its value in the step that begins now, and its first, second and third differences over those that follow: by h r,
+  /// h r D, h r D² and h r D³, so that what they differ by is not lost in their sizes.
+  void differences(const double* x, const double* e, double out[4]) const;
   /// `see`(value) in each of `steps` steps from (x, e) on, which go on to where the last block ends.
   template <class See>
   void each(const FlightMotion& motion, long long steps, double* x, double* e, See&& see) const {
     for (long long first = 0; first < steps; first += block) {
       const int count = static_cast<int>(std::min<long long>(block, steps - first));
-      for (int step = 0; step < count; ++step) see((*this)(step, x, e));
+      double values[block];
+      this->first(count, x, e, values);
+      for (int step = 0; step < count; ++step) see(values[step]);
       motion.advance(block, x, e);
     }
   }
 
  private:
   int size_, drives_;
-  std::vector<double> weights_, drive_;  // of each step: slots × modes, drives
+  std::vector<double> weights_, drive_;                      // of each step: slots × modes, drives
+  std::vector<double> difference_weights_, difference_drive_;  // of each difference
 };
 
 }  // namespace ricochet

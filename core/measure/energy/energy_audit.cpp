@@ -233,7 +233,7 @@ void EnergyAudit::step_done(Marcher& marcher) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (marcher.program().contact) {
-      state.penetration = ends_measured_ && !state.touched ? 0 : marcher.penetration(lane);
+      state.penetration = ends_measured_ && !state.touched ? 0 : marcher.penetration(lane, ends_measured_);
       state.contact.deepest_penetration = std::max(state.contact.deepest_penetration, state.penetration);
     }
     state.since += state.step;
