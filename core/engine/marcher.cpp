@@ -68,7 +68,7 @@ Marcher::Marcher(Program program)
   connect_works();
   connect_tests();
   for (const auto& state : stage_states_)
-    quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()) + 1);
+    quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()));
 }
 
 // Which stage's work each gives back.
