@@ -94,12 +94,12 @@ void turn(VectorXd& c, MatrixXd& basis, Index i, Index j) {
   c[j] = size;
 }
 
-// One row more, over columns `basis` of ascending masses.
-void constrain(ConstrainedModes& modes, const Eigen::RowVectorXd& row) {
+// One row more, over columns `basis` of ascending masses; `plain`: they are those of the unit matrix.
+void constrain(ConstrainedModes& modes, const Eigen::RowVectorXd& row, bool plain) {
   VectorXd& mass = modes.mass;
   MatrixXd& basis = modes.basis;
   const Index n = mass.size();
-  VectorXd c = (row * basis).transpose();
+  VectorXd c = plain ? VectorXd(row.transpose()) : VectorXd((row * basis).transpose());
   const double least = nothing * c.norm();
   std::vector<Index> seen, kept;  // columns that the row sees, and those that stay
   for (Index j = 0; j < n; ++j) {
@@ -109,6 +109,7 @@ void constrain(ConstrainedModes& modes, const Eigen::RowVectorXd& row) {
     }
     if (!seen.empty() && mass[j] - mass[seen.back()] <= coincide * mass[j]) {
       turn(c, basis, seen.back(), j);
+      plain = false;
       kept.push_back(seen.back());
       seen.pop_back();
     }
@@ -130,10 +131,15 @@ void constrain(ConstrainedModes& modes, const Eigen::RowVectorXd& row) {
     found[k] = zeros.value(k);
     vectors.col(k) = (exact / zeros.from_all(k)).matrix().normalized();
   }
-  const MatrixXd moved = basis(Eigen::all, seen) * vectors, left = basis(Eigen::all, kept);
+  MatrixXd moved = MatrixXd::Zero(basis.rows(), count);
+  if (plain)
+    for (Index k = 0; k <= count; ++k) moved.row(seen[static_cast<std::size_t>(k)]) = vectors.row(k);
+  else
+    moved = basis(Eigen::all, seen) * vectors;
+  const MatrixXd left = basis(Eigen::all, kept);
   const VectorXd left_mass = mass(kept);
   mass.resize(n - 1);
-  basis.resize(Eigen::NoChange, n - 1);
+  basis.resize(basis.rows(), n - 1);
   for (Index at = 0, k = 0, l = 0; at < n - 1; ++at) {
     const bool next_moved = l == left_mass.size() || (k < count && found[k] < left_mass[l]);
     mass[at] = next_moved ? found[k] : left_mass[l];
@@ -151,9 +157,12 @@ ConstrainedModes constrained_modes(const VectorXd& mass, const MatrixXd& rows) {
   std::vector<Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return mass[a] < mass[b]; });
-  ConstrainedModes modes{mass(order), MatrixXd::Zero(n, n)};
-  for (Index j = 0; j < n; ++j) modes.basis(order[static_cast<std::size_t>(j)], j) = 1;
-  for (Index i = 0; i < rows.rows(); ++i) constrain(modes, rows.row(i));
+  const MatrixXd sorted = rows(Eigen::all, order);
+  ConstrainedModes modes{mass(order), MatrixXd::Identity(n, n)};
+  for (Index i = 0; i < rows.rows(); ++i) constrain(modes, sorted.row(i), i == 0);
+  const MatrixXd basis = std::move(modes.basis);
+  modes.basis.resize(basis.rows(), basis.cols());
+  for (Index i = 0; i < n; ++i) modes.basis.row(order[static_cast<std::size_t>(i)]) = basis.row(i);
   return modes;
 }
 

@@ -84,17 +84,27 @@ bool Marcher::may_be_beyond(See&& see) const {
     efforts[k] = program.reach * state.effort[0].at(pushing_[k], 0);
   }
   const double *free = state.free.data(), *lower = lower_.data(), *upper = upper_.data();
-  double largest = 0;
-  for (int i = 0; i < points; ++i) largest = std::max(largest, std::abs(free[i]));
-  for (int i = 0; i < points; ++i) {
-    double place = free[i], moved = 0;
-    for (std::size_t k = 0; k < pushing_.size(); ++k) {
-      const double more = efforts[k] * columns[k][i];
-      place += more;
-      moved += std::abs(more);
+  const double largest = Eigen::Map<const Eigen::ArrayXd>(free, points).abs().maxCoeff();
+  constexpr int some = 16;
+  for (int first = 0; first < points; first += some) {
+    const int count = std::min(some, points - first);
+    double place[some], near[some], gap[some];
+    for (int i = 0; i < count; ++i) {
+      place[i] = free[first + i];
+      near[i] = round_off * largest;
     }
-    const double near = round_off * (largest + moved);
-    if (!(place - near > lower[i] && place + near < upper[i])) see(i);
+    for (std::size_t k = 0; k < pushing_.size(); ++k)
+      for (int i = 0; i < count; ++i) {
+        const double more = efforts[k] * columns[k][first + i];
+        place[i] += more;
+        near[i] += round_off * std::abs(more);
+      }
+    for (int i = 0; i < count; ++i) {
+      const double below = place[i] - lower[first + i], above = upper[first + i] - place[i];
+      gap[i] = (below < above ? below : above) - near[i];
+    }
+    for (int i = 0; i < count; ++i)
+      if (!(gap[i] > 0)) see(first + i);
   }
   return true;
 }

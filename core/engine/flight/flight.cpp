@@ -10,7 +10,7 @@ constexpr long long longest_wait = 64;  // steps between two looks that found no
 constexpr long long at_once = 32, soon_read = 256;
 // Steps that are marched between two looks after which points had to be followed; readings that cost what a step does.
 constexpr long long longest_march = 16384, readings_of_step = 8;
-constexpr long long modes_of_step = 20;  // n² numbers in the tables of a set that cost what a step does
+constexpr long long modes_of_step = 30;  // n² numbers in the tables of a set that cost what a step does
 constexpr long long brief = 8;           // steps in contact that are marched before any is left out
 
 }  // namespace
@@ -134,7 +134,7 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   most = std::min(most, set->motion().longest());
   const auto fails = [&] {
     pace->wait = pace->penalty;
-    pace->penalty = std::min(2 * pace->penalty, longest_wait);
+    pace->penalty = std::clamp<long long>(2 * pace->penalty, 1, longest_wait);
     return 0LL;
   };
   std::copy_n(e, 3, start_.e);
@@ -147,7 +147,7 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   // What is reached is known to the step: until then there is nothing to look for.
   if (k < most) pace->wait = k < least ? k + 1 : 1;
   if (k < 0) return fails();
-  pace->penalty = 1;
+  pace->penalty = 0;
   if (k < least) return 0;
   // Points that are near a bound in nearly every step cost as much to follow as steps that are marched: those come
   // next.

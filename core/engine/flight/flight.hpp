@@ -94,7 +94,7 @@ class Flight {
 
   struct Pace {
     long long next = 16;  // steps to ask for first
-    long long wait = 0, penalty = 1;
+    long long wait = 0, penalty = 0;  // steps between two looks
     long long dear = 0;  // steps to march after one that cost as much as marching
   };
   struct Kept {

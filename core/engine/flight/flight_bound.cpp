@@ -24,6 +24,28 @@ std::size_t place(Index row, int modes, int mode) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(modes) + static_cast<std::size_t>(mode);
 }
 
+// Of a 2 × 2 matrix, in closed form: λ = ½ tr ± √(¼ (a − d)² + b c), and the longer row of A − λ turned.
+GeneralModes modes_of_two(const MatrixXd& A) {
+  const double half = 0.5 * (A(0, 0) + A(1, 1)), apart = 0.5 * (A(0, 0) - A(1, 1)), product = A(0, 1) * A(1, 0);
+  const Complex root = std::sqrt(Complex(apart * apart + product));
+  GeneralModes modes{Eigen::VectorXcd(2), MatrixXcd(2, 2), true};
+  // The root of the larger sum first, the other by the determinant where nothing is lost by it.
+  modes.values << half + root, half - root;
+  if (root.imag() == 0) {
+    const Complex large = half >= 0 ? half + root : half - root, determinant = A(0, 0) * A(1, 1) - product;
+    if (large != 0.0) modes.values << large, determinant / large;
+  }
+  for (Index l = 0; l < 2; ++l) {
+    const Complex first = A(0, 0) - modes.values[l], last = A(1, 1) - modes.values[l];
+    if (std::abs(first) + std::abs(A(0, 1)) >= std::abs(last) + std::abs(A(1, 0)))
+      modes.vectors.col(l) << -A(0, 1), first;
+    else
+      modes.vectors.col(l) << last, -A(1, 0);
+    if (modes.vectors.col(l).isZero(0)) modes.vectors(l, l) = 1;
+  }
+  return modes;
+}
+
 // Of unit columns; of two it is √((1 + c)/(1 − c)) with c = |v₁ᴴv₂|.
 double condition(const MatrixXcd& V) {
   if (V.cols() < 2) return 1;
@@ -130,7 +152,7 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   MatrixXd scaled = D;
   // What is kept is the change of a step: its entries are small by the step, not by round-off.
   const Eigen::VectorXd scale = balance(scaled, 0);
-  const GeneralModes modes = general_modes(scaled);
+  const GeneralModes modes = slots_ == 2 ? modes_of_two(scaled) : general_modes(scaled);
   if (!modes.found) {
     cause_ = "the roots of a step are not found";
     return found;
