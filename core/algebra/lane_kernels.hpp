@@ -55,6 +55,19 @@ struct PointTest {
   std::uint32_t outside = 0;  ///< a bit for each lane that is beyond a bound or not a number
 };
 
+/// What a free step of one lane adds up besides, of s = z + ratio·x_1 while its rows are at hand:
+///
+///     form = Σ_i d_i (s_i + Σ_j l_ji s_{i+j})²        projection = Σ_i h_i s_i
+///
+/// The sums are rounded otherwise than CombinedForm's; z has the bits that it has without.
+struct SquareSum {
+  const double* fours = nullptr;  ///< l, d and h as CombinedForm::Packed: j = 1 … 3 by nodes, no l in modes
+  const double* x = nullptr;      ///< x_1
+  double ratio = 0;
+  bool ones = false;  ///< in modes: every d is 1
+  double form = 0, projection = 0;
+};
+
 /// The step of a BandStep whose rows come by nodes: two dofs each (deflection and rotation of Hermite elements) or,
 /// with `border`, an unknown of the border between them, every node coupled with its neighbours alone. The operations
 /// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the bits are the
@@ -77,6 +90,7 @@ struct NodeStep {
   const int* point = nullptr;               ///< per node: the point at its deflection, −1: none
   const double* value = nullptr;            ///< per node: its entry of H
   bool everywhere = false;                  ///< whether the points are those of all nodes
+  SquareSum* sum = nullptr;                 ///< T = 1 alone; null: nothing is added up
 };
 
 /// The step of a diagonal operator with update and test of one point: z as by diagonal_step of two slots.
@@ -89,6 +103,7 @@ struct ModeStep {
   const IncrementUpdate* update = nullptr;
   PointTest* test = nullptr;
   const double* value = nullptr;  ///< rows: the point's row of H
+  SquareSum* sum = nullptr;       ///< T = 1 alone; null: nothing is added up
 };
 
 /// A row-compressed matrix with few columns per row (H, B).

@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/algebra/lane_squares.hpp>
 #include <ricochet/algebra/lane_vectors.hpp>
 
 /// \file
@@ -55,8 +56,9 @@ RICOCHET_INLINE void modes_of(const ModeStep& step, long first) {
 }
 
 // One lane: by vectors of four modes; the sum of the point takes them one by one, as for any number of lanes.
-template <bool Update, bool Test>
+template <bool Update, bool Test, Weights weights>
 RICOCHET_INLINE void modes_alone(const ModeStep& step) {
+  constexpr bool Sum = weights != Weights::none;
   const double *of_q = step.coefficient, *of_d = of_q + (step.rows + 3) / 4 * 4, *of_scale = of_d + (of_d - of_q);
   double *q = nullptr, *d = nullptr;
   const double *x = step.x[0], *y = step.x[1], *last = nullptr, *value = step.value;
@@ -79,6 +81,8 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
     total += value[i] * sum;
     asm("" : "+x"(total));
   };
+  SquaresDown<weights> squares;
+  if constexpr (Sum) squares = SquaresDown<weights>(*step.sum);
   for (long i = 0; i < rows; i += 4) {
     Vector4 position, increment;
     if constexpr (Update) {
@@ -94,6 +98,7 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
     unknown += loadu4(of_q + i) * position;
     unknown += loadu4(of_d + i) * increment;
     *reinterpret_cast<Vector4*>(z + i) = unknown;
+    if constexpr (Sum) squares.add(rows - i, unknown, increment);
     if constexpr (Test) {
       Vector4 sum = Vector4{} + w0 * position;
       sum += w1 * increment;
@@ -104,6 +109,7 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
       if (i + 3 < rows) add(i + 3, sum[3]);
     }
   }
+  if constexpr (Sum) squares.finish(*step.sum);
   if constexpr (Test) {
     Inside<1> inside;
     step.test->y[0] = total;
@@ -115,7 +121,9 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
 template <int T, int G, bool Update, bool Test>
 RICOCHET_INLINE void modes_at(const ModeStep& step, long first) {
   if constexpr (T == 1)
-    modes_alone<Update, Test>(step);
+    !step.sum        ? modes_alone<Update, Test, Weights::none>(step)
+    : step.sum->ones ? modes_alone<Update, Test, Weights::ones>(step)
+                     : modes_alone<Update, Test, Weights::any>(step);
   else
     modes_of<T, G, Update, Test>(step, first);
 }

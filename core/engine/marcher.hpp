@@ -107,8 +107,11 @@ class Marcher {
   std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
   void connect_works();
   void connect_tests();
-  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
-                 bool may_wait);
+  void connect_sums(StepObserver* observer);
+  bool run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
+                 bool quiet, bool may_wait);
+  void keep_quiet(const StageState& state);
+  void tell_quiet(StepObserver* observer);
   void free_step(StageProgram& program, const Stage& plan, StageState& state);
   void combine_for(const StageProgram& program);
   static void find_pushed(const Block& effort, std::vector<int>& points);
@@ -193,6 +196,7 @@ class Marcher {
   std::vector<double> columns_;
   std::vector<double*> column_pointers_;
   std::vector<double* const*> column_slots_;
+  std::vector<QuietSteps::Step> quiet_steps_;  // of which the observer has not been told
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

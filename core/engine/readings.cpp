@@ -73,16 +73,20 @@ double Marcher::penetration(int lane) const {
   double deepest = 0;
   const auto see = [&](int j, double relative) {
     const double place = relative + phi;
-    deepest = std::max({deepest, lower[j] - place, place - upper[j]});
+    deepest = std::max(deepest, std::max(lower[j] - place, place - upper[j]));
   };
-  if (program_.flight && program_.width == 1) {
-    // The rows of one lane are dense where flights leave out steps.
+  if (program_.width == 1 && (program_.flight || !program_.model->modal())) {
     constexpr int some = 16;
+    constexpr double one = 1;
     double places[some];
     const int n = program_.model->rows();
     for (int first = 0; first < rows.rows(); first += some) {
       const int count = std::min(some, rows.rows() - first);
-      flight_kernels().dots(n, count, rows.value.data() + static_cast<std::ptrdiff_t>(first) * n, q, places);
+      if (program_.flight)  // the rows of one lane are dense where flights leave out steps
+        flight_kernels().dots(n, count, rows.value.data() + static_cast<std::ptrdiff_t>(first) * n, q, places);
+      else
+        kernels_.measure({count, rows.start.data() + first, rows.index.data(), rows.value.data()}, 1, &q, &one, nullptr,
+                         places);
       for (int j = 0; j < count; ++j) see(first + j, places[j]);
     }
     return deepest;

@@ -121,6 +121,9 @@ class BandOperator final : public StageOperator {
   bool takes_points(const LaneRows& rows) override {
     return !nodes_.empty() && slots_ == 2 && nodes_.place_points(rows);
   }
+  std::optional<int> sums_squares() const override {
+    return !nodes_.empty() && slots_ == 2 && lanes_ == 1 ? std::optional(3) : std::nullopt;
+  }
 
   void free_step(const FreeStepInput& input) override {
     if (!nodes_.empty() && !input.load) return step_by_nodes(input);
@@ -156,6 +159,7 @@ class BandOperator final : public StageOperator {
     step.r = border_.data();
     step.update = input.update;
     step.test = input.test;
+    step.sum = input.sum;
     kernels_.node_step(step);
   }
 

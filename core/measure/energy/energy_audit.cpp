@@ -242,8 +242,41 @@ void EnergyAudit::step_done(Marcher& marcher) {
     const double worked = std::abs(state.step.loads) + std::abs(state.step.damping) + std::abs(state.step.contact) +
                           std::abs(state.step.scheme);
     if (state.looking) look(marcher, lane);
-    state.look_next = !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
+    state.look_next = alarms(state, worked);
   }
+}
+
+long long EnergyAudit::next_shown(const Marcher& marcher) {
+  const Lane& state = lanes_.front();
+  const bool contact = marcher.program().contact;
+  const bool seldom = looks_ == Looks::seldom && state.balanced && state.has_scheme && !state.look_next;
+  if (!seldom || !works_.squares_alone() || memory_ > 1) return 0;
+  if (contact && !(ends_measured_ && state.still)) return 0;
+  const long long step = marcher.step(), look = (step / Marcher::check_interval + 1) * Marcher::check_interval;
+  return asked_ > step ? std::min(asked_, look) : look;
+}
+
+void EnergyAudit::quiet(const Marcher& /*marcher*/, const QuietSteps& steps) {
+  Lane& state = lanes_.front();
+  double most = 0;
+  for (const QuietSteps::Step& step : steps.steps) {
+    Works works;
+    works_.add(step, works);
+    state.since.loads += works.loads;
+    state.since.damping += works.damping;
+    state.gain = std::max(state.gain, works.gain());
+    most = std::max(most, std::abs(works.loads) + std::abs(works.damping));
+  }
+  const int count = static_cast<int>(steps.steps.size());
+  state.steps += count;
+  state.quiet += count;
+  state.penetration = 0;
+  state.look_next = alarms(state, most);
+}
+
+// Whether that much may be the beginning of a lane that blows up.
+bool EnergyAudit::alarms(const Lane& state, double worked) {
+  return !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
 }
 
 void EnergyAudit::look(Marcher& marcher, int lane) {

@@ -85,11 +85,16 @@ class EnergyAudit final : public StepObserver {
   void look_after(long long step) { asked_ = step; }
   void look_at_every_step() { looks_ = Looks::every_step; }
 
+  SquareSum* squares(int stage) override { return works_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
   /// Any number, where the scheme has an energy of its own whose balance no step can gain by.
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  /// The next step whose energies are read, where the squares that a step adds up are all that its works ask without
+  /// contact.
+  long long next_shown(const Marcher& marcher) override;
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override;
 
   const EnergySample& energy(int lane) const { return lanes_[static_cast<std::size_t>(lane)].now; }
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }
@@ -136,6 +141,7 @@ class EnergyAudit final : public StepObserver {
   void start_balance(const StageView& view, int lane);
   void follow_position(const StageView& view, int lane, bool moves);
   double tip_increment(const Marcher& marcher, int lane) const;
+  static bool alarms(const Lane& state, double worked);
   void look(Marcher& marcher, int lane);
   void confirm(Lane& state, double scheme, bool flown);
   void count_contact(const StageView& view, int lane);
