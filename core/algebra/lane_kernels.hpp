@@ -106,6 +106,25 @@ struct ModeStep {
   SquareSum* sum = nullptr;       ///< T = 1 alone; null: nothing is added up
 };
 
+/// L or Lᵀ without its diagonal, by rows.
+struct SparseFactorRows {
+  const int* start = nullptr;  ///< rows + 1
+  const int* index = nullptr;
+  const double* value = nullptr;
+};
+
+/// S z = b with S = L D Lᵀ sparse, all lanes in one pass over the factor.
+struct SparseStep {
+  int rows = 0;  ///< of the factor
+  SparseFactorRows lower, upper;
+  const double* inverse = nullptr;  ///< 1/D
+  const int* from = nullptr;        ///< row of b for each row of the factor, −1: zero
+  const int* to = nullptr;          ///< row of z for each row of the factor, −1: none
+  const double* b = nullptr;
+  double* work = nullptr;  ///< rows × T
+  double* z = nullptr;
+};
+
 /// A row-compressed matrix with few columns per row (H, B).
 struct LaneRows {
   int rows = 0;
@@ -128,6 +147,7 @@ struct LaneKernels {
   void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
                         double* z);
   void (*mode_step)(const ModeStep& step);
+  void (*sparse_step)(const SparseStep& step);
   /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset
   /// may be null.
   void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,
