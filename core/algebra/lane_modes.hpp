@@ -1,6 +1,7 @@
 #pragma once
 #include <ricochet/algebra/lane_squares.hpp>
 #include <ricochet/algebra/lane_vectors.hpp>
+#include <type_traits>
 
 /// \file
 /// The free step of modes, see ModeStep: a mode is read and written once per step.
@@ -83,7 +84,8 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
   };
   SquaresDown<weights> squares;
   if constexpr (Sum) squares = SquaresDown<weights>(*step.sum);
-  for (long i = 0; i < rows; i += 4) {
+  // Four modes, all of them there but for the last ones.
+  const auto four = [&](auto all, long i) __attribute__((always_inline)) {
     Vector4 position, increment;
     if constexpr (Update) {
       increment = load4(d + i) + load4(last + i);
@@ -98,17 +100,20 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
     unknown += loadu4(of_q + i) * position;
     unknown += loadu4(of_d + i) * increment;
     *reinterpret_cast<Vector4*>(z + i) = unknown;
-    if constexpr (Sum) squares.add(rows - i, unknown, increment);
+    if constexpr (Sum) squares.add(all ? 4 : rows - i, unknown, increment);
     if constexpr (Test) {
       Vector4 sum = Vector4{} + w0 * position;
       sum += w1 * increment;
       sum += w2 * unknown;
       add(i, sum[0]);
-      if (i + 1 < rows) add(i + 1, sum[1]);
-      if (i + 2 < rows) add(i + 2, sum[2]);
-      if (i + 3 < rows) add(i + 3, sum[3]);
+      if (all || i + 1 < rows) add(i + 1, sum[1]);
+      if (all || i + 2 < rows) add(i + 2, sum[2]);
+      if (all || i + 3 < rows) add(i + 3, sum[3]);
     }
-  }
+  };
+  long i = 0;
+  for (; i + 4 <= rows; i += 4) four(std::true_type{}, i);
+  if (i < rows) four(std::false_type{}, i);
   if constexpr (Sum) squares.finish(*step.sum);
   if constexpr (Test) {
     Inside<1> inside;

@@ -39,7 +39,6 @@ Marcher::Marcher(Program program)
   touched_.reserve(static_cast<std::size_t>(T));
   pushed_.reserve(static_cast<std::size_t>(points));
   pushing_.reserve(static_cast<std::size_t>(points));
-  quiet_steps_.reserve(check_interval);
   pushes_.resize(static_cast<std::size_t>(points));
   scratch_.resize(static_cast<std::size_t>(std::max(rows, points)));
   if (program_.contact) {
@@ -185,7 +184,7 @@ void Marcher::start(StepObserver* observer) {
 long long Marcher::march(long long steps, StepObserver* observer) {
   const FlushDenormals flush;
   connect_sums(observer);
-  quiet_steps_.clear();
+  quiet_count_ = 0;
   // Steps of which only sums are kept: those of one lane and one stage, of which nothing else is known.
   const bool keeps = observer && program_.width == 1 && program_.stages.size() == 1 && !program_.flight;
   long long next_shown = keeps ? observer->next_shown(*this) : 0;
@@ -217,22 +216,14 @@ long long Marcher::march(long long steps, StepObserver* observer) {
   return steps;
 }
 
-// What an observer is told of a step that it need not see.
-void Marcher::keep_quiet(const StageState& state) {
-  QuietSteps::Step& step = quiet_steps_.emplace_back();
-  if (program_.support) clamp_.drive(0, step.sine, step.cosine);
-  if (!state.sum) return;
-  step.form = state.sum->form;
-  step.projection = state.sum->projection;
-}
-
+// What an observer is told of steps that it need not see.
 void Marcher::tell_quiet(StepObserver* observer) {
-  if (quiet_steps_.empty()) return;
+  if (quiet_count_ == 0) return;
   QuietSteps told;
-  told.steps = quiet_steps_;
+  told.steps = {quiet_steps_.data(), quiet_count_};
   told.last = static_cast<double>(step_ - 1) * program_.h;
+  quiet_count_ = 0;
   observer->quiet(*this, told);
-  quiet_steps_.clear();
 }
 
 void Marcher::combine_for(const StageProgram& program) {
@@ -291,7 +282,8 @@ bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   if (shown)
     show(state, z, *observer);
   else if (observer)
-    keep_quiet(state);
+    quiet_steps_[quiet_count_++] = {clamp_.sine(), clamp_.cosine(), state.sum ? state.sum->form : 0,
+                                    state.sum ? state.sum->projection : 0};
   // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());

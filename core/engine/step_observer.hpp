@@ -32,7 +32,7 @@ struct StageView {
 /// Steps of one lane in which no stop was looked at and that nobody was shown: what is known of each.
 struct QuietSteps {
   struct Step {
-    double sine = 0, cosine = 0;      ///< A sin(ωt + ψ) and A cos(ωt + ψ) of the clamp when it began, m
+    double sine = 0, cosine = 1;      ///< of ωt, when it began
     double form = 0, projection = 0;  ///< of the squares that the observer asked for; 0 where it asked for none
   };
   std::span<const Step> steps;

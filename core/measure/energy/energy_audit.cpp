@@ -111,15 +111,16 @@ double EnergyAudit::potential(const Marcher& marcher, const double* place, doubl
   return sum;
 }
 
-bool EnergyAudit::to_be_seen(const Lane& state, long long step) const {
-  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_ ||
-         step % Marcher::check_interval == 0;
+bool EnergyAudit::asks(const Lane& state, long long step) const {
+  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_;
 }
 
 void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane& state) {
   state.step = {};
   state.touched = view.starting;
-  state.looking = state.look_next || to_be_seen(state, marcher.step() + 1);
+  const long long step = marcher.step() + 1;
+  state.asked = asks(state, step);
+  state.looking = state.asked || state.look_next || step % Marcher::check_interval == 0;
   state.look_next = false;
 }
 
@@ -256,12 +257,12 @@ long long EnergyAudit::next_shown(const Marcher& marcher) {
   return asked_ > step ? std::min(asked_, look) : look;
 }
 
-void EnergyAudit::quiet(const Marcher& /*marcher*/, const QuietSteps& steps) {
+void EnergyAudit::quiet(const Marcher& marcher, const QuietSteps& steps) {
   Lane& state = lanes_.front();
   double most = 0;
   for (const QuietSteps::Step& step : steps.steps) {
     Works works;
-    works_.add(step, works);
+    works_.add(marcher, step, works);
     state.since.loads += works.loads;
     state.since.damping += works.damping;
     state.gain = std::max(state.gain, works.gain());
@@ -283,7 +284,8 @@ void EnergyAudit::look(Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const double t = marcher.time();
   const EnergySample sample = this->sample(marcher, lane);
-  state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
+  if (state.asked)
+    state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
   confirm(state, sample.scheme, false);
   state.now = state.energy.last = sample;
   const double energy = sample.common();

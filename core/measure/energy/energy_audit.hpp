@@ -105,7 +105,7 @@ class EnergyAudit final : public StepObserver {
   double penetration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].penetration; }
   /// Whether the plan declares a work form: without, the works and the balance are not known.
   bool balances() const { return balances_; }
-  /// Δu_tip/Δt of the last sub-step, absolute, m/s.
+  /// Δu_tip/Δt of the last sub-step, absolute, m/s, of the last step whose energies were asked for.
   double tip_velocity(int lane) const;
 
  private:
@@ -125,10 +125,11 @@ class EnergyAudit final : public StepObserver {
     int steps = 0;     // how many
     int quiet = 0;     // stages since the last effort
     double penetration = 0;
-    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was looked at
+    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was asked for
     bool has_scheme = false;
     bool balanced = false;   // whether works are believed between looks
-    bool looking = true;     // at the step under way
+    bool asked = true;       // for the energies after the step under way
+    bool looking = true;     // at it, asked or not
     bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
     bool touched = false;    // whether the law looked at contact where the step ends
     bool still = false;      // no effort acts, none did at the instant before, and that has been counted
@@ -136,7 +137,7 @@ class EnergyAudit final : public StepObserver {
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
   EnergySample sample(const Marcher& marcher, int lane);
-  bool to_be_seen(const Lane& state, long long step) const;
+  bool asks(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
   void start_balance(const StageView& view, int lane);
   void follow_position(const StageView& view, int lane, bool moves);

@@ -40,11 +40,10 @@ class StageWorks {
     if (projected_) works.loads += marcher.support(lane, stage.sum_load) * stage.sum.projection;
   }
   /// The same of a step that was not shown, of a plan of one stage: where squares_alone().
-  void add(const QuietSteps::Step& step, Works& works) const {
+  void add(const Marcher& marcher, const QuietSteps::Step& step, Works& works) const {
     const StageTerms& stage = stages_.front();
     works.damping += stage.by_sum * step.form;
-    if (projected_)
-      works.loads += (stage.sum_load.along * step.sine + stage.sum_load.across * step.cosine) * step.projection;
+    if (projected_) works.loads += marcher.support(0, stage.sum_load, step) * step.projection;
   }
   /// Whether a step without contact asks nothing but its squares, or not even these.
   bool squares_alone() const { return squares_alone_; }
