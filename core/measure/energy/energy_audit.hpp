@@ -70,13 +70,14 @@ enum class Looks {
 };
 
 /// The energy audit. It adds up the works of every step, and looks at energies at every step or seldom; a march without
-/// it pays nothing. What energy() and totals() say is that of the last look. A lane whose common energy passes the
-/// marcher's bound is frozen where that is seen.
+/// it pays nothing. Where it looks seldom, steps that touch no stop need not be shown to it: the squares that a free
+/// step adds up say their works. What energy() and totals() say is that of the last look. A lane whose common energy
+/// passes the marcher's bound is frozen where that is seen.
 class EnergyAudit final : public StepObserver {
  public:
   static constexpr double confirmed = 1e-10;
-  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one looked at, so
-  /// that a lane that blows up is seen at once where something works in it.
+  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one that is shown
+  /// looked at, so that a lane that blows up is seen at once where stops work in it.
   static constexpr double alarming = 0.1;
 
   explicit EnergyAudit(const Marcher& marcher, Looks looks = Looks::every_step);
