@@ -122,9 +122,7 @@ const CombinedForm::Kernel* kernels_of() {
 
 CombinedForm::CombinedForm(const QuadraticForm& form, const double* h) : rows_(form.rows()) {
   const std::optional<QuadraticForm::Squares> squares = form.squares();
-  const bool ones = squares && squares->width == 0 &&
-                    std::all_of(squares->pivot, squares->pivot + rows_, [](double d) { return d == 1; });
-  const int width = ones ? unit : squares ? squares->width : 2;
+  const int width = form.unit() ? unit : squares ? squares->width : 2;
   kernels_ = width == unit ? kernels_of<unit>()
              : width == 0  ? kernels_of<0>()
              : width == 1  ? kernels_of<1>()
@@ -137,14 +135,22 @@ CombinedForm::CombinedForm(const QuadraticForm& form, const double* h) : rows_(f
     combined_ = Block(rows_, 1);
     return;
   }
-  const int groups = (rows_ + 3) / 4, stride = 4 * (width + 2);
-  fours_ = Block(groups * stride, 1);
-  for (int i = 0; i < rows_; ++i) {
-    double* row = fours_.data() + static_cast<std::ptrdiff_t>(i / 4) * stride + i % 4;
-    for (int s = 1; s <= width; ++s) row[4 * (s - 1)] = squares->upper[static_cast<std::ptrdiff_t>(s) * rows_ + i];
+  fours_ = packed(form, h, width);
+}
+
+Block CombinedForm::packed(const QuadraticForm& form, const double* h, int width) {
+  const std::optional<QuadraticForm::Squares> squares = form.squares();
+  const int rows = form.rows(), groups = (rows + 3) / 4, stride = 4 * (width + 2);
+  if (!squares || squares->width > std::max(width, 0)) return {};
+  Block fours(groups * stride, 1);
+  for (int i = 0; i < rows; ++i) {
+    double* row = fours.data() + static_cast<std::ptrdiff_t>(i / 4) * stride + i % 4;
+    for (int s = 1; s <= squares->width; ++s)
+      row[4 * (s - 1)] = squares->upper[static_cast<std::ptrdiff_t>(s) * rows + i];
     if (width >= 0) row[4 * width] = squares->pivot[i];
     if (h) row[4 * width + 4] = h[i];
   }
+  return fours;
 }
 
 // Another width, or factors.

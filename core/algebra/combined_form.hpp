@@ -33,6 +33,8 @@ class CombinedForm {
     int rows = 0;
     const double* fours = nullptr;
   };
+  /// These fours, zeros where A is narrower; empty where it is wider than W or no sum of squares.
+  static Block packed(const QuadraticForm& form, const double* h, int width);
   using Kernel = Value (*)(const Packed& packed, const double* const* x, const double* ratio, double* out);
 
  private:

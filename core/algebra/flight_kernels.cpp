@@ -84,8 +84,7 @@ RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const
         [](double* to, Wide value) { *reinterpret_cast<Loose*>(to) = value; });
   for (; j < n; ++j)
     leap(
-        j, [](const double* from) { return *from; },
-        [](double* to, double value) { *to = value; });
+        j, [](const double* from) { return *from; }, [](double* to, double value) { *to = value; });
 }
 
 // Any number of slots, by a pass for each; `out` is another place.
@@ -107,9 +106,8 @@ RICOCHET_BODY void leap_body(int n, int slots, int drives, const double* table, 
     return leap_slots<SLOTS, DRIVES>(n, table, x, e, out);
 #define RICOCHET_LEAPS(SLOTS) \
   RICOCHET_LEAP(SLOTS, 0) RICOCHET_LEAP(SLOTS, 1) RICOCHET_LEAP(SLOTS, 2) RICOCHET_LEAP(SLOTS, 3)
-    RICOCHET_LEAPS(1) RICOCHET_LEAPS(2) RICOCHET_LEAPS(3) RICOCHET_LEAPS(4)
-    default:
-      return leap_any(n, slots, drives, table, x, e, out);
+    RICOCHET_LEAPS(1)
+    RICOCHET_LEAPS(2) RICOCHET_LEAPS(3) RICOCHET_LEAPS(4) default : return leap_any(n, slots, drives, table, x, e, out);
   }
 }
 

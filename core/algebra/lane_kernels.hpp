@@ -55,6 +55,19 @@ struct PointTest {
   std::uint32_t outside = 0;  ///< a bit for each lane that is beyond a bound or not a number
 };
 
+/// What a free step of one lane adds up besides, of s = z + ratio·x_1 while its rows are at hand:
+///
+///     form = Σ_i d_i (s_i + Σ_j l_ji s_{i+j})²        projection = Σ_i h_i s_i
+///
+/// The sums are rounded otherwise than CombinedForm's; z has the bits that it has without.
+struct SquareSum {
+  const double* fours = nullptr;  ///< l, d and h as CombinedForm::Packed: j = 1 … 3 by nodes, no l in modes
+  const double* x = nullptr;      ///< x_1
+  double ratio = 0;
+  bool ones = false;  ///< in modes: every d is 1
+  double form = 0, projection = 0;
+};
+
 /// The step of a BandStep whose rows come by nodes: two dofs each (deflection and rotation of Hermite elements) or,
 /// with `border`, an unknown of the border between them, every node coupled with its neighbours alone. The operations
 /// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the bits are the
@@ -77,6 +90,7 @@ struct NodeStep {
   const int* point = nullptr;               ///< per node: the point at its deflection, −1: none
   const double* value = nullptr;            ///< per node: its entry of H
   bool everywhere = false;                  ///< whether the points are those of all nodes
+  SquareSum* sum = nullptr;                 ///< T = 1 alone; null: nothing is added up
 };
 
 /// The step of a diagonal operator with update and test of one point: z as by diagonal_step of two slots.
@@ -89,6 +103,26 @@ struct ModeStep {
   const IncrementUpdate* update = nullptr;
   PointTest* test = nullptr;
   const double* value = nullptr;  ///< rows: the point's row of H
+  SquareSum* sum = nullptr;       ///< T = 1 alone; null: nothing is added up
+};
+
+/// L or Lᵀ without its diagonal, by rows.
+struct SparseFactorRows {
+  const int* start = nullptr;  ///< rows + 1
+  const int* index = nullptr;
+  const double* value = nullptr;
+};
+
+/// S z = b with S = L D Lᵀ sparse, all lanes in one pass over the factor.
+struct SparseStep {
+  int rows = 0;  ///< of the factor
+  SparseFactorRows lower, upper;
+  const double* inverse = nullptr;  ///< 1/D
+  const int* from = nullptr;        ///< row of b for each row of the factor, −1: zero
+  const int* to = nullptr;          ///< row of z for each row of the factor, −1: none
+  const double* b = nullptr;
+  double* work = nullptr;  ///< rows × T
+  double* z = nullptr;
 };
 
 /// A row-compressed matrix with few columns per row (H, B).
@@ -113,6 +147,7 @@ struct LaneKernels {
   void (*diagonal_step)(int rows, int count, const double* coefficient, const double* const* x, const double* scale,
                         double* z);
   void (*mode_step)(const ModeStep& step);
+  void (*sparse_step)(const SparseStep& step);
   /// y[i] = Σ_e value[e] (Σ_j weight[j] x_j[index[e]]) + offset[lane], e over row i; count ≤ most_lane_terms; offset
   /// may be null.
   void (*measure)(const LaneRows& matrix, int count, const double* const* x, const double* weight, const double* offset,

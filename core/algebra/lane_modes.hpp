@@ -1,5 +1,7 @@
 #pragma once
+#include <ricochet/algebra/lane_squares.hpp>
 #include <ricochet/algebra/lane_vectors.hpp>
+#include <type_traits>
 
 /// \file
 /// The free step of modes, see ModeStep: a mode is read and written once per step.
@@ -55,8 +57,9 @@ RICOCHET_INLINE void modes_of(const ModeStep& step, long first) {
 }
 
 // One lane: by vectors of four modes; the sum of the point takes them one by one, as for any number of lanes.
-template <bool Update, bool Test>
+template <bool Update, bool Test, Weights weights>
 RICOCHET_INLINE void modes_alone(const ModeStep& step) {
+  constexpr bool Sum = weights != Weights::none;
   const double *of_q = step.coefficient, *of_d = of_q + (step.rows + 3) / 4 * 4, *of_scale = of_d + (of_d - of_q);
   double *q = nullptr, *d = nullptr;
   const double *x = step.x[0], *y = step.x[1], *last = nullptr, *value = step.value;
@@ -79,7 +82,10 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
     total += value[i] * sum;
     asm("" : "+x"(total));
   };
-  for (long i = 0; i < rows; i += 4) {
+  SquaresDown<weights> squares;
+  if constexpr (Sum) squares = SquaresDown<weights>(*step.sum);
+  // Four modes, all of them there but for the last ones.
+  const auto four = [&](auto all, long i) __attribute__((always_inline)) {
     Vector4 position, increment;
     if constexpr (Update) {
       increment = load4(d + i) + load4(last + i);
@@ -94,16 +100,21 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
     unknown += loadu4(of_q + i) * position;
     unknown += loadu4(of_d + i) * increment;
     *reinterpret_cast<Vector4*>(z + i) = unknown;
+    if constexpr (Sum) squares.add(all ? 4 : rows - i, unknown, increment);
     if constexpr (Test) {
       Vector4 sum = Vector4{} + w0 * position;
       sum += w1 * increment;
       sum += w2 * unknown;
       add(i, sum[0]);
-      if (i + 1 < rows) add(i + 1, sum[1]);
-      if (i + 2 < rows) add(i + 2, sum[2]);
-      if (i + 3 < rows) add(i + 3, sum[3]);
+      if (all || i + 1 < rows) add(i + 1, sum[1]);
+      if (all || i + 2 < rows) add(i + 2, sum[2]);
+      if (all || i + 3 < rows) add(i + 3, sum[3]);
     }
-  }
+  };
+  long i = 0;
+  for (; i + 4 <= rows; i += 4) four(std::true_type{}, i);
+  if (i < rows) four(std::false_type{}, i);
+  if constexpr (Sum) squares.finish(*step.sum);
   if constexpr (Test) {
     Inside<1> inside;
     step.test->y[0] = total;
@@ -115,7 +126,9 @@ RICOCHET_INLINE void modes_alone(const ModeStep& step) {
 template <int T, int G, bool Update, bool Test>
 RICOCHET_INLINE void modes_at(const ModeStep& step, long first) {
   if constexpr (T == 1)
-    modes_alone<Update, Test>(step);
+    !step.sum        ? modes_alone<Update, Test, Weights::none>(step)
+    : step.sum->ones ? modes_alone<Update, Test, Weights::ones>(step)
+                     : modes_alone<Update, Test, Weights::any>(step);
   else
     modes_of<T, G, Update, Test>(step, first);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <ricochet/algebra/lane_squares.hpp>
 #include <ricochet/algebra/lane_vectors.hpp>
 #include <ricochet/algebra/node_band.hpp>
 
@@ -214,7 +215,45 @@ RICOCHET_INLINE void test_points_alone(const NodeStep& step) {
   step.test->outside = outside_lanes<1, 1>(&rest, 0) | (outside_lanes<4, 1>(&inside, 0) != 0);
 }
 
-// Up the nodes: 1/D, backward substitution, measures.
+// 1/D and backward substitution of node a: w, r and t are those of the node after, then its own.
+template <int T, int G, bool Border>
+RICOCHET_INLINE void substitute_up(const NodeStep& step, long a, long first, const double* u, V<T>* w, V<T>* r,
+                                   V<T>* t) {
+  V<T> next_w[G], next_t[G];
+  V<T>*out_w = row<T>(step.z, 2 * a) + first, *out_t = row<T>(step.z, 2 * a + 1) + first;
+  divide<T, G>(out_t, u[0], next_t);
+  if constexpr (Border) {
+    V<T> next_r[G];
+    take<T, G>(u[1], t, next_t);
+    take<T, G>(u[2], r, next_t);
+    take<T, G>(u[3], w, next_t);
+    divide<T, G>(row<T>(step.r, a) + first, u[4], next_r);
+    take<T, G>(u[5], t, next_r);
+    take<T, G>(u[6], r, next_r);
+    take<T, G>(u[7], w, next_r);
+    take<T, G>(u[8], next_t, next_r);
+    divide<T, G>(out_w, u[9], next_w);
+    take<T, G>(u[10], t, next_w);
+    take<T, G>(u[11], r, next_w);
+    take<T, G>(u[12], w, next_w);
+    take<T, G>(u[13], next_t, next_w);
+    take<T, G>(u[14], next_r, next_w);
+    put<T, G>(next_r, r);
+  } else {
+    take<T, G>(u[1], t, next_t);
+    take<T, G>(u[2], w, next_t);
+    divide<T, G>(out_w, u[3], next_w);
+    take<T, G>(u[4], t, next_w);
+    take<T, G>(u[5], w, next_w);
+    take<T, G>(u[6], next_t, next_w);
+  }
+  put<T, G>(next_w, w);
+  put<T, G>(next_t, t);
+  put<T, G>(w, out_w);
+  put<T, G>(t, out_t);
+}
+
+// Up the nodes: backward substitution, measures.
 template <int T, int G, bool Border, bool Test, bool Begun>
 RICOCHET_INLINE void nodes_up(const NodeStep& step, long first) {
   constexpr int stride = node_up_stride(Border);
@@ -222,41 +261,40 @@ RICOCHET_INLINE void nodes_up(const NodeStep& step, long first) {
   Inside<T> inside[G];
   const double* u = step.up + static_cast<long>(step.nodes - 1) * stride;
   for (long a = step.nodes - 1; a >= 0; --a, u -= stride) {
-    V<T> next_w[G], next_t[G];
-    V<T>*out_w = row<T>(step.z, 2 * a) + first, *out_t = row<T>(step.z, 2 * a + 1) + first;
-    divide<T, G>(out_t, u[0], next_t);
-    if constexpr (Border) {
-      V<T> next_r[G];
-      take<T, G>(u[1], t, next_t);
-      take<T, G>(u[2], r, next_t);
-      take<T, G>(u[3], w, next_t);
-      divide<T, G>(row<T>(step.r, a) + first, u[4], next_r);
-      take<T, G>(u[5], t, next_r);
-      take<T, G>(u[6], r, next_r);
-      take<T, G>(u[7], w, next_r);
-      take<T, G>(u[8], next_t, next_r);
-      divide<T, G>(out_w, u[9], next_w);
-      take<T, G>(u[10], t, next_w);
-      take<T, G>(u[11], r, next_w);
-      take<T, G>(u[12], w, next_w);
-      take<T, G>(u[13], next_t, next_w);
-      take<T, G>(u[14], next_r, next_w);
-      put<T, G>(next_r, r);
-    } else {
-      take<T, G>(u[1], t, next_t);
-      take<T, G>(u[2], w, next_t);
-      divide<T, G>(out_w, u[3], next_w);
-      take<T, G>(u[4], t, next_w);
-      take<T, G>(u[5], w, next_w);
-      take<T, G>(u[6], next_t, next_w);
-    }
-    put<T, G>(next_w, w);
-    put<T, G>(next_t, t);
-    put<T, G>(w, out_w);
-    put<T, G>(t, out_t);
+    substitute_up<T, G, Border>(step, a, first, u, w, r, t);
     if constexpr (Test) test_point<T, G, Begun>(step, a, first, w, inside);
   }
   if constexpr (Test) step.test->outside |= outside_lanes<T, G>(inside, first);
+}
+
+// The same of one lane, with the sums of its squares: those of two nodes at once, in the time in which the substitution
+// waits for itself.
+template <bool Border, bool Test>
+RICOCHET_INLINE void nodes_up_summed(const NodeStep& step) {
+  constexpr int stride = node_up_stride(Border);
+  double w = 0, r = 0, t = 0;
+  Inside<1> inside;
+  SquaresUp<3> squares(*step.sum, (step.nodes + 1) / 2);
+  const double* u = step.up + static_cast<long>(step.nodes - 1) * stride;
+  const auto next = [&](long a) __attribute__((always_inline)) {
+    substitute_up<1, 1, Border>(step, a, 0, u, &w, &r, &t);
+    if constexpr (Test) test_point<1, 1, false>(step, a, 0, &w, &inside);
+    u -= stride;
+  };
+  long a = step.nodes - 1;
+  if (step.nodes % 2 == 1) {
+    next(a);
+    squares.add(Vector4{w, t, 0, 0}, Vector4{step.sum->x[2 * a], step.sum->x[2 * a + 1], 0, 0});
+    --a;
+  }
+  for (; a >= 0; a -= 2) {
+    next(a);
+    const double later_w = w, later_t = t;
+    next(a - 1);
+    squares.add(Vector4{w, t, later_w, later_t}, loadu4(step.sum->x + 2 * a - 2));
+  }
+  squares.finish(*step.sum);
+  if constexpr (Test) step.test->outside |= outside_lanes<1, 1>(&inside, 0);
 }
 
 template <int T, bool Border>
@@ -287,10 +325,13 @@ RICOCHET_INLINE void node_step_alone(const NodeStep& step) {
     nodes_down<1, 1, Border, true, false>(step, 0);
   else
     nodes_down_alone<Border>(step);
-  if (!step.test || step.everywhere)
-    nodes_up<1, 1, Border, false, false>(step, 0);
-  else
+  const bool points = step.test && !step.everywhere;
+  if (step.sum)
+    points ? nodes_up_summed<Border, true>(step) : nodes_up_summed<Border, false>(step);
+  else if (points)
     nodes_up<1, 1, Border, true, false>(step, 0);
+  else
+    nodes_up<1, 1, Border, false, false>(step, 0);
   if (step.test && step.everywhere) test_points_alone(step);
 }
 

@@ -121,6 +121,11 @@ std::optional<QuadraticForm::Squares> QuadraticForm::squares() const {
   return Squares{width_, diagonals_.data(), pivot_.data()};
 }
 
+bool QuadraticForm::unit() const {
+  return start_.empty() && width_ == 0 &&
+         std::all_of(diagonals_.begin(), diagonals_.end(), [](double d) { return d == 1; });
+}
+
 double QuadraticForm::operator()(const double* x) const {
   return (*this)(x, x);
 }

@@ -26,6 +26,8 @@ class QuadraticForm {
     const double* pivot = nullptr;  ///< d, n
   };
   std::optional<Squares> squares() const;
+  /// Whether A is the unit matrix.
+  bool unit() const;
 
  private:
   void reduce(const double* x, std::vector<double>& out) const;  // L⁻¹ B x

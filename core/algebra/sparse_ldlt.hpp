@@ -25,6 +25,14 @@ class SparseLdlt {
   /// true.
   void solve(const double* b, double* x);
 
+  /// L by columns without its diagonal (entries of column j from start()[j] to start()[j + 1]), D, and P: row j of L is
+  /// row order()[j] of A. For those who substitute by themselves.
+  const std::vector<int>& order() const { return order_; }
+  const std::vector<int>& start() const { return start_; }
+  const std::vector<int>& row() const { return row_; }
+  const std::vector<double>& value() const { return value_; }
+  const std::vector<double>& pivot() const { return pivot_; }
+
   /// n; 0 without factorisation.
   int size() const { return size_; }
   /// Entries of L below its diagonal: a solve costs four flops for each, and five for each unknown.

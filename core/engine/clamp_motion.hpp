@@ -24,10 +24,19 @@ class ClampMotion {
   }
   /// A sin(ωt + ψ) and A cos(ωt + ψ) of a lane, then.
   void drive(int lane, double& sine, double& cosine) const {
-    const double A = amplitude_.at(0, lane), c = cos_phase_.at(0, lane), s = sin_phase_.at(0, lane);
-    sine = A * (sine_ * c + cosine_ * s);
-    cosine = A * (cosine_ * c - sine_ * s);
+    sine = sine_;
+    cosine = cosine_;
+    turn(lane, sine, cosine);
   }
+  /// The same of another time, whose sin ωt and cos ωt are given.
+  void turn(int lane, double& sine, double& cosine) const {
+    const double A = amplitude_.at(0, lane), c = cos_phase_.at(0, lane), s = sin_phase_.at(0, lane);
+    const double of_time = sine;
+    sine = A * (of_time * c + cosine * s);
+    cosine = A * (cosine * c - of_time * s);
+  }
+  double sine() const { return sine_; }
+  double cosine() const { return cosine_; }
   /// Σ_k w_k A sin(ω(t + c_k h) + ψ), or its rate, per lane; `phase` holds the levels (w_k, c_k).
   void offsets(const PhaseWeights& phase, double* out, bool rate) const;
   /// ω² times the first of these: what the clamp's acceleration gives to a load.

@@ -8,24 +8,23 @@ namespace {
 
 // Nanoseconds per multiply-add, by block width 1, 2, 4, 8, 16, 32, as measured by `bench_march --calibrate` (AVX2,
 // Intel Xeon, 2.5 GHz). Substitution at one lane is bound by latency, not by throughput.
+// That through CHOLMOD's factor is from the benchmark's own rows: the sparse one less the band, and the substitution
+// that the band has in its place, over 700 multiply-adds.
 struct Rates {
-  double product, substitution, elementwise, diagonal, measure;
+  double product, substitution, sparse, elementwise, diagonal, measure;
 };
-// The same for CHOLMOD's factor, one lane at a time, from the benchmark's own rows: the sparse one (2455 ns) less the
-// band (1186 ns), and the substitution that the band has in its place, over 700 multiply-adds.
-constexpr double sparse_rate = 2.3;
 
 // What a stage costs besides, whatever its size: calls, the motion of the support, and, per step and per lane, the look
 // at the contact, closed now and then. What `bench_march` and `bench_decay` measure over their products and sums.
 constexpr double per_stage = 130, per_contact = 170, per_contact_lane = 25;
 
 Rates rates(int width) {
-  if (width == 1) return {0.16, 0.48, 0.08, 0.30, 0.34};
-  if (width == 2) return {0.20, 0.20, 0.07, 0.20, 0.17};
-  if (width == 4) return {0.12, 0.11, 0.063, 0.115, 0.098};
-  if (width == 8) return {0.081, 0.078, 0.058, 0.115, 0.073};
-  if (width == 16) return {0.067, 0.064, 0.10, 0.135, 0.089};
-  return {0.064, 0.118, 0.10, 0.125, 0.087};
+  if (width == 1) return {0.16, 0.48, 1.77, 0.08, 0.30, 0.34};
+  if (width == 2) return {0.20, 0.20, 0.90, 0.07, 0.20, 0.17};
+  if (width == 4) return {0.12, 0.11, 0.50, 0.063, 0.115, 0.098};
+  if (width == 8) return {0.081, 0.078, 0.32, 0.058, 0.115, 0.073};
+  if (width == 16) return {0.067, 0.064, 0.21, 0.10, 0.135, 0.089};
+  return {0.064, 0.118, 0.22, 0.10, 0.125, 0.087};
 }
 
 // A step in modes, and a look at what may come, as bench_flight measures them.
@@ -62,7 +61,7 @@ Cost predict_cost(OperatorKind kind, const SemiDiscrete& problem, const StepWork
     const double w = half_bandwidth(problem.stiffness);
     const double v = border > 0 ? w + 2 : w;
     nanoseconds += n * (2 * w + 1) * rate.product;
-    const double solve = kind == OperatorKind::sparse ? sparse_rate : rate.substitution;
+    const double solve = kind == OperatorKind::sparse ? rate.sparse : rate.substitution;
     if (inertia.inverted()) {
       const double r = half_bandwidth(inertia.inverse);
       nanoseconds += work.without_stiffness ? n * (2 * r + 1) * rate.product : 2 * n * (4 * std::max(w, r) + 1) * solve;

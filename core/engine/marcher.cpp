@@ -67,8 +67,7 @@ Marcher::Marcher(Program program)
   connect_efforts();
   connect_works();
   connect_tests();
-  for (const auto& state : stage_states_)
-    quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()));
+  for (const auto& state : stage_states_) quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()));
 }
 
 // Which stage's work each gives back.
@@ -96,6 +95,17 @@ void Marcher::connect_tests() {
   };
   for (std::size_t k = 0; k < start_states_.size(); ++k) connect(program_.start[k], *start_states_[k]);
   for (std::size_t k = 0; k < stage_states_.size(); ++k) connect(program_.stages[k], *stage_states_[k]);
+}
+
+// What the operators add up for the observer of a march: of unknowns that only efforts of the same stage may move.
+void Marcher::connect_sums(StepObserver* observer) {
+  for (std::size_t k = 0; k < stage_states_.size(); ++k) {
+    const StageProgram& program = program_.stages[k];
+    SquareSum*& sum = stage_states_[k]->sum;
+    const bool known = program.op && program.driven && program.effort.size() == 1 && !program_.load;
+    sum = observer && known && program.op->sums_squares() ? observer->squares(static_cast<int>(k)) : nullptr;
+    if (sum) sum->x = slots_[1];
+  }
 }
 
 // Storage of a stage, and its combinations as the kernels read them.
@@ -160,7 +170,8 @@ void Marcher::start(StepObserver* observer) {
   const FlushDenormals flush;
   clamp_.set_time(time());
   for (std::size_t k = 0; k < program_.start.size(); ++k)
-    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer, false);
+    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer, false,
+              false);
   keep_start_efforts();
   if (program_.plan.start_advances) {
     ++step_;
@@ -171,27 +182,47 @@ void Marcher::start(StepObserver* observer) {
 
 long long Marcher::march(long long steps, StepObserver* observer) {
   const FlushDenormals flush;
+  connect_sums(observer);
+  quiet_count_ = 0;
+  // Steps of which only sums are kept: those of one lane and one stage, of which nothing else is known.
+  const bool keeps = observer && program_.width == 1 && program_.stages.size() == 1 && !program_.flight;
+  long long next_shown = keeps ? observer->next_shown(*this) : 0;
   for (long long n = 0; n < steps; ++n) {
     if (program_.flight) n += fly(steps - n - 1, observer);
     if (program_.support) clamp_.set_time(time());
-    // Whether nobody looks at the slots between this step and the next.
-    const bool goes_on = !observer && !program_.flight && n + 1 < steps && (step_ + 1) % check_interval != 0;
+    // Whether nobody looks at the slots between this step and the next, and whether the observer need not see it.
+    const bool unchecked = (step_ + 1) % check_interval != 0, quiet = unchecked && step_ + 1 < next_shown;
+    const bool goes_on = (!observer || quiet) && !program_.flight && n + 1 < steps && unchecked;
+    bool shown = observer;
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
-      run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer, goes_on);
+      shown = run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer,
+                        quiet, goes_on);
     ++step_;
     ++visited_;
     if (clear_ > 0) --clear_;
-    if (observer) {
+    if (shown) {
       // Observers ask where the clamp is now; the next step begins here.
       if (program_.support) clamp_.set_time(time());
       observer->step_done(*this);
+      if (keeps) next_shown = observer->next_shown(*this);
     }
     if (step_ % check_interval == 0) {
       check_lanes();
       if (!any_running()) return n + 1;
     }
   }
+  tell_quiet(observer);
   return steps;
+}
+
+// What an observer is told of steps that it need not see.
+void Marcher::tell_quiet(StepObserver* observer) {
+  if (quiet_count_ == 0) return;
+  QuietSteps told;
+  told.steps = {quiet_steps_.data(), quiet_count_};
+  told.last = static_cast<double>(step_ - 1) * program_.h;
+  quiet_count_ = 0;
+  observer->quiet(*this, told);
 }
 
 void Marcher::combine_for(const StageProgram& program) {
@@ -228,13 +259,15 @@ void Marcher::free_step(StageProgram& program, const Stage& plan, StageState& st
     if (program_.support) clamp_.offsets(program.measure_phase, offset_.data(), false);
     input.test = &*state.test;
   }
+  input.sum = state.sum;
   input.load = distributed_load(plan.load, time());
   program.op->free_step(input);
   if (program_.tangents > 0 && input.load) remove_load(program, input.load);
 }
 
-void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
-                        bool may_wait) {
+// Whether the observer was shown the stage.
+bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
+                        bool quiet, bool may_wait) {
   const double* z = elastic_.data();
   if (program.op) {
     free_step(program, plan, state);
@@ -244,7 +277,12 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     // Nothing to solve: z = 0.
     elastic_.fill(0.0);
   }
-  if (observer) show(state, z, *observer);
+  const bool shown = observer && !(quiet && (state.touched_lanes | state.contact_lanes | frozen_now_) == 0);
+  if (shown)
+    show(state, z, *observer);
+  else if (observer)
+    quiet_steps_[quiet_count_++] = {clamp_.sine(), clamp_.cosine(), state.sum ? state.sum->form : 0,
+                                    state.sum ? state.sum->projection : 0};
   // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());
@@ -252,10 +290,10 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   if (!state.jumped && following.op && following.driven && following.op->keeps_combination() &&
       &program >= program_.stages.data() && &program < program_.stages.data() + program_.stages.size())
     next = &following;
-  if (may_wait && state.increments && !state.jumped && frozen_now_ == 0 && following.op && following.driven &&
+  if (may_wait && !shown && state.increments && !state.jumped && frozen_now_ == 0 && following.op && following.driven &&
       following.op->takes_update() && !program_.load) {
     waiting_ = z;
-    return;
+    return shown;
   }
   kernels_.update(static_cast<long>(combination_.size()), slot_count(), slots_.data(), z, state.update.data(),
                   next ? next->folded.stiffness_history.data() : nullptr, combination_.data());
@@ -263,6 +301,7 @@ void Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
   if (state.jumped) add_jump(state);
   // The unknown of a lane that froze during this stage was whatever stopped it.
   for (; frozen_now_ != 0; frozen_now_ &= frozen_now_ - 1) clear_lane(std::countr_zero(frozen_now_));
+  return shown;
 }
 
 // The points with an effort, in any lane.
@@ -297,6 +336,7 @@ StageView Marcher::view_of(bool starting, std::size_t index, const StageState& s
 
 // What the observer sees of a stage that has found z and p.
 void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
+  tell_quiet(&observer);
   StageView& view = state.view;
   const StageFacts& facts = view.program->facts;
   view.time = time();
@@ -304,6 +344,7 @@ void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
   view.to = view.time + facts.to * program_.h;
   view.z = z;
   view.w = state.jumped ? state.w.data() : nullptr;
+  view.sum = state.contact_lanes == 0 ? state.sum : nullptr;
   if (state.delassus) {
     view.effort = state.effort_pointers.data();
     view.efforts = static_cast<int>(state.effort_pointers.size());

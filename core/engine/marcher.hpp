@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <ricochet/engine/clamp_motion.hpp>
@@ -82,6 +83,12 @@ class Marcher {
     clamp_.drive(lane, sine, cosine);
     return phase.along * sine + phase.across * cosine;
   }
+  /// The same of a step that was not shown.
+  double support(int lane, const PhaseWeights& phase, const QuietSteps::Step& step) const {
+    double sine = step.sine, cosine = step.cosine;
+    clamp_.turn(lane, sine, cosine);
+    return phase.along * sine + phase.across * cosine;
+  }
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
@@ -109,8 +116,10 @@ class Marcher {
   std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
   void connect_works();
   void connect_tests();
-  void run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
-                 bool may_wait);
+  void connect_sums(StepObserver* observer);
+  bool run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
+                 bool quiet, bool may_wait);
+  void tell_quiet(StepObserver* observer);
   void free_step(StageProgram& program, const Stage& plan, StageState& state);
   void combine_for(const StageProgram& program);
   static void find_pushed(const Block& effort, std::vector<int>& points);
@@ -198,6 +207,8 @@ class Marcher {
   std::vector<double> columns_;
   std::vector<double*> column_pointers_;
   std::vector<double* const*> column_slots_;
+  std::array<QuietSteps::Step, check_interval> quiet_steps_;  // of which the observer has not been told
+  std::size_t quiet_count_ = 0;
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

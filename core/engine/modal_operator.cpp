@@ -50,8 +50,12 @@ class ModalOperator final : public StageOperator {
     return true;
   }
 
+  std::optional<int> sums_squares() const override {
+    return slots_ == 2 && lanes_ == 1 ? std::optional(0) : std::nullopt;
+  }
+
   void free_step(const FreeStepInput& input) override {
-    if (input.update || input.test) {
+    if (input.update || input.test || input.sum) {
       ModeStep step;
       step.rows = rows_;
       step.coefficient = lanes_ == 1 ? columns_.data() : coefficient_.data();
@@ -61,6 +65,7 @@ class ModalOperator final : public StageOperator {
       step.update = input.update;
       step.test = input.test;
       step.value = point_;
+      step.sum = input.sum;
       kernels_.mode_step(step);
       return;
     }

@@ -118,17 +118,27 @@ double Marcher::penetration(int lane, bool law_saw_end) const {
   double deepest = 0;
   const auto see = [&](int j, double relative) {
     const double place = relative + phi;
-    deepest = std::max({deepest, lower[j] - place, place - upper[j]});
+    deepest = std::max(deepest, std::max(lower[j] - place, place - upper[j]));
   };
-  if (program_.flight && program_.width == 1) {
-    const int n = program_.model->rows();
-    // The rows of one lane are dense where flights leave out steps: those of points that may be beyond are measured.
-    if (law_saw_end && may_be_beyond([&](int j) { see(j, flight_kernels().dot(n, rows.value.data() + static_cast<std::ptrdiff_t>(j) * n, q)); })) return deepest;
+  const int n = program_.model->rows();
+  const auto dense_row = [&](int j) { return rows.value.data() + static_cast<std::ptrdiff_t>(j) * n; };
+  if (program_.width == 1 && law_saw_end) {
+    const bool told = may_be_beyond([&](int j) {
+      see(j, program_.flight ? flight_kernels().dot(n, dense_row(j), q) : program_.model->times(rows, j, q));
+    });
+    if (told) return deepest;
+  }
+  if (program_.width == 1 && (program_.flight || !program_.model->modal())) {
     constexpr int some = 16;
+    constexpr double one = 1;
     double places[some];
     for (int first = 0; first < rows.rows(); first += some) {
       const int count = std::min(some, rows.rows() - first);
-      flight_kernels().dots(n, count, rows.value.data() + static_cast<std::ptrdiff_t>(first) * n, q, places);
+      if (program_.flight)  // the rows of one lane are dense where flights leave out steps
+        flight_kernels().dots(n, count, dense_row(first), q, places);
+      else
+        kernels_.measure({count, rows.start.data() + first, rows.index.data(), rows.value.data()}, 1, &q, &one, nullptr,
+                         places);
       for (int j = 0; j < count; ++j) see(first + j, places[j]);
     }
     return deepest;

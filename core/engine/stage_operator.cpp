@@ -2,7 +2,7 @@
 #include <cmath>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/node_band.hpp>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/algebra/sparse_substitution.hpp>
 #include <ricochet/algebra/weighted_system.hpp>
 #include <ricochet/engine/modal_operator.hpp>
 #include <ricochet/engine/stage_operator.hpp>
@@ -121,6 +121,9 @@ class BandOperator final : public StageOperator {
   bool takes_points(const LaneRows& rows) override {
     return !nodes_.empty() && slots_ == 2 && nodes_.place_points(rows);
   }
+  std::optional<int> sums_squares() const override {
+    return !nodes_.empty() && slots_ == 2 && lanes_ == 1 ? std::optional(3) : std::nullopt;
+  }
 
   void free_step(const FreeStepInput& input) override {
     if (!nodes_.empty() && !input.load) return step_by_nodes(input);
@@ -156,6 +159,7 @@ class BandOperator final : public StageOperator {
     step.r = border_.data();
     step.update = input.update;
     step.test = input.test;
+    step.sum = input.sum;
     kernels_.node_step(step);
   }
 
@@ -235,17 +239,23 @@ class InverseOperator final : public StageOperator {
   Block force_, history_, unknown_;
 };
 
-/// CHOLMOD's simplicial L D Lᵀ, one lane at a time (so that lanes stay independent of their number).
+/// CHOLMOD's simplicial L D Lᵀ, which all lanes are substituted through at once.
 class SparseOperator final : public StageOperator {
  public:
   SparseOperator(const MarchModel& model, const FoldedStage& stage, int lanes)
       : assembly_(model, stage, lanes), kernels_(lane_kernels(lanes)), lanes_(lanes), rows_(model.rows()) {}
 
   std::optional<std::string> factorise(const QuasiDefinite& matrix) {
-    const SparseMatrix whole = matrix.assemble(order_);
-    if (!ldlt_.factorise(whole)) return "the matrix of the step is singular (CHOLMOD: " + ldlt_.reason() + ")";
-    rhs_.resize(order_.size());
-    x_.resize(order_.size());
+    std::vector<int> order;
+    SparseLdlt ldlt;
+    if (!ldlt.factorise(matrix.assemble(order)))
+      return "the matrix of the step is singular (CHOLMOD: " + ldlt.reason() + ")";
+    // The border's part of the right-hand side is zero, unless M x goes through it.
+    const int known = assembly_.mass_through_border() ? assembly_.right_hand_side().rows() : rows_;
+    lanes_through_ = SparseSubstitution(ldlt, order, known, rows_);
+    column_through_ = SparseSubstitution(ldlt, order, rows_, rows_);
+    work_ = Block(lanes_through_.rows(), lanes_);
+    column_work_ = Block(lanes_through_.rows(), 1);
     unknown_ = Block(rows_, lanes_);
     return std::nullopt;
   }
@@ -254,37 +264,29 @@ class SparseOperator final : public StageOperator {
 
   void free_step(const FreeStepInput& input) override {
     kernels_.band_step(assembly_.describe(input));
-    const Block& b = assembly_.right_hand_side();
-    const int known = assembly_.mass_through_border() ? b.rows() : rows_;
-    for (int lane = 0; lane < lanes_; ++lane) {
-      solve([&](int unknown) { return unknown < known ? b.at(unknown, lane) : 0.0; },
-            [&](int unknown, double value) { unknown_.at(unknown, lane) = value; });
-    }
+    SparseStep step = lanes_through_.step();
+    step.b = assembly_.right_hand_side().data();
+    step.work = work_.data();
+    step.z = unknown_.data();
+    kernels_.sparse_step(step);
   }
 
   double* unknown() override { return unknown_.data(); }
 
   void solve_column(const double* rhs, double* x) override {
-    solve([&](int unknown) { return unknown < rows_ ? rhs[unknown] : 0.0; },
-          [&](int unknown, double value) { x[unknown] = value; });
+    SparseStep step = column_through_.step();
+    step.b = rhs;
+    step.work = column_work_.data();
+    step.z = x;
+    lane_kernels(1).sparse_step(step);
   }
 
  private:
-  template <class Read, class Write>
-  void solve(Read read, Write write) {
-    for (std::size_t r = 0; r < order_.size(); ++r) rhs_[r] = read(order_[r]);
-    ldlt_.solve(rhs_.data(), x_.data());
-    for (std::size_t r = 0; r < order_.size(); ++r)
-      if (order_[r] < rows_) write(order_[r], x_[r]);
-  }
-
   Assembly assembly_;
   const LaneKernels& kernels_;
   int lanes_, rows_;
-  SparseLdlt ldlt_;
-  std::vector<int> order_;
-  std::vector<double> rhs_, x_;
-  Block unknown_;
+  SparseSubstitution lanes_through_, column_through_;
+  Block work_, column_work_, unknown_;
 };
 
 template <class Operator>

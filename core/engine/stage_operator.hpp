@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/step_plan.hpp>
@@ -35,6 +36,7 @@ struct FreeStepInput {
   const double* load = nullptr;             ///< n: Σ φ_k F(t+c_k h) of the distributed load; null: none
   const IncrementUpdate* update = nullptr;  ///< to be made first (only where takes_update(), without load)
   PointTest* test = nullptr;                ///< to be made last (only where takes_points(), without load)
+  SquareSum* sum = nullptr;                 ///< to be added up besides (only where sums_squares(), without load)
 };
 
 /// z° = S⁻¹ b for every lane of a block.
@@ -47,6 +49,8 @@ class StageOperator {
   virtual bool takes_update() const { return false; }
   /// Whether it measures such points by itself from now on; `rows` stays where it is.
   virtual bool takes_points([[maybe_unused]] const LaneRows& rows) { return false; }
+  /// Half-bandwidth of the squares of z° and the second of two slots that it adds up besides; nothing: it adds up none.
+  virtual std::optional<int> sums_squares() const { return std::nullopt; }
   virtual void free_step(const FreeStepInput& input) = 0;
   /// The unknown, n × T; free_step writes it and the marcher corrects it.
   virtual double* unknown() = 0;

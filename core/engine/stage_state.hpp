@@ -30,6 +30,7 @@ struct StageState {
   std::vector<double> update_w;     ///< of each slot, the weight of w
   bool increments = false;          ///< whether the update is x_1 ← x_1 + z, x_0 ← x_0 + x_1
   std::optional<PointTest> test;    ///< where the operator measures what the law reads
+  SquareSum* sum = nullptr;         ///< what the operator adds up for an observer
   StageView view;                   ///< what an observer is shown
   std::vector<double> measure_weights, rate_weights, before_weights, gap_weights, approach_weights;
   std::vector<int> contact_age;  ///< steps of contact so far, points × T; only where tangents wait

@@ -26,12 +26,26 @@ struct StageView {
   const double* free = nullptr;           ///< what the law measured before any effort, absolute; null where nothing did
   std::uint32_t contact_lanes = 0;        ///< lanes with a non-zero effort now
   std::span<const int> pushed;            ///< points with a non-zero effort now, in any of them, ascending
+  const SquareSum* sum = nullptr;  ///< what an observer asked for, of z as it is now; null where efforts moved it
+};
+
+/// Steps of one lane in which no stop was looked at and that nobody was shown: what is known of each.
+struct QuietSteps {
+  struct Step {
+    double sine = 0, cosine = 1;      ///< of ωt, when it began
+    double form = 0, projection = 0;  ///< of the squares that the observer asked for; 0 where it asked for none
+  };
+  std::span<const Step> steps;
+  double last = 0;  ///< when the last of them began, s
 };
 
 /// Looks at every step of a block; a march without an observer pays nothing for it.
 class StepObserver {
  public:
   virtual ~StepObserver() = default;
+  /// Squares that it would see added up in each free step of a stage of the plan, if its operator sums_squares(); null:
+  /// none. Asked when a march begins or goes on, and kept until it returns.
+  virtual SquareSum* squares(int /*stage*/) { return nullptr; }
   /// The stage has found z and p; the slots are not yet updated.
   virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
   /// The step is complete.
@@ -41,6 +55,11 @@ class StepObserver {
   virtual long long may_skip(const Marcher& /*marcher*/) { return 0; }
   /// Steps were left out; the marcher stands at their end.
   virtual void skipped(Marcher& /*marcher*/, const SkippedSteps& /*steps*/) {}
+  /// The next step (counted as Marcher::step() after it) that has to be shown whatever happens in it. Those before it
+  /// need not be, as long as no stage looks at a stop: it is told of them by quiet(), before the next one that is shown
+  /// and before march() returns. Asked when a march begins or goes on, and after each step that was shown.
+  virtual long long next_shown(const Marcher& /*marcher*/) { return 0; }
+  virtual void quiet(const Marcher& /*marcher*/, const QuietSteps& /*steps*/) {}
 };
 
 }  // namespace ricochet

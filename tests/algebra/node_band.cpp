@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <ricochet/algebra/block.hpp>
+#include <ricochet/algebra/combined_form.hpp>
 #include <ricochet/algebra/node_band.hpp>
 
 #include "tests/instruction_sets.hpp"
@@ -95,7 +96,7 @@ struct March {
   }
   // A step in one pass, with update and measures where they are asked for.
   template <class Step>
-  void make(void (*kernel)(const Step&), Step step, bool updates, bool tests) {
+  void make(void (*kernel)(const Step&), Step step, bool updates, bool tests, SquareSum* sum = nullptr) {
     double* slots[] = {q.data(), d.data()};
     const IncrementUpdate update{slots, last.data(), {next[0], next[1]}};
     PointTest test{slots, {weight[0], weight[1], weight[2]}, offset.data(), lower.data(), upper.data(), y.data()};
@@ -104,6 +105,8 @@ struct March {
     step.z = z.data();
     if (updates) step.update = &update;
     if (tests) step.test = &test;
+    step.sum = sum;
+    if (sum) sum->x = d.data();
     kernel(step);
     outside = test.outside;
   }
@@ -227,6 +230,82 @@ TEST_CASE("the unknown of the step before may be where the next one goes") {
     kernels.node_step(step);
   }
   together.require_same(apart);
+}
+
+namespace {
+
+// Beside a step of one lane, of z + 0.4 x_1: the form of A and a projection, against a pass of their own.
+template <class Kernel, class Step>
+void check_squares(Kernel LaneKernels::*kernel, const Step& step, const QuadraticForm& A, int width, int points) {
+  const bool updates = GENERATE(false, true), tests = GENERATE(false, true);
+  std::vector<double> h;
+  for (int i = 0; i < dofs; ++i) h.push_back(number(i, 5, 5));
+  const Block fours = CombinedForm::packed(A, h.data(), width);
+  REQUIRE(fours.rows() > 0);
+  std::vector<SquareSum> sums;
+  for (const InstructionSet set : instruction_sets()) {
+    const LaneKernels& kernels = lane_kernels(1, set);
+    March apart(1, points), beside(1, points);
+    apart.make(kernels.*kernel, step, updates, tests);
+    SquareSum sum;
+    sum.fours = fours.data();
+    sum.ratio = 0.4;
+    sum.ones = A.unit();
+    beside.make(kernels.*kernel, step, updates, tests, &sum);
+    beside.require_same(apart);
+    const double* x[] = {beside.z.data(), beside.d.data()};
+    const double ratio[] = {1, 0.4};
+    const CombinedForm::Value expected = CombinedForm(A, h.data())(2, x, ratio);
+    CHECK(sum.form == Approx(expected.form).epsilon(1e-13));
+    CHECK(sum.projection == Approx(expected.projection).margin(1e-13));
+    if (set != InstructionSet::baseline) sums.push_back(sum);
+  }
+  for (const SquareSum& sum : sums) {
+    CHECK(sum.form == sums.front().form);
+    CHECK(sum.projection == sums.front().projection);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("squares added up beside a step by nodes are those of a pass of their own, and the step keeps its bits") {
+  const bool border = GENERATE(false, true), everywhere = GENERATE(false, true), wide = GENERATE(false, true);
+  BandLdlt ldlt;
+  REQUIRE_FALSE(ldlt.factorise(system(border)));
+  const std::vector<double> shape(dofs, 0.5);
+  NodeBand band(coupled(false), shape.data(), ldlt);
+  std::vector<int> start = {0}, index;
+  for (int a = 0; a < nodes; ++a)
+    if (everywhere || a == 3) {
+      index.push_back(2 * a);
+      start.push_back(static_cast<int>(index.size()));
+    }
+  const std::vector<double> value(nodes, 1.25);
+  const LaneRows H{static_cast<int>(index.size()), start.data(), index.data(), value.data()};
+  REQUIRE(band.place_points(H));
+  Block r(nodes, 1);
+  const Block k = filled(dofs, 1, 3, 4);
+  NodeStep step = band.step();
+  step.r = r.data();
+  step.k = k.data();
+  const SparseMatrix diagonal = Eigen::VectorXd::Constant(dofs, 1.5).asDiagonal().toDenseMatrix().sparseView();
+  check_squares(&LaneKernels::node_step, step, QuadraticForm(wide ? coupled(true) : diagonal), 3, H.rows);
+}
+
+TEST_CASE("squares added up beside a step by modes are those of a pass of their own, and the step keeps its bits") {
+  const bool unit = GENERATE(false, true);
+  std::vector<double> columns(3 * 16, 0.0), value;
+  for (std::size_t i = 0; i < dofs; ++i) {
+    value.push_back(number(static_cast<int>(i), 2, 8));
+    for (std::size_t s = 0; s < 3; ++s) columns[s * 16 + i] = number(static_cast<int>(i), static_cast<int>(s), 9);
+  }
+  ModeStep step;
+  step.rows = dofs;
+  step.coefficient = columns.data();
+  step.value = value.data();
+  const SparseMatrix diagonal =
+      Eigen::VectorXd::LinSpaced(dofs, 1, unit ? 1 : 3).asDiagonal().toDenseMatrix().sparseView();
+  check_squares(&LaneKernels::mode_step, step, QuadraticForm(diagonal), 0, 1);
 }
 
 TEST_CASE("what does not come by nodes is not packed by nodes") {

@@ -126,8 +126,9 @@ long long ClearSteps::clear_steps(const Followed& one) {
                                   steps_within(above, -now[1] - lost, pace.first, pace.second));
   const auto most = static_cast<long long>(std::min(by_bend, static_cast<double>(motion_.longest())));
   // Of powers of two: leaps have no other lengths.
-  long long steps = most < least_leap ? least_leap : 2 * static_cast<long long>(std::bit_floor(
-                                                             static_cast<unsigned long long>(most)));
+  long long steps = most < least_leap
+                        ? least_leap
+                        : 2 * static_cast<long long>(std::bit_floor(static_cast<unsigned long long>(most)));
   while (steps <= motion_.longest() && stays(below, 1, now, pace, lost, static_cast<double>(steps)) &&
          stays(above, -1, now, pace, lost, static_cast<double>(steps)))
     steps *= 2;

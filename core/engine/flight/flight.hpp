@@ -93,9 +93,9 @@ class Flight {
   static constexpr long long effort_block = 4096;
 
   struct Pace {
-    long long next = 16;  // steps to ask for first
+    long long next = 16;              // steps to ask for first
     long long wait = 0, penalty = 0;  // steps between two looks
-    long long dear = 0;  // steps to march after one that cost as much as marching
+    long long dear = 0;               // steps to march after one that cost as much as marching
   };
   struct Kept {
     std::vector<HeldPoint> held;

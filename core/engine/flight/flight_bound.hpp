@@ -98,8 +98,8 @@ class FlightBound {
     // Of the last look:
     std::vector<double> now, step, amplitude, bend, growth;
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
-    std::vector<double> paces;  // of each mode, what Pace adds up, five arrays
-    bool paced = false;         // whether they are of this look
+    std::vector<double> paces;                             // of each mode, what Pace adds up, five arrays
+    bool paced = false;                                    // whether they are of this look
     std::size_t tightest = 0;
   };
   void place(Watched& watched, long long k);

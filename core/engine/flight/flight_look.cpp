@@ -182,8 +182,7 @@ FlightBound::Range FlightBound::range(int watch, int point, long long k) {
 FlightBound::Pace FlightBound::pace(int watch, int point) {
   Watched& watched = watches_[static_cast<std::size_t>(watch)];
   const auto at = static_cast<std::size_t>(point);
-  if (!watched.grows.empty())
-    return {infinity, infinity, infinity, infinity, range(watch, point, 1).margin};
+  if (!watched.grows.empty()) return {infinity, infinity, infinity, infinity, range(watch, point, 1).margin};
   const auto n = static_cast<std::size_t>(modes_);
   double* const paces = watched.paces.data();
   if (!watched.paced) {
@@ -200,8 +199,8 @@ FlightBound::Pace FlightBound::pace(int watch, int point) {
   double sums[5];
   flight_kernels().dots(modes_, 5, paces, watched.sizes.data() + at * n, sums);
   const double bent = watched.offset_bend[at], turn = std::abs(2 * std::sin(drive_.angle / 2));
-  return {sums[1] + (turn != 0 ? bent / turn : 0.0), sums[2] + bent, sums[3] + turn * bent, sums[4] + turn * turn * bent,
-          slack * (sums[0] + std::abs(watched.offset[at]))};
+  return {sums[1] + (turn != 0 ? bent / turn : 0.0), sums[2] + bent, sums[3] + turn * bent,
+          sums[4] + turn * turn * bent, slack * (sums[0] + std::abs(watched.offset[at]))};
 }
 
 double FlightBound::value(int watch, int point) {

@@ -74,7 +74,8 @@ void StepReadings::first(int steps, const double* x, const double* e, double* ou
 void StepReadings::differences(const double* x, const double* e, double out[4]) const {
   flight_kernels().dots(size_, differences_read, difference_weights_.data(), x, out);
   for (int order = 0; order < differences_read; ++order)
-    for (int k = 0; k < drives_; ++k) out[order] += difference_drive_[static_cast<std::size_t>(order * drives_ + k)] * e[k];
+    for (int k = 0; k < drives_; ++k)
+      out[order] += difference_drive_[static_cast<std::size_t>(order * drives_ + k)] * e[k];
 }
 
 }  // namespace ricochet

@@ -34,7 +34,7 @@ class StepReadings {
 
  private:
   int size_, drives_;
-  std::vector<double> weights_, drive_;                      // of each step: slots × modes, drives
+  std::vector<double> weights_, drive_;                        // of each step: slots × modes, drives
   std::vector<double> difference_weights_, difference_drive_;  // of each difference
 };
 

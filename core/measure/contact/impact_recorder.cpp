@@ -62,6 +62,18 @@ void ImpactRecorder::step_done(Marcher& marcher) {
   if (behind_) behind_->step_done(marcher);
 }
 
+// Without contact it waits for nothing, and the slot that holds what positions moved by is there when a point closes.
+long long ImpactRecorder::next_shown(const Marcher& marcher) {
+  const bool waits = marcher.program().contact && (busy_ != 0 || known_ < 2 || increment_slot_ < 0);
+  return !behind_ || waits ? 0 : behind_->next_shown(marcher);
+}
+
+void ImpactRecorder::quiet(const Marcher& marcher, const QuietSteps& steps) {
+  behind_->quiet(marcher, steps);
+  if (!marcher.program().contact) return;
+  latest_time_ = steps.last + marcher.program().stages.front().facts.from * h_;
+}
+
 // The velocities over two sub-steps have to be seen of what opened, and those over the last one of what closes next.
 long long ImpactRecorder::may_skip(const Marcher& marcher) {
   if (marcher.program().contact && (known_ < 2 || !lanes_.front().leaving.empty())) return 0;

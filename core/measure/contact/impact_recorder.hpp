@@ -69,10 +69,13 @@ class ImpactRecorder final : public StepObserver {
 
   explicit ImpactRecorder(const Marcher& marcher, StepObserver* behind = nullptr, std::size_t most = most_impacts);
 
+  SquareSum* squares(int stage) override { return behind_ ? behind_->squares(stage) : nullptr; }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  long long next_shown(const Marcher& marcher) override;
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override;
   /// To be called once, when the march is over: what its last sub-step was, for those who wait for it.
   void finish(const Marcher& marcher);
 

@@ -111,15 +111,16 @@ double EnergyAudit::potential(const Marcher& marcher, const double* place, doubl
   return sum;
 }
 
-bool EnergyAudit::to_be_seen(const Lane& state, long long step) const {
-  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_ ||
-         step % Marcher::check_interval == 0;
+bool EnergyAudit::asks(const Lane& state, long long step) const {
+  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_;
 }
 
 void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane& state) {
   state.step = {};
   state.touched = view.starting;
-  state.looking = state.look_next || to_be_seen(state, marcher.step() + 1);
+  const long long step = marcher.step() + 1;
+  state.asked = asks(state, step);
+  state.looking = state.asked || state.look_next || step % Marcher::check_interval == 0;
   state.look_next = false;
 }
 
@@ -242,15 +243,49 @@ void EnergyAudit::step_done(Marcher& marcher) {
     const double worked = std::abs(state.step.loads) + std::abs(state.step.damping) + std::abs(state.step.contact) +
                           std::abs(state.step.scheme);
     if (state.looking) look(marcher, lane);
-    state.look_next = !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
+    state.look_next = alarms(state, worked);
   }
+}
+
+long long EnergyAudit::next_shown(const Marcher& marcher) {
+  const Lane& state = lanes_.front();
+  const bool contact = marcher.program().contact;
+  const bool seldom = looks_ == Looks::seldom && state.balanced && state.has_scheme && !state.look_next;
+  if (!seldom || !works_.squares_alone() || memory_ > 1) return 0;
+  if (contact && !(ends_measured_ && state.still)) return 0;
+  const long long step = marcher.step(), look = (step / Marcher::check_interval + 1) * Marcher::check_interval;
+  return asked_ > step ? std::min(asked_, look) : look;
+}
+
+void EnergyAudit::quiet(const Marcher& marcher, const QuietSteps& steps) {
+  Lane& state = lanes_.front();
+  double most = 0;
+  for (const QuietSteps::Step& step : steps.steps) {
+    Works works;
+    works_.add(marcher, step, works);
+    state.since.loads += works.loads;
+    state.since.damping += works.damping;
+    state.gain = std::max(state.gain, works.gain());
+    most = std::max(most, std::abs(works.loads) + std::abs(works.damping));
+  }
+  const int count = static_cast<int>(steps.steps.size());
+  state.steps += count;
+  state.quiet += count;
+  state.penetration = 0;
+  state.look_next = alarms(state, most);
+}
+
+// Whether that much may be the beginning of a lane that blows up.
+bool EnergyAudit::alarms(const Lane& state, double worked) {
+  return !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
 }
 
 void EnergyAudit::look(Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const double t = marcher.time();
   const EnergySample sample = this->sample(marcher, lane);
-  state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
+  if (state.asked)
+    state.tip_way = tip_increment(marcher, lane) + marcher.support(lane, t) - marcher.support(lane, t - state.duration);
   confirm(state, sample.scheme, false);
   state.now = state.energy.last = sample;
   const double energy = sample.common();

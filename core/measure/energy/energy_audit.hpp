@@ -70,13 +70,14 @@ enum class Looks {
 };
 
 /// The energy audit. It adds up the works of every step, and looks at energies at every step or seldom; a march without
-/// it pays nothing. What energy() and totals() say is that of the last look. A lane whose common energy passes the
-/// marcher's bound is frozen where that is seen.
+/// it pays nothing. Where it looks seldom, steps that touch no stop need not be shown to it: the squares that a free
+/// step adds up say their works. What energy() and totals() say is that of the last look. A lane whose common energy
+/// passes the marcher's bound is frozen where that is seen.
 class EnergyAudit final : public StepObserver {
  public:
   static constexpr double confirmed = 1e-10;
-  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one looked at, so
-  /// that a lane that blows up is seen at once where something works in it.
+  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one that is shown
+  /// looked at, so that a lane that blows up is seen at once where stops work in it.
   static constexpr double alarming = 0.1;
 
   explicit EnergyAudit(const Marcher& marcher, Looks looks = Looks::every_step);
@@ -85,11 +86,16 @@ class EnergyAudit final : public StepObserver {
   void look_after(long long step) { asked_ = step; }
   void look_at_every_step() { looks_ = Looks::every_step; }
 
+  SquareSum* squares(int stage) override { return works_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
   /// Any number, where the scheme has an energy of its own whose balance no step can gain by.
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  /// The next step whose energies are read, where the squares that a step adds up are all that its works ask without
+  /// contact.
+  long long next_shown(const Marcher& marcher) override;
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override;
 
   const EnergySample& energy(int lane) const { return lanes_[static_cast<std::size_t>(lane)].now; }
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }
@@ -100,7 +106,7 @@ class EnergyAudit final : public StepObserver {
   double penetration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].penetration; }
   /// Whether the plan declares a work form: without, the works and the balance are not known.
   bool balances() const { return balances_; }
-  /// Δu_tip/Δt of the last sub-step, absolute, m/s.
+  /// Δu_tip/Δt of the last sub-step, absolute, m/s, of the last step whose energies were asked for.
   double tip_velocity(int lane) const;
 
  private:
@@ -120,10 +126,11 @@ class EnergyAudit final : public StepObserver {
     int steps = 0;     // how many
     int quiet = 0;     // stages since the last effort
     double penetration = 0;
-    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was looked at
+    double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was asked for
     bool has_scheme = false;
     bool balanced = false;   // whether works are believed between looks
-    bool looking = true;     // at the step under way
+    bool asked = true;       // for the energies after the step under way
+    bool looking = true;     // at it, asked or not
     bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
     bool touched = false;    // whether the law looked at contact where the step ends
     bool still = false;      // no effort acts, none did at the instant before, and that has been counted
@@ -131,11 +138,12 @@ class EnergyAudit final : public StepObserver {
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
   EnergySample sample(const Marcher& marcher, int lane);
-  bool to_be_seen(const Lane& state, long long step) const;
+  bool asks(const Lane& state, long long step) const;
   void begin_step(const Marcher& marcher, const StageView& view, Lane& state);
   void start_balance(const StageView& view, int lane);
   void follow_position(const StageView& view, int lane, bool moves);
   double tip_increment(const Marcher& marcher, int lane) const;
+  static bool alarms(const Lane& state, double worked);
   void look(Marcher& marcher, int lane);
   void confirm(Lane& state, double scheme, bool flown);
   void count_contact(const StageView& view, int lane);

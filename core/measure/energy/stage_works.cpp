@@ -27,27 +27,35 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
       rate_(model_.rows(), 1) {
   const double* shape = projected_ ? model_.support_shape().data() : nullptr;
   const SparseMatrix nothing(model_.rows(), model_.rows());
-  first_ = CombinedForm(damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing), shape);
+  const QuadraticForm first = damping_.stiffness != 0 ? stiffness : damped_ ? mass : QuadraticForm(nothing);
+  first_ = CombinedForm(first, shape);
   const StepPlan& plan = marcher.program().plan;
-  const bool alone = T_ == 1 && !marcher.program().load && (projected_ || damped_);
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;
   for (const Stage& stage : plan.start) start_.push_back(describe(stage, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
-  for (auto* stages : {&start_, &stages_})
-    for (StageTerms& stage : *stages) {
-      const std::vector<int>& which = stage.displacement.which;
-      const bool jumps = std::find(which.begin(), which.end(), WeighedTerms::unknown_w) != which.end();
-      const bool across = damped_ && stage.along == 0;
-      if (!alone || which.empty() || which.size() > CombinedForm::most_terms || jumps || across || stage.by_mass != 0 ||
-          !stage.losses.empty())
-        continue;
-      const double scale = stage.displacement.weight[0];
-      stage.passes = static_cast<int>(which.size());
-      stage.by_pass = scale * scale * stage.by_first;
-      stage.pass_load = stage.load;
-      stage.pass_load.along *= scale;
-      stage.pass_load.across *= scale;
-    }
+  if (T_ > 1 || marcher.program().load) return;
+  squares_alone_ = stages_.size() == 1 && stages_.front().losses.empty();
+  if (!projected_ && !damped_) return;
+  for (std::size_t k = 0; k < stages_.size(); ++k)
+    if (const StageOperator* op = marcher.program().stages[k].op.get())
+      if (const std::optional<int> width = op->sums_squares()) ask_for_squares(first, shape, *width, stages_[k]);
+  squares_alone_ = squares_alone_ && stages_.front().fours.rows() > 0;
+}
+
+// s = w (z + ratio·x_1), damped by one form alone.
+void StageWorks::ask_for_squares(const QuadraticForm& form, const double* shape, int width, StageTerms& stage) const {
+  const WeighedTerms& s = stage.displacement;
+  const bool alone = s.which == std::vector<int>{WeighedTerms::unknown_z};
+  if (!alone && s.which != std::vector<int>{1, WeighedTerms::unknown_z}) return;
+  if ((damped_ && stage.along == 0) || stage.by_mass != 0 || !stage.losses.empty()) return;
+  stage.fours = CombinedForm::packed(form, shape, width);
+  stage.sum.ones = form.unit();
+  const double scale = s.weight.back();
+  stage.sum.ratio = alone ? 0.0 : s.weight.front() / scale;
+  stage.by_sum = scale * scale * stage.by_first;
+  stage.sum_load = stage.load;
+  stage.sum_load.along *= scale;
+  stage.sum_load.across *= scale;
 }
 
 StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation, double h) const {

@@ -20,10 +20,10 @@ struct Works {
   Works& operator+=(const Works& other);
 };
 
-/// The works of a stage by its test displacement s, from what the step has found already: one pass over the vectors
-/// that s weighs for damping and the clamp, one more per loss term, and the points that push. What a scene does not
-/// have is not computed. Keeps what damping and loads ask of each stage, allocates when constructed; one lane at a
-/// time, each stage in turn.
+/// The works of a stage by its test displacement s, from what the step has found already: the squares that a free step
+/// has added up for damping and the clamp, or one pass over the vectors that s weighs; one more per loss term, and the
+/// points that push. What a scene does not have is not computed. Keeps what damping and loads ask of each stage,
+/// allocates when constructed; one lane at a time, each stage in turn.
 class StageWorks {
  public:
   /// M and K in the coordinates of the march.
@@ -34,15 +34,25 @@ class StageWorks {
   void add(const Marcher& marcher, const StageView& view, int lane, bool losses, bool acting, Works& works) {
     const StageTerms& stage = (view.starting ? start_ : stages_)[static_cast<std::size_t>(view.stage)];
     const bool contact = view.effort && (acting || ((view.contact_lanes >> lane) & 1u));
-    if (stage.passes == 0 || contact) return add_all(marcher, view, stage, lane, losses, contact, works);
-    const double* x[CombinedForm::most_terms];
-    for (int k = 0; k < stage.passes; ++k) {
-      const int which = stage.displacement.which[static_cast<std::size_t>(k)];
-      x[k] = which >= 0 ? view.slots[which] : view.z;
-    }
-    const CombinedForm::Value value = first_(stage.passes, x, stage.displacement.ratio.data());
-    works.damping += stage.by_pass * value.form;
-    if (projected_) works.loads += marcher.support(lane, stage.pass_load) * value.projection;
+    if (contact || !view.sum || view.sum != &stage.sum)
+      return add_all(marcher, view, stage, lane, losses, contact, works);
+    works.damping += stage.by_sum * stage.sum.form;
+    if (projected_) works.loads += marcher.support(lane, stage.sum_load) * stage.sum.projection;
+  }
+  /// The same of a step that was not shown, of a plan of one stage: where squares_alone().
+  void add(const Marcher& marcher, const QuietSteps::Step& step, Works& works) const {
+    const StageTerms& stage = stages_.front();
+    works.damping += stage.by_sum * step.form;
+    if (projected_) works.loads += marcher.support(0, stage.sum_load, step) * step.projection;
+  }
+  /// Whether a step without contact asks nothing but its squares, or not even these.
+  bool squares_alone() const { return squares_alone_; }
+  /// What a free step may add up of a stage of the plan; null where that is not all that it asks without contact.
+  SquareSum* squares(int stage) {
+    StageTerms& terms = stages_[static_cast<std::size_t>(stage)];
+    if (terms.fours.rows() == 0) return nullptr;
+    terms.sum.fours = terms.fours.data();
+    return &terms.sum;
   }
 
  private:
@@ -59,12 +69,14 @@ class StageWorks {
     PhaseWeights load;    // times ω²: −φ'' = ω² φ for the harmonic support
     PhaseWeights support;
     std::vector<Loss> losses;
-    // Where one lane's damping and clamp are all there is without contact: how many vectors s weighs, and what the pass
-    // over them is worth, the first of them taken once. Else 0.
-    int passes = 0;
-    double by_pass = 0;
-    PhaseWeights pass_load;
+    // Where damping and clamp are all there is without contact, of an operator that adds up their squares: of s over
+    // the weight of z, and what these are worth. Else no fours.
+    Block fours;
+    SquareSum sum;
+    double by_sum = 0;
+    PhaseWeights sum_load;
   };
+  void ask_for_squares(const QuadraticForm& form, const double* shape, int width, StageTerms& stage) const;
   StageTerms describe(const Stage& plan, double pulsation, double h) const;
   void add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                bool contact, Works& works);
@@ -76,7 +88,7 @@ class StageWorks {
   CombinedForm first_;              // what damps, K before M, and the shape of the clamp's load
   CombinedForm mass_form_, stiffness_form_;
   Damping damping_;
-  bool damped_, projected_;
+  bool damped_, projected_, squares_alone_ = false;
   int T_;
   std::vector<StageTerms> start_, stages_;
   Block displacement_, rate_;  // of one lane

@@ -44,6 +44,9 @@ std::size_t StateEnergies::find(EnergyMatrix matrix, const Combination& c, doubl
   form.terms.add(slot_count_, of_increment);
   for (std::size_t k = 0; k < forms_.size(); ++k)
     if (forms_[k].matrix == matrix && forms_[k].terms == form.terms) return k;
+  const std::size_t count = form.terms.which.size();
+  form.plain = T_ == 1 && of_increment == 0 && count > 0 && count <= CombinedForm::most_terms;
+  if (form.plain) form.square = form.terms.weight[0] * form.terms.weight[0];
   forms_.push_back(std::move(form));
   return forms_.size() - 1;
 }
@@ -51,6 +54,12 @@ std::size_t StateEnergies::find(EnergyMatrix matrix, const Combination& c, doubl
 double StateEnergies::evaluate(const Form& form, const double* const* slots, const double* increment, int lane,
                                bool kept) {
   const WeighedTerms& terms = form.terms;
+  if (form.plain && !kept) {
+    const double* x[CombinedForm::most_terms];
+    const int count = static_cast<int>(terms.which.size());
+    for (int k = 0; k < count; ++k) x[k] = slots[terms.which[static_cast<std::size_t>(k)]];
+    return form.square * (form.matrix == EnergyMatrix::M ? mass_ : stiffness_)(count, x, terms.ratio.data()).form;
+  }
   if (terms.which.empty()) return 0;
   const bool apart = terms.which.back() == slot_count_;
   LaneSum sum(terms, T_, lane);

@@ -28,6 +28,8 @@ class StateEnergies {
   struct Form {
     EnergyMatrix matrix = EnergyMatrix::M;
     WeighedTerms terms;
+    bool plain = false;  // few enough vectors of one lane, all of them slots: square times the form of these by ratios
+    double square = 0;
     double value = 0;
   };
   struct Share {

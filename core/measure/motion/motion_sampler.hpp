@@ -21,6 +21,7 @@ void sample_places(double length, int cells, SampleGrid& grid);
 class ContactLog final : public StepObserver {
  public:
   explicit ContactLog(const Marcher& marcher, StepObserver* behind = nullptr);
+  SquareSum* squares(int stage) override { return behind_ ? behind_->squares(stage) : nullptr; }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override {
     if (behind_) behind_->step_done(marcher);

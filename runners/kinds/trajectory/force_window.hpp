@@ -16,6 +16,7 @@ class ForceWindow final : public StepObserver {
   /// [from, to], s; `settings` are those of a trajectory, with or without a window.
   ForceWindow(const Json& settings, StepObserver& behind);
 
+  SquareSum* squares(int stage) override { return behind_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
 

@@ -33,6 +33,7 @@ class Sampler final : public StepObserver {
     for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
   }
+  SquareSum* squares(int stage) override { return behind_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
   void step_done(Marcher& marcher) override {
     behind_.step_done(marcher);

@@ -23,6 +23,7 @@ class WindowMeans final : public StepObserver {
   /// asked for at every step.
   WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind);
 
+  SquareSum* squares(int stage) override { return behind_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
   /// Up to the step before one at which a part begins or ends.
   long long may_skip(const Marcher& marcher) override;

@@ -1,5 +1,7 @@
 // The ledger of a step is that of its definition: every term worked out again with whole matrices, at every step, and
 // the energies of every step between them.
+#include <numeric>
+#include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 #include "tests/plugins/with_defaults.hpp"
@@ -163,4 +165,135 @@ TEST_CASE("works are those of the definition, and explain the energy of every st
     }
   CHECK(balanced > 50);
   CHECK(touched > 50);
+}
+
+namespace {
+
+/// What is behind it sees every step; the works that a step adds up by itself, or none of them.
+class EveryStep final : public StepObserver {
+ public:
+  EveryStep(StepObserver& behind, bool squares) : behind_(behind), squares_(squares) {}
+  SquareSum* squares(int stage) override { return squares_ ? behind_.squares(stage) : nullptr; }
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    behind_.stage_solved(marcher, view);
+    ++seen_;
+  }
+  void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
+  int seen() const { return seen_; }
+
+ private:
+  StepObserver& behind_;
+  bool squares_;
+  int seen_ = 0;
+};
+
+struct Observed {
+  Marcher marcher;
+  EnergyAudit audit;
+  ImpactRecorder recorder;
+  explicit Observed(Marcher made)
+      : marcher(std::move(made)), audit(marcher, Looks::seldom), recorder(marcher, &audit) {}
+  /// In parts, the last of which ends where energies are asked for.
+  void march(StepObserver& observer, const std::vector<int>& parts) {
+    marcher.start(&observer);
+    audit.look_after(std::accumulate(parts.begin(), parts.end(), marcher.step()));
+    for (const int steps : parts) marcher.march(steps, &observer);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("steps that nobody was shown add up what they would have, bit for bit, wherever a march was interrupted") {
+  const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
+  const auto place = GENERATE(StopsSpec::Place::nodes, StopsSpec::Place::tip);
+  const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular", {{"velocity", std::string("P1")}}});
+  const auto damping = GENERATE(Damping{1e-4, 0}, Damping{0, 0.4}, Damping{});
+  const bool shaken = GENERATE(true, false);
+  const int elements = GENERATE(5, 6);
+  SceneSpec scene = busy_scene(damping, false);
+  scene.stops.place = place;
+  if (!shaken) scene.support = {};
+  CompileOptions options;
+  options.kind = kind;
+  const auto made = [&] {
+    return marcher(scene, elements, {mass, {"signorini"}, {"newmark-dumont-paoli"}}, 2e-5, options);
+  };
+  INFO(operator_name(kind) << ", " << mass.name << ", α = " << damping.stiffness << ", η = " << damping.mass
+                           << (shaken ? ", shaken, " : ", ") << elements << " elements");
+  Observed shown(made()), passed(made()), quiet(made()), parted(made());
+  EveryStep every(shown.recorder, true), none(passed.recorder, false);
+  shown.march(every, {9000});
+  passed.march(none, {9000});
+  quiet.march(quiet.recorder, {9000});
+  parted.march(parted.recorder, {1, 7, 40, 3001, 16, 5935});
+  REQUIRE(every.seen() >= 9000);
+  REQUIRE(shown.audit.contact(0).impacts > 2);
+  const EnergyTotals& a = shown.audit.totals(0);
+  for (const Observed* other : {&passed, &quiet, &parted}) {
+    CHECK(other->marcher.position(0) == shown.marcher.position(0));
+    const EnergyTotals& b = other->audit.totals(0);
+    const double slack = other == &passed ? 1e-13 * (a.brought_in() + a.work_of_damping) : 0;
+    CHECK(std::abs(b.work_of_damping - a.work_of_damping) <= slack);
+    CHECK(std::abs(b.work_of_loads - a.work_of_loads) <= slack);
+    CHECK(b.work_of_contact == a.work_of_contact);
+    CHECK(b.work_of_scheme == a.work_of_scheme);
+    CHECK(std::abs(b.largest_step_gain - a.largest_step_gain) <= EnergyAudit::confirmed * a.brought_in());
+    CHECK(b.last.kinetic == a.last.kinetic);
+    CHECK(b.last.elastic == a.last.elastic);
+    CHECK(b.last.scheme == a.last.scheme);
+    CHECK(other->audit.tip_velocity(0) == shown.audit.tip_velocity(0));
+    CHECK(other->audit.penetration(0) == shown.audit.penetration(0));
+    const ContactTotals &c = shown.audit.contact(0), &d = other->audit.contact(0);
+    CHECK(d.impacts == c.impacts);
+    CHECK(d.contact_steps == c.contact_steps);
+    CHECK(d.impulse == c.impulse);
+    CHECK(d.deepest_penetration == c.deepest_penetration);
+    CHECK(d.first_release == c.first_release);
+    REQUIRE(other->recorder.impacts(0).size() == shown.recorder.impacts(0).size());
+    for (std::size_t k = 0; k < shown.recorder.impacts(0).size(); ++k) {
+      const Impact &x = shown.recorder.impacts(0)[k], &y = other->recorder.impacts(0)[k];
+      CHECK(y.time == x.time);
+      CHECK(y.speed_in == x.speed_in);
+      CHECK(y.speed_out == x.speed_out);
+      CHECK(y.impulse == x.impulse);
+    }
+  }
+}
+
+TEST_CASE("squares that a visited step adds up leave a march by flights what it is") {
+  const auto place = GENERATE(StopsSpec::Place::nodes, StopsSpec::Place::tip);
+  SceneSpec scene = busy_scene({1e-4, 0}, false);
+  scene.stops.place = place;
+  CompileOptions options;
+  options.kind = OperatorKind::modal;
+  options.march = MarchWay::flights;
+  options.expected_steps = 20000;
+  const auto made = [&] {
+    return marcher(scene, 6, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-5, options);
+  };
+  Observed with(made()), without(made());
+  const auto march = [](Observed& observed, StepObserver& observer) {
+    observed.marcher.start(&observer);
+    observed.audit.look_after(20000);
+    observed.marcher.march(20000 - observed.marcher.step(), &observer);
+  };
+  struct Apart final : StepObserver {
+    explicit Apart(StepObserver& all) : behind(all) {}
+    void stage_solved(const Marcher& marcher, const StageView& view) override { behind.stage_solved(marcher, view); }
+    void step_done(Marcher& marcher) override { behind.step_done(marcher); }
+    long long may_skip(const Marcher& marcher) override { return behind.may_skip(marcher); }
+    void skipped(Marcher& marcher, const SkippedSteps& steps) override { behind.skipped(marcher, steps); }
+    StepObserver& behind;
+  } apart(without.recorder);
+  march(with, with.recorder);
+  march(without, apart);
+  REQUIRE(with.audit.contact(0).impacts > 2);
+  REQUIRE(with.marcher.steps_visited() < 10000);
+  CHECK(with.marcher.steps_visited() == without.marcher.steps_visited());
+  CHECK(with.marcher.position(0) == without.marcher.position(0));
+  const EnergyTotals &a = with.audit.totals(0), &b = without.audit.totals(0);
+  CHECK(a.last.scheme == b.last.scheme);
+  CHECK(a.work_of_damping == Approx(b.work_of_damping).epsilon(1e-13));
+  CHECK(std::abs(a.work_of_loads - b.work_of_loads) <= 1e-13 * a.brought_in());
+  CHECK(a.work_of_contact == b.work_of_contact);
 }
