@@ -10,7 +10,6 @@
 #include "runners/report/html_table.hpp"
 #include "runners/report/status_counts.hpp"
 #include "runners/report/template.hpp"
-#include "runners/store/curve_files.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
@@ -87,9 +86,7 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
     return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
   };
   std::vector<CaseColumn> out = {
-      {"case", "case",
-       has_curve_files(view.results()) ? "Identity of the case: its row in cases.csv and its file in curves/"
-                                       : "Identity of the case: its row in cases.csv",
+      {"case", "case", "Identity of the case: its row in cases.csv, and its file in curves/ where cases have one each",
        "text", false,
        [&view](const CaseRecord& record) {
          return CaseCell{record.id, "text", view.colour(record)};

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
+#include <utility>
 
 namespace ricochet {
 namespace {
@@ -45,6 +46,7 @@ std::string Flight::why_not_held(const Program& program) {
 // Points that are held elsewhere move otherwise: their sets are made anew.
 void Flight::place(const LaneSpec& lane, double layer) {
   layer_ = layer;
+  closed_ = nullptr;
   free_->place(lane, layer);
   sets_.clear();
   set_ = free_.get();
@@ -52,6 +54,7 @@ void Flight::place(const LaneSpec& lane, double layer) {
 
 void Flight::forget() {
   pace_ = {};
+  closed_ = nullptr;
   for (auto& one : sets_) {
     one->seen = 0;
     one->pace = {};
@@ -86,6 +89,7 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
   set_ = free_.get();
   steps_ = nullptr;
   set_pace_ = &pace_;
+  const Kept* const before = std::exchange(closed_, nullptr);
   if (!held.empty() && !held_cause_.empty()) {
     if (!steps_cause_.empty()) return false;
     Kept& one = kept(held);
@@ -97,11 +101,14 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
     set_pace_ = &one.pace;
   } else if (!held.empty()) {
     Kept& one = kept(held);
+    closed_ = &one;
+    closed_for_ = &one == before ? closed_for_ + 1 : 1;
     // Its modes cost about as much as so many steps with all the dofs. Points that come back to one stop come back to
-    // the other one.
+    // the other one. What a short contact has before it rests cannot be left out, and does not count.
     const long long rows = program.model->rows(), enough = std::max(brief, rows * rows / modes_of_step);
     const FlightSet* const twin = twin_of(one, enough);
-    if (++one.seen < (twin ? brief : enough)) return false;
+    if (closed_for_ > least) ++one.seen;
+    if (one.seen < (twin ? brief : enough)) return false;
     if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_, twin);
     if (!one.set->cause().empty()) return false;
     set_pace_ = &one.pace;

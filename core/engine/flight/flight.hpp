@@ -99,7 +99,7 @@ class Flight {
   };
   struct Kept {
     std::vector<HeldPoint> held;
-    long long seen = 0;  // steps that began with these points closed
+    long long seen = 0;  // steps that began with these points closed, and might have been left out
     std::unique_ptr<FlightSet> set;
     std::unique_ptr<HeldSteps> steps;
     Pace pace;
@@ -129,6 +129,8 @@ class Flight {
   Pace pace_;
   std::string held_cause_, steps_cause_;
   std::vector<std::unique_ptr<Kept>> sets_;
+  const Kept* closed_ = nullptr;  // of the last step, and for how many it has been
+  long long closed_for_ = 0;
   // Of the look that is due and the flight after it:
   FlightSet* set_ = nullptr;
   HeldSteps* steps_ = nullptr;  // null: composed

@@ -181,7 +181,7 @@
     const { along = "", values = [] } = figure.measured || {}, charts = count(figure.charts.length, "chart", "charts");
     return {
       id: figure.id, title: figure.title, charts: [], legend: [], views: values.map((value) => value.view),
-      caption: figure.caption + " Its " + charts + " are more than a page can show: the map has all cases, and a click on a row draws the charts of that row.",
+      caption: figure.caption + " Its " + charts + " are more than a page can show: the map has every case that this page holds, and a click on a row draws the charts of that row.",
       map: { view: ricochet.data.view, cases, along, values, figures: [figure] },
     };
   };
