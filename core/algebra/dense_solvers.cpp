@@ -42,6 +42,19 @@ MatrixXd cholesky_forward(const MatrixXd& A, const MatrixXd& B) {
   return A.llt().matrixL().solve(B);
 }
 
+struct DenseCholesky::Factor {
+  Eigen::LLT<MatrixXd> llt;
+};
+
+DenseCholesky::DenseCholesky(const MatrixXd& A) : factor_(std::make_unique<Factor>(Eigen::LLT<MatrixXd>(A))) {}
+DenseCholesky::DenseCholesky(DenseCholesky&&) noexcept = default;
+DenseCholesky& DenseCholesky::operator=(DenseCholesky&&) noexcept = default;
+DenseCholesky::~DenseCholesky() = default;
+
+Eigen::VectorXd DenseCholesky::solve(const Eigen::VectorXd& b) const {
+  return factor_->llt.solve(b);
+}
+
 struct DenseLu::Factors {
   Eigen::PartialPivLU<MatrixXd> lu;
 };
@@ -62,8 +75,24 @@ MatrixXd DenseLu::solve(const MatrixXd& B) const {
   return factors_->lu.solve(B);
 }
 
+MatrixXd inverse(const MatrixXd& A) {
+  return Eigen::PartialPivLU<MatrixXd>(A).inverse();
+}
+
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) {
   return Eigen::PartialPivLU<Eigen::MatrixXcd>(A).inverse();
+}
+
+double determinant(const MatrixXd& A) {
+  return A.determinant();
+}
+
+Eigen::VectorXd pivoted_solve(const MatrixXd& A, const Eigen::VectorXd& b) {
+  return Eigen::FullPivLU<MatrixXd>(A).solve(b);
+}
+
+Eigen::VectorXcd pivoted_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
+  return Eigen::FullPivLU<Eigen::MatrixXcd>(A).solve(b);
 }
 
 std::optional<Eigen::VectorXd> regular_solve(const MatrixXd& A, const Eigen::VectorXd& b) {

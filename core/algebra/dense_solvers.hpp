@@ -27,6 +27,20 @@ Eigen::MatrixXd definite_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 /// L⁻¹ B, A = L Lᵀ.
 Eigen::MatrixXd cholesky_forward(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
+/// A = L Lᵀ, symmetric and positive definite: solves A x = b for any number of b.
+class DenseCholesky {
+ public:
+  explicit DenseCholesky(const Eigen::MatrixXd& A);
+  DenseCholesky(DenseCholesky&&) noexcept;
+  DenseCholesky& operator=(DenseCholesky&&) noexcept;
+  ~DenseCholesky();
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+
 /// A factorised with partial pivoting: solves A X = B for any number of B. A that is singular gives what is not finite.
 class DenseLu {
  public:
@@ -43,11 +57,16 @@ class DenseLu {
   std::unique_ptr<Factors> factors_;
 };
 
-/// A⁻¹, with partial pivoting.
+/// A⁻¹ and |A|, with partial pivoting.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A);
+double determinant(const Eigen::MatrixXd& A);
 /// A⁻¹ b, fully pivoted; nothing where A has not full rank to round-off.
 std::optional<Eigen::VectorXd> regular_solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 std::optional<Eigen::VectorXcd> regular_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
+/// A⁻¹ b, fully pivoted; where A has not full rank, one that solves best what can be solved.
+Eigen::VectorXd pivoted_solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+Eigen::VectorXcd pivoted_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
 /// The least X that solves A X = B best, whatever the rank of A.
 Eigen::MatrixXd least_norm_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 

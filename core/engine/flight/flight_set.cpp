@@ -1,9 +1,8 @@
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
@@ -112,8 +111,7 @@ void FlightSet::hold(const Program& program) {
   held_rows_.resize(static_cast<Index>(held_.size()), rows_);
   for (std::size_t i = 0; i < held_.size(); ++i) held_rows_.row(static_cast<Index>(i)) = H.row(held_[i].point);
   // K = 1 in these coordinates.
-  const Eigen::HouseholderQR<MatrixXd> qr(held_rows_.transpose());
-  const MatrixXd Q = qr.householderQ();
+  const MatrixXd Q = householder_basis(held_rows_.transpose());
   const MatrixXd null = Q.rightCols(rows_ - held_rows_.rows());
   const SymmetricModes modes = symmetric_modes(null.transpose() * own_mass_.asDiagonal() * null);
   basis_ = null * modes.vectors;
@@ -123,11 +121,10 @@ void FlightSet::hold(const Program& program) {
   const FoldedStage& folded = program.stages.front().folded;
   const MatrixXd response =
       (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
-  settle_ = basis_.transpose() * response *
-            (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
+  const MatrixXd one = MatrixXd::Identity(held_rows_.rows(), held_rows_.rows());
+  settle_ = basis_.transpose() * response * definite_solve(held_rows_ * response, one);
   apart_.resize(held_rows_.rows(), slots_);
-  lever_ = held_rows_.transpose() *
-           (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
+  lever_ = held_rows_.transpose() * definite_solve(held_rows_ * held_rows_.transpose(), one);
 }
 
 FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers)
