@@ -74,7 +74,7 @@ class Reciprocal : public MassStrategy {
     element.dof = {0, 1, functions > 2 ? 2 : -1, functions > 2 ? 3 : -1};
     alone.elements = {element};
     const Eigen::MatrixXd consistent = consistent_mass(alone);
-    const Eigen::MatrixXd P = R * inverse(R.transpose() * A * R) * R.transpose() * A;
+    const Eigen::MatrixXd P = R * inverse(Eigen::MatrixXd(R.transpose() * A * R)) * R.transpose() * A;
     const Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(functions, functions) - P;
     const Eigen::MatrixXd mass = A * P + Q.transpose() * ((1 - beta_) * consistent + beta_ * A) * Q;
     return 0.5 * (mass + mass.transpose());

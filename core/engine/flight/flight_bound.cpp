@@ -151,7 +151,7 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
     found.rest_steps = slots_ - static_cast<int>(count);
     MatrixXd power = MatrixXd::Identity(slots_, slots_);
     for (int k = 0; k < slots_; ++k) power += scaled * power.eval();
-    W = inverse(V.adjoint() * V) * V.adjoint() * power.cast<Complex>();
+    W = inverse(MatrixXcd(V.adjoint() * V)) * V.adjoint() * power.cast<Complex>();
     for (Index l = 0; l < count; ++l) W.row(l) *= std::pow(1.0 + found.change[l], -slots_);
   }
   found.right = scale.cast<Complex>().asDiagonal() * V;
@@ -175,7 +175,8 @@ void FlightBound::steady(const MatrixXd& scaled, const Eigen::VectorXd& scale, M
     found.steady.col(1) = found.phasor.real();
   }
   if (drive_.constant)
-    found.steady.col(drive_.one()) = scale.asDiagonal() * pivoted_solve(-scaled, scaled_B.col(drive_.one()));
+    found.steady.col(drive_.one()) =
+        scale.asDiagonal() * pivoted_solve(MatrixXd(-scaled), Eigen::VectorXd(scaled_B.col(drive_.one())));
   if (!found.steady.allFinite()) cause_ = "a mode is in resonance with the drive";
 }
 
