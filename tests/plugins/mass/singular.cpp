@@ -1,3 +1,5 @@
+#include <Eigen/QR>
+
 #include "tests/eigen.hpp"
 #include "tests/plugins/mass/laws.hpp"
 
