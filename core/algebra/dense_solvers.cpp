@@ -42,19 +42,6 @@ MatrixXd cholesky_forward(const MatrixXd& A, const MatrixXd& B) {
   return A.llt().matrixL().solve(B);
 }
 
-struct DenseCholesky::Factor {
-  Eigen::LLT<MatrixXd> llt;
-};
-
-DenseCholesky::DenseCholesky(const MatrixXd& A) : factor_(std::make_unique<Factor>(Eigen::LLT<MatrixXd>(A))) {}
-DenseCholesky::DenseCholesky(DenseCholesky&&) noexcept = default;
-DenseCholesky& DenseCholesky::operator=(DenseCholesky&&) noexcept = default;
-DenseCholesky::~DenseCholesky() = default;
-
-Eigen::VectorXd DenseCholesky::solve(const Eigen::VectorXd& b) const {
-  return factor_->llt.solve(b);
-}
-
 struct DenseLu::Factors {
   Eigen::PartialPivLU<MatrixXd> lu;
 };

@@ -27,20 +27,6 @@ Eigen::MatrixXd definite_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 /// L⁻¹ B, A = L Lᵀ.
 Eigen::MatrixXd cholesky_forward(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-/// A = L Lᵀ, symmetric and positive definite: solves A x = b for any number of b.
-class DenseCholesky {
- public:
-  explicit DenseCholesky(const Eigen::MatrixXd& A);
-  DenseCholesky(DenseCholesky&&) noexcept;
-  DenseCholesky& operator=(DenseCholesky&&) noexcept;
-  ~DenseCholesky();
-  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
-
- private:
-  struct Factor;
-  std::unique_ptr<Factor> factor_;
-};
-
 /// A factorised with partial pivoting: solves A X = B for any number of B. A that is singular gives what is not finite.
 class DenseLu {
  public:

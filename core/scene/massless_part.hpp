@@ -1,6 +1,6 @@
 #pragma once
+#include <Eigen/Cholesky>
 #include <optional>
-#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 
@@ -27,7 +27,7 @@ class MasslessPart {
  private:
   const SparseMatrix& stiffness_;
   Eigen::MatrixXd basis_;  // Z, of few dofs
-  std::optional<DenseCholesky> reduced_;
+  std::optional<Eigen::LLT<Eigen::MatrixXd>> reduced_;
   std::optional<InverseForm> shifted_;  // S, of many
 };
 
