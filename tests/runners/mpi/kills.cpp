@@ -47,10 +47,10 @@ void check_no_failed_row(const fs::path& out) {
   for (const auto& row : rows_of(out / "cases.csv")) CHECK(row.at("status") == "done");
 }
 
-/// A second of orbits, in six cases.
+/// Some seconds of orbits, in six cases.
 Json sweep() {
   Json study = study_of("bifurcation");
-  study["steps_per_period"] = 1250;
+  study["steps_per_period"] = 2500;
   study["mesh"]["elements"] = {3, 4, 5};
   study["refine"] = nullptr;
   return study;
