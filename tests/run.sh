@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what the tests need, builds everything, runs the whole suite. Exit code and closing lines are those of ctest.
+# Installs what the tests need, builds all of it, runs the whole suite. Exit code and closing lines are those of ctest.
 # May be run again at any time; a second run needs no network.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -20,5 +20,5 @@ fi
 fetch_charts
 
 cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi
-cmake --build --preset release
+cmake --build --preset release --target tests
 exec ctest --preset release -j "$(nproc)"

@@ -62,8 +62,24 @@ MatrixXd DenseLu::solve(const MatrixXd& B) const {
   return factors_->lu.solve(B);
 }
 
+MatrixXd inverse(const MatrixXd& A) {
+  return Eigen::PartialPivLU<MatrixXd>(A).inverse();
+}
+
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) {
   return Eigen::PartialPivLU<Eigen::MatrixXcd>(A).inverse();
+}
+
+double determinant(const MatrixXd& A) {
+  return A.determinant();
+}
+
+Eigen::VectorXd pivoted_solve(const MatrixXd& A, const Eigen::VectorXd& b) {
+  return Eigen::FullPivLU<MatrixXd>(A).solve(b);
+}
+
+Eigen::VectorXcd pivoted_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
+  return Eigen::FullPivLU<Eigen::MatrixXcd>(A).solve(b);
 }
 
 std::optional<Eigen::VectorXd> regular_solve(const MatrixXd& A, const Eigen::VectorXd& b) {

@@ -43,11 +43,16 @@ class DenseLu {
   std::unique_ptr<Factors> factors_;
 };
 
-/// A⁻¹, with partial pivoting.
+/// A⁻¹ and |A|, with partial pivoting.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A);
+double determinant(const Eigen::MatrixXd& A);
 /// A⁻¹ b, fully pivoted; nothing where A has not full rank to round-off.
 std::optional<Eigen::VectorXd> regular_solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 std::optional<Eigen::VectorXcd> regular_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
+/// A⁻¹ b, fully pivoted; where A has not full rank, one that solves best what can be solved.
+Eigen::VectorXd pivoted_solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+Eigen::VectorXcd pivoted_solve(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
 /// The least X that solves A X = B best, whatever the rank of A.
 Eigen::MatrixXd least_norm_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 

@@ -1,5 +1,4 @@
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <ricochet/algebra/dense_solvers.hpp>
 
 #include "lumped_diagonal.hpp"
 
@@ -37,7 +36,7 @@ class Reciprocal : public MassStrategy {
       if (of_free.empty()) continue;
       const Eigen::VectorXd share = shares(space, element)(of_free);
       const Eigen::MatrixXd mass = element_mass(space, element)(of_free, of_free);
-      const Eigen::MatrixXd inverse = mass.llt().solve(Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
+      const Eigen::MatrixXd inverse = definite_solve(mass, Eigen::MatrixXd::Identity(mass.rows(), mass.cols()));
       for (Eigen::Index a = 0; a < mass.rows(); ++a)
         for (Eigen::Index b = 0; b < mass.rows(); ++b) {
           const int i = element.dof[of_free[a]], j = element.dof[of_free[b]];
@@ -75,7 +74,7 @@ class Reciprocal : public MassStrategy {
     element.dof = {0, 1, functions > 2 ? 2 : -1, functions > 2 ? 3 : -1};
     alone.elements = {element};
     const Eigen::MatrixXd consistent = consistent_mass(alone);
-    const Eigen::MatrixXd P = R * (R.transpose() * A * R).inverse() * R.transpose() * A;
+    const Eigen::MatrixXd P = R * inverse(Eigen::MatrixXd(R.transpose() * A * R)) * R.transpose() * A;
     const Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(functions, functions) - P;
     const Eigen::MatrixXd mass = A * P + Q.transpose() * ((1 - beta_) * consistent + beta_ * A) * Q;
     return 0.5 * (mass + mass.transpose());

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/contract/plugin_call.hpp>
 #include <ricochet/scene/assembly.hpp>
 
@@ -84,9 +84,8 @@ Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space) {
            fmt::format("the inverse is {} × {}, the space has {} dofs", R.rows(), R.cols(), space.dofs));
     demand(R.allFinite(), "the inverse has an entry that is not finite");
     demand((R - R.transpose()).norm() <= 1e-13 * R.norm(), "the inverse is not symmetric");
-    const Eigen::LLT<Eigen::MatrixXd> factor(R);
-    demand(factor.info() == Eigen::Success, "the inverse is not positive definite");
-    const Eigen::MatrixXd M = factor.solve(Eigen::MatrixXd::Identity(R.rows(), R.rows()));
+    demand(is_definite(R), "the inverse is not positive definite");
+    const Eigen::MatrixXd M = definite_solve(R, Eigen::MatrixXd::Identity(R.rows(), R.rows()));
     return 0.5 * (M + M.transpose());
   }
   if (!inertia.factored()) {
@@ -103,9 +102,8 @@ Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space) {
                      C.cols(), space.dofs));
   demand(B.allFinite() && C.allFinite(), "a factor has an entry that is not finite");
   demand((C - C.transpose()).norm() <= 1e-13 * C.norm(), "the mass of the velocities is not symmetric");
-  const Eigen::LLT<Eigen::MatrixXd> factor(C);
-  demand(factor.info() == Eigen::Success, "the mass of the velocities is not positive definite");
-  return B.transpose() * factor.solve(B);
+  demand(is_definite(C), "the mass of the velocities is not positive definite");
+  return B.transpose() * definite_solve(C, B);
 }
 
 Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space) {

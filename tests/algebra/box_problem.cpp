@@ -1,4 +1,4 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/allocations.hpp"
+#include "tests/eigen.hpp"
 
 using namespace ricochet;
 using Eigen::MatrixXd;
@@ -91,7 +92,7 @@ VectorXd enumerate(const Problem& problem) {
     VectorXd p = VectorXd::Zero(m);
     if (!set.empty()) {
       const MatrixXd sub = A(set, set);
-      const VectorXd efforts = sub.ldlt().solve(target.head(sub.rows()));
+      const VectorXd efforts = eigen::ldlt_solve(sub, target.head(sub.rows()));
       p(set) = efforts;
     }
     // A pattern is right only with the signs that it says.
@@ -128,8 +129,7 @@ class Random {
   bool chance(double probability) { return uniform_(engine_) < probability; }
   // Q diag(d) Qᵀ with d spread geometrically over `decades`.
   MatrixXd spd(int m, double decades) {
-    const MatrixXd Q =
-        Eigen::HouseholderQR<MatrixXd>(MatrixXd::NullaryExpr(m, m, [&] { return (*this)(-1, 1); })).householderQ();
+    const MatrixXd Q = eigen::orthogonal(MatrixXd::NullaryExpr(m, m, [&] { return (*this)(-1, 1); }));
     VectorXd d(m);
     for (int i = 0; i < m; ++i) d[i] = std::pow(10, -decades * i / std::max(1, m - 1));
     const MatrixXd W = Q * d.asDiagonal() * Q.transpose();
@@ -341,7 +341,7 @@ TEST_CASE("lower = upper is an equality, of either sign", "[box]") {
     problem.lower = problem.upper = VectorXd::NullaryExpr(6, [&] { return random(-1, 1); });
     const Solution s = solve(problem);
     check_complementarity(problem, s);
-    const VectorXd expected = problem.A().ldlt().solve(problem.lower - problem.free);
+    const VectorXd expected = eigen::ldlt_solve(problem.A(), problem.lower - problem.free);
     // Condition 1000, two stable solves.
     CHECK((s.p - expected).norm() <= 1e5 * epsilon * expected.norm());
   }
@@ -442,7 +442,7 @@ TEST_CASE("the plain active set can cycle, descent does not", "[box]") {
   for (const auto& c : cases) {
     const long m = c.free.size();
     const Problem problem{c.W, 1, 0, c.free, VectorXd::Zero(m), VectorXd::Constant(m, infinity)};
-    REQUIRE(Eigen::SelfAdjointEigenSolver<MatrixXd>(c.W).eigenvalues().minCoeff() > 0);
+    REQUIRE(eigen::values(c.W).minCoeff() > 0);
     BoxSolver plain;
     plain.prepare(static_cast<int>(m));
     plain.limit_descent(0);

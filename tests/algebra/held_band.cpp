@@ -1,4 +1,4 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -6,6 +6,7 @@
 #include <ricochet/algebra/held_band.hpp>
 
 #include "tests/allocations.hpp"
+#include "tests/eigen.hpp"
 
 namespace held_band_tests {
 
@@ -85,8 +86,8 @@ class Random {
 
 MatrixXd delassus(const QuasiDefinite& S, const MatrixXd& H) {
   MatrixXd whole(S.A);
-  if (S.G.rows() > 0) whole += MatrixXd(S.G).transpose() * MatrixXd(S.Cv).inverse() * MatrixXd(S.G);
-  return H * whole.ldlt().solve(H.transpose());
+  if (S.G.rows() > 0) whole += MatrixXd(S.G).transpose() * eigen::inverse(S.Cv) * MatrixXd(S.G);
+  return H * eigen::ldlt_solve_all(whole, H.transpose());
 }
 
 VectorXd held_efforts(const MatrixXd& W, const VectorXd& c, const VectorXd& r) {
@@ -95,7 +96,7 @@ VectorXd held_efforts(const MatrixXd& W, const VectorXd& c, const VectorXd& r) {
     if (c[i] < infinity) set.push_back(i);
   VectorXd p = VectorXd::Zero(c.size());
   const MatrixXd A = W(set, set) + MatrixXd(VectorXd(c(set)).asDiagonal());
-  const VectorXd efforts = A.ldlt().solve(VectorXd(r(set)));
+  const VectorXd efforts = eigen::ldlt_solve(A, r(set));
   p(set) = efforts;
   return p;
 }

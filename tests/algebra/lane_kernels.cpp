@@ -1,5 +1,5 @@
 // Kernels against plain loops, for each instruction set and each number of lanes.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 
+#include "tests/eigen.hpp"
 #include "tests/instruction_sets.hpp"
 
 using namespace ricochet;
@@ -205,7 +206,7 @@ TEST_CASE("a band step solves S z = K k + M m + shape·scale + load") {
     rhs += dense_K * a;
     if (full) rhs += dense_M * c;
     // S is diagonally dominant: its condition is a small number.
-    CHECK((dense_S.ldlt().solve(rhs) - found).lpNorm<Eigen::Infinity>() < 1e-13);
+    CHECK((eigen::ldlt_solve(dense_S, rhs) - found).lpNorm<Eigen::Infinity>() < 1e-13);
   }
 }
 
@@ -373,7 +374,7 @@ TEST_CASE("a quasi-definite system equals its Schur complement, and a singular o
   CHECK(ldlt.half_width() == 5);
   const Eigen::MatrixXd A = system.A, G = system.G, Cv = system.Cv;
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2),
-                        expected = (A + G.transpose() * Cv.inverse() * G).ldlt().solve(b);
+                        expected = eigen::ldlt_solve(A + G.transpose() * eigen::inverse(Cv) * G, b);
   std::vector<int> from = ldlt.order();
   for (int& row : from)
     if (row >= n) row = -1;

@@ -1,5 +1,5 @@
 // The force law recomputed at each answer, on random operators.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/allocations.hpp"
+#include "tests/eigen.hpp"
 
 using namespace ricochet;
 
@@ -127,8 +128,7 @@ class Random {
   explicit Random(unsigned seed) : engine_(seed) {}
   double operator()(double low, double high) { return low + (high - low) * uniform_(engine_); }
   MatrixXd spd(int m, double decades) {
-    const MatrixXd Q =
-        Eigen::HouseholderQR<MatrixXd>(MatrixXd::NullaryExpr(m, m, [&] { return (*this)(-1, 1); })).householderQ();
+    const MatrixXd Q = eigen::orthogonal(MatrixXd::NullaryExpr(m, m, [&] { return (*this)(-1, 1); }));
     VectorXd d(m);
     for (int i = 0; i < m; ++i) d[i] = std::pow(10, -decades * i / std::max(1, m - 1));
     const MatrixXd W = Q * d.asDiagonal() * Q.transpose();
@@ -280,7 +280,7 @@ TEST_CASE("slopes are the derivative of the effort with respect to what is given
       A.row(i) += (d.stiffness * problem.reach + d.viscosity * problem.rate_reach) * problem.W.row(i);
       right[i] = -d.stiffness * way[i] - d.viscosity * rate_way[i];
     }
-    const VectorXd expected = A.partialPivLu().solve(right);
+    const VectorXd expected = eigen::lu_solve(A, right);
     const double step = 1e-6;
     Problem ahead = problem, behind = problem;
     ahead.free += step * way;

@@ -1,10 +1,10 @@
 // Masses with one thing wrong, each caught by the check that looks at it.
-#include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "runners/check/mass_checks.hpp"
 #include "tests/check/sound_schemes.hpp"
+#include "tests/eigen.hpp"
 
 using namespace ricochet;
 using namespace ricochet::testing;
@@ -140,7 +140,7 @@ TEST_CASE("check: what a mass does wrong only where stops stand is caught") {
 TEST_CASE("check: a mass given by its inverse passes, and its faults are caught") {
   const auto entry = [](const std::function<void(Eigen::MatrixXd&)>& change) {
     Entry<MassStrategy> made = mass_entry([change](SparseMatrix& mass, Inertia& inertia) {
-      Eigen::MatrixXd inverse = Eigen::MatrixXd(mass).inverse();
+      Eigen::MatrixXd inverse = eigen::inverse(mass);
       inverse = (0.5 * (inverse + inverse.transpose())).eval();
       change(inverse);
       inertia.inverse = inverse.sparseView();

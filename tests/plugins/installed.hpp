@@ -70,7 +70,7 @@ class Installed : public Prefix {
     fs::copy(std::string(RICOCHET_SOURCE_DIR) + "/tests/plugins/out_of_tree", here_ / "project");
     fs::copy(example("time") / "leap-frog.cpp", here_ / "project/time-leap-frog.cpp");
     step("'" RICOCHET_CMAKE "' -S project -B build -G '" RICOCHET_GENERATOR
-         "' -DCMAKE_BUILD_TYPE=Release"
+         "' -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1"
          " -DCMAKE_CXX_COMPILER='" RICOCHET_CXX_COMPILER "' -DCMAKE_CXX_FLAGS='" RICOCHET_CXX_FLAGS
          "'"
          " -DCMAKE_PREFIX_PATH='" +

@@ -79,6 +79,84 @@ Json all_of(const std::map<std::string, std::string>& wrong) {
   return {{"name", "misbehaves"}, {"how", how}};
 }
 
+/// Nine cases (of a mass: three), one of which uses the plugin `crashes` of a role, with these parameters.
+std::string nine_cases(const std::string& role, nlohmann::ordered_json crashes, double budget) {
+  auto study = nlohmann::ordered_json::parse(study_with("newmark-dumont-paoli"));
+  crashes["name"] = "crashes";
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = "signorini";
+  study["duration"] = 0.1;
+  if (budget > 0) study["budget"] = budget;
+  auto& methods = study["methods"][role] = nlohmann::ordered_json::array({crashes});
+  for (int i = 0; i < 8; ++i) {
+    if (role == "contact") methods.push_back({{"name", "penalty"}, {"stiffness", 1e4 + 1e3 * i}});
+    if (role == "time") methods.push_back({{"name", "newmark-dumont-paoli"}, {"beta", 0.25 + 0.02 * i}});
+  }
+  // Masses have no parameter to tell eight of them apart.
+  if (role == "mass") methods.insert(methods.end(), {"consistent", "lumped"});
+  return study.dump(1);
+}
+
+/// Of plugins that end the program or never return: one of each kind, in workers and in threads.
+void check_that_one_case_is_lost(const Installed& installed, const ScratchFolder& here) {
+  struct Bad {
+    std::string role, function;
+    nlohmann::ordered_json parameters;
+    int code = 0;        // of the first run in threads, as a shell tells it
+    std::string reason;  // in the row, at last
+    double budget = 0;
+  };
+  const Bad bad = GENERATE(
+      Bad{"contact", "solve", {{"how", "segv"}}, 139, "signal 11 (segmentation fault)"},
+      Bad{"contact", "prepare", {{"how", "abort"}, {"where", "prepare"}}, 134, "signal 6 (abort)"},
+      Bad{"contact", "solve", {{"how", "overflow"}}, 139, "signal 11 (segmentation fault)"},
+      Bad{"time", "plan", {{"how", "exit"}}, 3, "a call of exit()"},
+      Bad{"time", "plan", {{"how", "throw"}}, 3, "plan()"},
+      Bad{"time", "plan", {{"how", "loop"}}, 3, "did not return from plan() within the budget of 0.5 s", 0.5},
+      Bad{"contact", "solve", {{"how", "loop"}}, 3, "did not return from solve() within the budget of 0.5 s", 0.5},
+      Bad{"mass", "build", {{"how", "segv"}}, 139, "signal 11 (segmentation fault)"});
+  // Plugins of others run in workers, unless somebody wants threads: then a crash ends the program.
+  const bool threads = GENERATE(true, false);
+  const bool crashes = bad.code != 3 || bad.reason.find("exit") != std::string::npos;
+  const std::string plugin = bad.role + " 'crashes'";
+  CAPTURE(plugin, bad.parameters.dump());
+  write_text(here / "study.json", nine_cases(bad.role, bad.parameters, bad.budget));
+  const auto run = [&] {
+    return installed.run(here.path(), std::string("run study.json --out out") + (threads ? " --threads" : ""),
+                         installed.plugins().string());
+  };
+  const Outcome first = run();
+  INFO(first.out << first.err);
+  CHECK(first.code == (threads ? bad.code : 3));
+  const bool ended = !fs::exists(here / "out/cases.csv");
+  CHECK(ended == (threads && crashes));
+  if (ended) {
+    CHECK_THAT(first.err, Contains("plugin " + plugin) && Contains(bad.function + "(): ended by"));
+    const Outcome second = run();
+    INFO(second.out << second.err);
+    CHECK(second.code == 3);
+    CHECK_THAT(second.err, Contains("is kept as failed: plugin " + plugin));
+  }
+  int failed = 0;
+  for (const auto& one : read_cases(here / "out/cases.csv")) {
+    if (one.at(bad.role) != "crashes") {
+      CHECK(one.at("status") == "done");
+      continue;
+    }
+    ++failed;
+    CHECK(one.at("status") == "failed");
+    const std::string reason = !crashes  ? bad.reason
+                               : threads ? "by " + bad.reason + " in " + bad.function + "()"
+                                         : bad.function + "(): its process was ended twice by " + bad.reason;
+    CHECK_THAT(one.at("reason"), Contains("plugin " + plugin) && Contains(reason));
+    CHECK(fs::exists(here / "out/failures" / (one.at("case") + ".json")));
+  }
+  CHECK(failed == 1);
+  const Outcome report = installed.run(here.path(), "report out");
+  CHECK(report.code == 0);
+  CHECK_THAT(read_text(here / "out/report.html"), Contains("crashes"));
+}
+
 }  // namespace
 
 TEST_CASE("plugins built outside of the tree against the installed package") {
@@ -273,87 +351,8 @@ TEST_CASE("plugins built outside of the tree against the installed package") {
     INFO(described.out << described.err);
     CHECK(described.code == 0);
   }
-}
 
-namespace {
-
-/// Nine cases (of a mass: three), one of which uses the plugin `crashes` of a role, with these parameters.
-std::string nine_cases(const std::string& role, nlohmann::ordered_json crashes, double budget) {
-  auto study = nlohmann::ordered_json::parse(study_with("newmark-dumont-paoli"));
-  crashes["name"] = "crashes";
-  study["methods"]["mass"] = "consistent";
-  study["methods"]["contact"] = "signorini";
-  study["duration"] = 0.1;
-  if (budget > 0) study["budget"] = budget;
-  auto& methods = study["methods"][role] = nlohmann::ordered_json::array({crashes});
-  for (int i = 0; i < 8; ++i) {
-    if (role == "contact") methods.push_back({{"name", "penalty"}, {"stiffness", 1e4 + 1e3 * i}});
-    if (role == "time") methods.push_back({{"name", "newmark-dumont-paoli"}, {"beta", 0.25 + 0.02 * i}});
+  SECTION("one that ends the program or never returns costs a study one case, and is named") {
+    check_that_one_case_is_lost(installed, here);
   }
-  // Masses have no parameter to tell eight of them apart.
-  if (role == "mass") methods.insert(methods.end(), {"consistent", "lumped"});
-  return study.dump(1);
-}
-
-}  // namespace
-
-TEST_CASE("plugins that end the program or never return cost a study one case, and are named") {
-  const Installed& installed = Installed::once();
-  const ScratchFolder here;
-  struct Bad {
-    std::string role, function;
-    nlohmann::ordered_json parameters;
-    int code = 0;        // of the first run in threads, as a shell tells it
-    std::string reason;  // in the row, at last
-    double budget = 0;
-  };
-  const Bad bad = GENERATE(
-      Bad{"contact", "solve", {{"how", "segv"}}, 139, "signal 11 (segmentation fault)"},
-      Bad{"contact", "prepare", {{"how", "abort"}, {"where", "prepare"}}, 134, "signal 6 (abort)"},
-      Bad{"contact", "solve", {{"how", "overflow"}}, 139, "signal 11 (segmentation fault)"},
-      Bad{"time", "plan", {{"how", "exit"}}, 3, "a call of exit()"},
-      Bad{"time", "plan", {{"how", "throw"}}, 3, "plan()"},
-      Bad{"time", "plan", {{"how", "loop"}}, 3, "did not return from plan() within the budget of 0.5 s", 0.5},
-      Bad{"contact", "solve", {{"how", "loop"}}, 3, "did not return from solve() within the budget of 0.5 s", 0.5},
-      Bad{"mass", "build", {{"how", "segv"}}, 139, "signal 11 (segmentation fault)"});
-  // Plugins of others run in workers, unless somebody wants threads: then a crash ends the program.
-  const bool threads = GENERATE(true, false);
-  const bool crashes = bad.code != 3 || bad.reason.find("exit") != std::string::npos;
-  const std::string plugin = bad.role + " 'crashes'";
-  CAPTURE(plugin, bad.parameters.dump());
-  write_text(here / "study.json", nine_cases(bad.role, bad.parameters, bad.budget));
-  const auto run = [&] {
-    return installed.run(here.path(), std::string("run study.json --out out") + (threads ? " --threads" : ""),
-                         installed.plugins().string());
-  };
-  const Outcome first = run();
-  INFO(first.out << first.err);
-  CHECK(first.code == (threads ? bad.code : 3));
-  const bool ended = !fs::exists(here / "out/cases.csv");
-  CHECK(ended == (threads && crashes));
-  if (ended) {
-    CHECK_THAT(first.err, Contains("plugin " + plugin) && Contains(bad.function + "(): ended by"));
-    const Outcome second = run();
-    INFO(second.out << second.err);
-    CHECK(second.code == 3);
-    CHECK_THAT(second.err, Contains("is kept as failed: plugin " + plugin));
-  }
-  int failed = 0;
-  for (const auto& one : read_cases(here / "out/cases.csv")) {
-    if (one.at(bad.role) != "crashes") {
-      CHECK(one.at("status") == "done");
-      continue;
-    }
-    ++failed;
-    CHECK(one.at("status") == "failed");
-    const std::string reason = !crashes  ? bad.reason
-                               : threads ? "by " + bad.reason + " in " + bad.function + "()"
-                                         : bad.function + "(): its process was ended twice by " + bad.reason;
-    CHECK_THAT(one.at("reason"), Contains("plugin " + plugin) && Contains(reason));
-    CHECK(fs::exists(here / "out/failures" / (one.at("case") + ".json")));
-  }
-  CHECK(failed == 1);
-  const Outcome report = installed.run(here.path(), "report out");
-  CHECK(report.code == 0);
-  CHECK_THAT(read_text(here / "out/report.html"), Contains("crashes"));
 }

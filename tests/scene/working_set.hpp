@@ -1,5 +1,4 @@
 #pragma once
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <ricochet/scene/semi_discrete.hpp>
 #include <string>
 #include <variant>
+
+#include "tests/eigen.hpp"
 
 /// \file
 /// The beam most tests use, the mass plugins as a study would open them, and small dense checks.
@@ -77,7 +78,7 @@ inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const Mass
 /// μ of M x = μ K x, ascending: 1/ω² of the structure, zeros where M has a kernel.
 inline Eigen::VectorXd compliances(const SparseMatrix& stiffness, const Inertia& inertia) {
   const Eigen::MatrixXd K = stiffness, M = dense_mass(inertia);
-  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(M, K, Eigen::EigenvaluesOnly).eigenvalues();
+  return eigen::modes(M, K).values;
 }
 
 /// Slope of the least-squares line through (x_i, y_i).

@@ -1,7 +1,7 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
@@ -130,7 +130,7 @@ MatrixXd FlightBound::step_change(const StepRows& rows, int mode) const {
 bool FlightBound::double_root(const MatrixXd& D, ModeRoots& found) {
   if (slots_ != 2) return false;
   const MatrixXd A = MatrixXd::Identity(2, 2) + D;
-  const double half = 0.5 * A.trace(), apart = half * half - A.determinant();
+  const double half = 0.5 * A.trace(), apart = half * half - determinant(A);
   constexpr double round_off = 1e-14, away = 0.1;
   if (std::abs(apart) > round_off || std::abs(half) > 1 + grows || std::abs(half - 1) < away || std::abs(half) < away)
     return false;
@@ -184,13 +184,13 @@ FlightBound::ModeRoots FlightBound::roots(const StepRows& rows, int mode) {
   }
   MatrixXcd W;
   if (count == slots_) {
-    W = V.inverse();
+    W = inverse(V);
   } else {
     // Aˢ leaves nothing of what is over after s steps: W = Λ⁻ˢ V⁺ Aˢ.
     found.rest_steps = slots_ - static_cast<int>(count);
     MatrixXd power = MatrixXd::Identity(slots_, slots_);
     for (int k = 0; k < slots_; ++k) power += scaled * power.eval();
-    W = (V.adjoint() * V).inverse() * V.adjoint() * power.cast<Complex>();
+    W = inverse(MatrixXcd(V.adjoint() * V)) * V.adjoint() * power.cast<Complex>();
     for (Index l = 0; l < count; ++l) W.row(l) *= std::pow(1.0 + found.change[l], -slots_);
   }
   found.right = scale.cast<Complex>().asDiagonal() * V;
@@ -209,12 +209,13 @@ void FlightBound::steady(const MatrixXd& scaled, const Eigen::VectorXd& scale, M
     const Complex turn(-2 * half * half, std::sin(drive_.angle));  // e^{iωh} − 1
     const MatrixXcd shifted = turn * MatrixXcd::Identity(slots_, slots_) - scaled.cast<Complex>();
     const Eigen::VectorXcd force = scaled_B.col(1).cast<Complex>() - Complex(0, 1) * scaled_B.col(0).cast<Complex>();
-    found.phasor = scale.cast<Complex>().asDiagonal() * shifted.fullPivLu().solve(force);
+    found.phasor = scale.cast<Complex>().asDiagonal() * pivoted_solve(shifted, force);
     found.steady.col(0) = -found.phasor.imag();
     found.steady.col(1) = found.phasor.real();
   }
   if (drive_.constant)
-    found.steady.col(drive_.one()) = scale.asDiagonal() * (-scaled).fullPivLu().solve(scaled_B.col(drive_.one()));
+    found.steady.col(drive_.one()) =
+        scale.asDiagonal() * pivoted_solve(MatrixXd(-scaled), Eigen::VectorXd(scaled_B.col(drive_.one())));
   if (!found.steady.allFinite()) cause_ = "a mode is in resonance with the drive";
 }
 

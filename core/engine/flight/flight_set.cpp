@@ -1,8 +1,8 @@
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <ricochet/algebra/constrained_modes.hpp>
+#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
@@ -129,10 +129,9 @@ void FlightSet::hold(const Program& program, const FlightSet* twin) {
   const FoldedStage& folded = program.stages.front().folded;
   const MatrixXd response =
       (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
-  settle_ = basis_.transpose() * response *
-            (held_rows_ * response).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
-  lever_ = held_rows_.transpose() *
-           (held_rows_ * held_rows_.transpose()).llt().solve(MatrixXd::Identity(held_rows_.rows(), held_rows_.rows()));
+  const MatrixXd one = MatrixXd::Identity(held_rows_.rows(), held_rows_.rows());
+  settle_ = basis_.transpose() * response * definite_solve(held_rows_ * response, one);
+  lever_ = held_rows_.transpose() * definite_solve(held_rows_ * held_rows_.transpose(), one);
 }
 
 FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,

@@ -1,7 +1,7 @@
 // The balance closes; the energies are those of the formulas; impacts are counted once.
-#include <Eigen/Eigenvalues>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
+#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 #include "tests/refusals.hpp"
 
@@ -267,9 +267,8 @@ TEST_CASE("a lane that blows up is stopped where it is next looked at") {
   long long stopped[2] = {};
   for (const Looks looks : {Looks::every_step, Looks::seldom}) {
     const auto problem = problem_of(scene, 8, {"lumped"});
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(Eigen::MatrixXd(problem->stiffness),
-                                                                          dense_mass(problem->inertia));
-    const double h = 3 / std::sqrt(modes.eigenvalues().maxCoeff());  // it can take 2
+    const Eigen::VectorXd squares = eigen::modes(problem->stiffness, dense_mass(problem->inertia)).values;
+    const double h = 3 / std::sqrt(squares.maxCoeff());  // it can take 2
     Marcher beam = marcher(scene, 8, methods, h);
     EnergyAudit audit(beam, looks);
     beam.start(&audit);

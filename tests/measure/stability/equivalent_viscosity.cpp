@@ -1,8 +1,8 @@
 // What schemes dissipate by themselves, against their closed forms and against marching.
-#include <Eigen/Eigenvalues>
 #include <numbers>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 
+#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -113,10 +113,9 @@ TEST_CASE("equivalent viscosity: it is the decay that is marched") {
   scene.stops.lower.reset();
   scene.stops.upper.reset();
   const auto problem = problem_of(scene, 4, consistent);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense_mass(problem->inertia),
-                                                                        Eigen::MatrixXd(problem->stiffness));
-  const Eigen::VectorXd shape = eigen.eigenvectors().col(problem->dofs() - 1);
-  const double square = 1 / eigen.eigenvalues()[problem->dofs() - 1], h = 1e-3;
+  const eigen::Modes modes = eigen::modes(dense_mass(problem->inertia), problem->stiffness);
+  const Eigen::VectorXd shape = modes.vectors.col(problem->dofs() - 1);
+  const double square = 1 / modes.values[problem->dofs() - 1], h = 1e-3;
   auto program = compiled(problem, {consistent, {"none"}, moreau_jean(0.8)}, h, {}, [&](LaneSpec lane) {
     lane.position = shape;
     lane.velocity.setZero();

@@ -1,8 +1,8 @@
 // What marching shows, against what the plan predicts, and against what theory says of energy at impacts.
-#include <Eigen/Cholesky>
 #include <numbers>
 #include <ricochet/measure/stability/observed_stability.hpp>
 
+#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -121,7 +121,7 @@ class Disturbance final : public StepObserver {
 
 std::array<double, 3> Cell::held(double h, const Excitation& start, int tip) const {
   const Eigen::VectorXd row = Eigen::RowVectorXd(problem->contact.row(tip)).transpose();
-  const Eigen::VectorXd rest = Eigen::MatrixXd(problem->stiffness).ldlt().solve(row);
+  const Eigen::VectorXd rest = eigen::ldlt_solve(problem->stiffness, row);
   auto pressing = law();
   const LinearLaw linear = linear_law(*pressing, problem->points(), parameters());
   LaneSpec lane = scene_lane(*problem, parameters());

@@ -1,12 +1,12 @@
 // What the plan says of its step before anything runs, against closed forms, against marching, and against itself.
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/structure_modes.hpp>
 
 #include "tests/amplification_roots.hpp"
+#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -188,7 +188,7 @@ TEST_CASE("the step matrix is the step that is marched, contact closed") {
         options.kind = OperatorKind::band;
         auto program = compiled(problem, {{"consistent"}, contact, time}, h, options, [&](const LaneSpec& lane) {
           const MatrixXd K = problem->stiffness;
-          const VectorXd lift = K.ldlt().solve(VectorXd(problem->contact.row(0).transpose()));
+          const VectorXd lift = eigen::ldlt_solve(K, problem->contact.row(0).transpose());
           std::vector<LaneSpec> two(2, lane);
           for (int k = 0; k < 2; ++k) {
             LaneSpec& spec = two[static_cast<std::size_t>(k)];

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <numbers>
 
+#include "tests/eigen.hpp"
 #include "tests/plugins/contact/impacts.hpp"
 #include "tests/refusals.hpp"
 
@@ -71,7 +72,7 @@ TEST_CASE("Nitsche's springs are consistent: a structure at rest on its stop fee
   const Eigen::MatrixXd K = problem.own_stiffness, H = problem.contact, G = problem.measured();
   // Points held at given displacements by efforts p, at rest.
   const Eigen::VectorXd p = Eigen::VectorXd::LinSpaced(H.rows(), 3, -2);
-  const Eigen::VectorXd q = K.ldlt().solve(H.transpose() * p);
+  const Eigen::VectorXd q = eigen::ldlt_solve(K, H.transpose() * p);
   // p = κ(H q − G q) is the reaction, and the structure is in balance: K' q = Gᵀp.
   CHECK((kappa * (H * q - G * q) - p).norm() < 1e-9 * p.norm());
   const Eigen::VectorXd load = H.transpose() * p;

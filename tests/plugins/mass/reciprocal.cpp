@@ -1,5 +1,3 @@
-#include <Eigen/LU>
-
 #include "tests/marching.hpp"
 #include "tests/plugins/mass/laws.hpp"
 

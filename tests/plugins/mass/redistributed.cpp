@@ -1,3 +1,5 @@
+#include <Eigen/LU>
+
 #include "tests/plugins/mass/laws.hpp"
 
 using namespace ricochet;

@@ -1,6 +1,6 @@
 // What theory says of the schemes, each a law.
-#include <Eigen/Eigenvalues>
 
+#include "tests/eigen.hpp"
 #include "tests/marching.hpp"
 
 using namespace ricochet;
@@ -13,9 +13,9 @@ class ModalSolution {
  public:
   explicit ModalSolution(const SemiDiscrete& problem) : alpha_(problem.damping.stiffness) {
     const Eigen::MatrixXd K = problem.stiffness, M = dense_mass(problem.inertia);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K, M);
-    pulsation_ = eigen.eigenvalues().cwiseSqrt();
-    const Eigen::MatrixXd modes = eigen.eigenvectors();
+    const eigen::Modes found = eigen::modes(K, M);
+    pulsation_ = found.values.cwiseSqrt();
+    const Eigen::MatrixXd& modes = found.vectors;
     tip_ = (problem.tip * modes).transpose();
     position = 0.05 / tip_[0] * modes.col(0);
     velocity = 0.4 * pulsation_[0] * position;
