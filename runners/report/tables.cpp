@@ -10,6 +10,7 @@
 #include "runners/report/html_table.hpp"
 #include "runners/report/status_counts.hpp"
 #include "runners/report/template.hpp"
+#include "runners/store/curve_files.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
@@ -85,8 +86,13 @@ std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std
   const auto worked = [](const CaseRecord& record, double value) {
     return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
   };
+  // Of all cases, where the page shows some of them.
+  const bool files =
+      view.results().expected_cases <= static_cast<int>(kMostCurveFiles) && has_curve_files(view.results());
   std::vector<CaseColumn> out = {
-      {"case", "case", "Identity of the case: its row in cases.csv, and its file in curves/ where cases have one each",
+      {"case", "case",
+       files ? "Identity of the case: its row in cases.csv and its file in curves/"
+             : "Identity of the case: its row in cases.csv",
        "text", false,
        [&view](const CaseRecord& record) {
          return CaseCell{record.id, "text", view.colour(record)};
