@@ -131,7 +131,7 @@ std::string render_page(const StudyResults& results, const KindPage& kind, std::
   if (const std::string methods = kind.methods ? kind.methods(view) : ""; !methods.empty())
     page.set("methods", html_section(methods));
   if (const std::string effects = effects_html(view); !effects.empty()) page.set("effects", html_section(effects));
-  page.set("cases", case_table_html(shown));
+  page.set("cases", case_table_html(shown, results));
   if (const std::string tables = derived_tables_html(results); !tables.empty())
     page.set("tables", html_section(tables));
   page.set("left_out", left_out_html(view));

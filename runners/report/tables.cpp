@@ -82,13 +82,10 @@ CaseColumn measure_cells(const std::string& name) {
 }
 
 /// Which case it is, what became of it, what sets it apart, what it measured; last what a first look leaves out.
-std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures) {
+std::vector<CaseColumn> case_columns(const CaseView& view, const std::vector<std::string>& measures, bool files) {
   const auto worked = [](const CaseRecord& record, double value) {
     return record.status == "refused" ? CaseCell{"", ""} : number_cell(value, 5);
   };
-  // Of all cases, where the page shows some of them.
-  const bool files =
-      view.results().expected_cases <= static_cast<int>(kMostCurveFiles) && has_curve_files(view.results());
   std::vector<CaseColumn> out = {
       {"case", "case",
        files ? "Identity of the case: its row in cases.csv and its file in curves/"
@@ -152,7 +149,7 @@ std::vector<std::pair<Entry, Cases>> grouped(const CaseView& view, List list) {
 
 }  // namespace
 
-std::string case_table_html(const CaseView& view) {
+std::string case_table_html(const CaseView& view, const StudyResults& all) {
   const StudyResults& results = view.results();
   if (results.cases.empty()) return "<p>No case has run yet.</p>\n";
   const std::vector<std::string> measures = measures_present(view);
@@ -164,7 +161,7 @@ std::string case_table_html(const CaseView& view) {
     one.set("count", std::to_string(count));
     statuses << one;
   }
-  std::vector<CaseColumn> columns = case_columns(view, measures);
+  std::vector<CaseColumn> columns = case_columns(view, measures, has_curve_files(all));
   // Cells that are out of sight are left out of a page of many cases, which they would fill.
   const size_t all_columns = columns.size();
   if (results.cases.size() > most_full_rows) std::erase_if(columns, [](const CaseColumn& one) { return one.extra; });

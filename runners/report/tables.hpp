@@ -6,8 +6,9 @@
 namespace ricochet::report {
 
 /// All cases with status, reason and every measure: sortable, filterable; units in the header, the measure's text as
-/// its tooltip and in a list below.
-std::string case_table_html(const CaseView& view);
+/// its tooltip and in a list below. `all`: results of which the view may hold a part; they decide whether there are
+/// files of curves.
+std::string case_table_html(const CaseView& view, const StudyResults& all);
 
 /// What `compile` left out of the cases, the same item and reason put together.
 std::string left_out_html(const CaseView& view);

@@ -134,10 +134,10 @@ bool FlightBound::see_exposed(Watched& watched, long long k, See&& see) {
                            reached_.data());
   for (std::size_t i = 0; i < points; ++i) {
     const double lower = watched.watch.lower[i], upper = watched.watch.upper[i];
+    if (lower == -infinity && upper == infinity) continue;
     const Range range =
         around(watched, i, static_cast<double>(k), reached_.data() + i, points, rough ? fast_radius_ : 0);
     if ((range.low > lower && range.high < upper) || (rough && inside(watched, i, k))) continue;
-    if (lower == -infinity && upper == infinity) continue;
     if (!see(i)) return false;
   }
   return true;

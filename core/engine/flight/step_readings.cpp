@@ -3,79 +3,56 @@
 
 namespace ricochet {
 
-namespace {
-
-constexpr int differences_read = 4;
-
-}  // namespace
-
 StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int point)
-    : size_(rows.slots() * rows.modes()), drives_(rows.drive().count()) {
+    : size_(rows.slots() * rows.modes()),
+      drives_(rows.drive().count()),
+      weights_(static_cast<std::size_t>(rows_read * size_)),
+      drive_(static_cast<std::size_t>(rows_read * drives_)) {
   const int modes = rows.modes(), slots = rows.slots();
-  const auto room = [](std::vector<double>& table, int count) { table.assign(static_cast<std::size_t>(count), 0.0); };
-  room(weights_, (block + 1) * size_);
-  room(drive_, (block + 1) * drives_);
-  room(difference_weights_, differences_read * size_);
-  room(difference_drive_, differences_read * drives_);
   const Eigen::MatrixXd turn = rows.drive().change(1);
-  // A row becomes that of its change from step to step.
-  Eigen::RowVectorXd own, change(rows.width());
-  const auto differ = [&](const Eigen::MatrixXd& step) {
-    change.noalias() = own.head(slots).lazyProduct(step);
-    if (drives_ > 0) change.tail(drives_) += own.tail(drives_).lazyProduct(turn);
+  const auto add_drive = [&](int at, const auto& more) {
+    for (int k = 0; k < drives_; ++k) drive_[static_cast<std::size_t>(at * drives_ + k)] += more[k];
   };
-  const auto put = [&](std::vector<double>& weights, std::vector<double>& drive, int at, int mode) {
-    for (int j = 0; j < slots; ++j) weights[static_cast<std::size_t>(at * size_ + j * modes + mode)] = own[j];
-    for (int k = 0; k < drives_; ++k) drive[static_cast<std::size_t>(at * drives_ + k)] += own[slots + k];
-  };
-  for (int mode = 0; mode < modes; ++mode) {
-    const Eigen::MatrixXd& step_change = rows.change(mode);
-    const Eigen::RowVectorXd first = watch.rows(point, mode) * rows.of(mode, watch.stage, watch.value);
-    own = first;
+  // `own` at each step, and its differences: `differ`() is what it changes by from step to step.
+  const auto put_all = [&](const Eigen::RowVectorXd& own, auto&& put, auto&& differ) {
+    Eigen::RowVectorXd now = own;
     for (int step = 0; step <= block; ++step) {
-      put(weights_, drive_, step, mode);
-      differ(step_change);
-      own += change;
+      put(step, now);
+      now += differ(now);
     }
-    own = first;
+    now = own;
     for (int order = 0; order < differences_read; ++order) {
-      put(difference_weights_, difference_drive_, order, mode);
-      differ(step_change);
-      own = change;
+      put(differences_from + order, now);
+      now = differ(now);
     }
-  }
-  const auto add_drive = [&](std::vector<double>& drive, int at, const Eigen::RowVectorXd& more) {
-    for (int k = 0; k < drives_; ++k) drive[static_cast<std::size_t>(at * drives_ + k)] += more[k];
   };
-  Eigen::RowVectorXd drive = watch.drive.row(point);
-  for (int step = 0; step <= block; ++step) {
-    add_drive(drive_, step, drive);
-    drive += drive * turn;
-  }
-  drive = watch.drive.row(point);
-  for (int order = 0; order < differences_read; ++order) {
-    add_drive(difference_drive_, order, drive);
-    drive = (drive * turn).eval();
-  }
+  Eigen::RowVectorXd change(rows.width());
+  for (int mode = 0; mode < modes; ++mode)
+    put_all(
+        watch.rows(point, mode) * rows.of(mode, watch.stage, watch.value),
+        [&](int at, const Eigen::RowVectorXd& own) {
+          for (int j = 0; j < slots; ++j) weights_[static_cast<std::size_t>(at * size_ + j * modes + mode)] = own[j];
+          add_drive(at, own.tail(drives_));
+        },
+        [&](const Eigen::RowVectorXd& own) -> const Eigen::RowVectorXd& {
+          change.noalias() = own.head(slots).lazyProduct(rows.change(mode));
+          if (drives_ > 0) change.tail(drives_) += own.tail(drives_).lazyProduct(turn);
+          return change;
+        });
+  put_all(watch.drive.row(point), add_drive,
+          [&](const Eigen::RowVectorXd& own) -> Eigen::RowVectorXd { return own * turn; });
 }
 
 double StepReadings::operator()(int step, const double* x, const double* e) const {
-  double sum = flight_kernels().dot(size_, weights_.data() + static_cast<std::size_t>(step * size_), x);
-  for (int k = 0; k < drives_; ++k) sum += drive_[static_cast<std::size_t>(step * drives_ + k)] * e[k];
-  return sum;
+  double value;
+  read(step, 1, x, e, &value);
+  return value;
 }
 
-void StepReadings::first(int steps, const double* x, const double* e, double* out) const {
-  flight_kernels().dots(size_, steps, weights_.data(), x, out);
-  for (int step = 0; step < steps; ++step)
-    for (int k = 0; k < drives_; ++k) out[step] += drive_[static_cast<std::size_t>(step * drives_ + k)] * e[k];
-}
-
-void StepReadings::differences(const double* x, const double* e, double out[4]) const {
-  flight_kernels().dots(size_, differences_read, difference_weights_.data(), x, out);
-  for (int order = 0; order < differences_read; ++order)
-    for (int k = 0; k < drives_; ++k)
-      out[order] += difference_drive_[static_cast<std::size_t>(order * drives_ + k)] * e[k];
+void StepReadings::read(int first, int count, const double* x, const double* e, double* out) const {
+  flight_kernels().dots(size_, count, weights_.data() + static_cast<std::ptrdiff_t>(first) * size_, x, out);
+  for (int row = 0; row < count; ++row)
+    for (int k = 0; k < drives_; ++k) out[row] += drive_[static_cast<std::size_t>((first + row) * drives_ + k)] * e[k];
 }
 
 }  // namespace ricochet
