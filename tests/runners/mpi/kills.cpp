@@ -56,24 +56,46 @@ Json sweep() {
   return study;
 }
 
-/// Kills, again and again, one of those that `victims` finds, at a moment of which `luck` decides.
-void kill_at_random(const std::function<std::vector<pid_t>(const UnderWay&)>& victims, bool survives) {
+using Victims = std::function<std::vector<pid_t>(const UnderWay&)>;
+using Seconds = std::chrono::duration<double>;
+
+/// Those that live, waited for until there are some or the run has ended.
+std::vector<pid_t> wait_for(const Victims& victims, const UnderWay& run) {
+  std::vector<pid_t> found = victims(run);
+  for (; found.empty() && !run.ended(); found = victims(run)) ::usleep(1000);
+  return found;
+}
+
+/// Seconds from the first look at which there are victims to the last one, in a run that nobody disturbs.
+double time_of(const Victims& victims, const ScratchFolder& scratch, const std::string& line) {
+  UnderWay run(scratch, line);
+  REQUIRE_FALSE(wait_for(victims, run).empty());
+  const auto first = std::chrono::steady_clock::now();
+  auto last = first;
+  for (; !run.ended(); ::usleep(5000))
+    if (!victims(run).empty()) last = std::chrono::steady_clock::now();
+  REQUIRE(run.finish().code == 0);
+  return Seconds(last - first).count();
+}
+
+/// Kills, again and again, one of those that `victims` finds, at a moment of their life of which `luck` decides: how
+/// long a machine takes until there are any says nothing.
+void kill_at_random(const Victims& victims, bool survives) {
   const ScratchFolder scratch;
   const Json study = sweep();
   REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
-  const auto begin = std::chrono::steady_clock::now();
-  REQUIRE(to_its_end(scratch, ranks(2, run_words(scratch, study, "undisturbed"))).code == 0);
-  const double lasts = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double lasts = time_of(victims, scratch, ranks(2, run_words(scratch, study, "undisturbed")));
   int killed = 0;
   for (int i = 0; i < kills(); ++i) {
     std::mt19937 luck(static_cast<std::uint32_t>(i));
     const double moment = std::uniform_real_distribution<double>(0, lasts)(luck);
-    CAPTURE(i, moment);
+    CAPTURE(i, moment, lasts);
     const std::string words = run_words(scratch, study, "out");
     fs::remove_all(scratch / "out");
     Ended ended;
     {
       UnderWay run(scratch, ranks(2, words));
+      wait_for(victims, run);
       ::usleep(static_cast<useconds_t>(1e6 * moment));
       const std::vector<pid_t> found = victims(run);
       if (!found.empty() && ::kill(found[luck() % found.size()], SIGKILL) == 0) ++killed;

@@ -96,7 +96,7 @@ UnderWay::~UnderWay() {
   ::waitpid(process_, &status_, 0);
 }
 
-bool UnderWay::ended() {
+bool UnderWay::ended() const {
   siginfo_t info{};
   return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
 }

@@ -45,7 +45,7 @@ class UnderWay {
   UnderWay& operator=(const UnderWay&) = delete;
 
   pid_t process() const { return process_; }
-  bool ended();
+  bool ended() const;
   /// Sends a signal to the program, and waits.
   Ended finish(int signal = 0);
   /// Processes below it with these words in their command line, "ricochet worker".
