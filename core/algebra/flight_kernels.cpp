@@ -55,6 +55,19 @@ RICOCHET_BODY void cone_body(int n, double k, const double* value, const double*
 RICOCHET_BODY Wide load(const double* x) {
   return *reinterpret_cast<const Loose*>(x);
 }
+// Fewer than four of them, and zeros.
+RICOCHET_BODY Wide load_some(const double* x, int count) {
+  switch (count) {
+    case 0:
+      return Wide{};
+    case 1:
+      return Wide{x[0], 0, 0, 0};
+    case 2:
+      return Wide{x[0], x[1], 0, 0};
+    default:
+      return Wide{x[0], x[1], x[2], 0};
+  }
+}
 // One pass for up to four modes; all that is read of a mode is read before any of it is written.
 template <int slots, int drives>
 RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const double* e, double* out) {
@@ -174,45 +187,50 @@ RICOCHET_BODY void reaches_body(int n, long stride, int points, const double* h,
         [](double* to, double value) { *to = value; });
 }
 
-// Σ_j f_j over n, f given for four at a time and for one.
-template <class Four, class One>
-RICOCHET_BODY double sum_over(int n, Four four, One one) {
-  Wide even{}, odd{};
+// Two sums of products over n, eight at a time: `add`(sums, at) adds four products to one of them, at(array) being its
+// next four numbers. What is over goes on in the same order, without a number that is written to memory.
+template <class Sums, class Add>
+RICOCHET_BODY void sum_by_eight(int n, Sums& even, Sums& odd, Add add) {
   int j = 0;
   for (; j + 2 * wide <= n; j += 2 * wide) {
-    even += four(j);
-    odd += four(j + wide);
+    add(even, [j](const double* of) { return load(of + j); });
+    add(odd, [j](const double* of) { return load(of + j + wide); });
   }
-  for (int l = 0; j < n; ++j, ++l) (l < wide ? even : odd)[l % wide] += one(j);
-  return total(even, odd);
+  if (j + wide <= n) {
+    add(even, [j](const double* of) { return load(of + j); });
+    j += wide;
+    add(odd, [j, count = n - j](const double* of) { return load_some(of + j, count); });
+  } else if (j < n) {
+    add(even, [j, count = n - j](const double* of) { return load_some(of + j, count); });
+  }
 }
 
 RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
-  return sum_over(
-      n, [&](int j) { return load(h + j) * load(x + j); }, [&](int j) { return h[j] * x[j]; });
+  Wide even{}, odd{};
+  sum_by_eight(n, even, odd, [&](Wide& sum, auto at) { sum += at(h) * at(x); });
+  return total(even, odd);
 }
 
 // Four rows at a time: sums do not wait for each other. Each row has the order of dot_body.
 RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double* x, double* out) {
+  struct Four {
+    Wide a{}, b{}, c{}, d{};
+  };
   int i = 0;
   for (; i + 4 <= rows; i += 4, matrix += 4L * n) {
     const double *a = matrix, *b = a + n, *c = b + n, *d = c + n;
-    Wide even[4] = {}, odd[4] = {};
-    int j = 0;
-    for (; j + 2 * wide <= n; j += 2 * wide) {
-      const Wide first = load(x + j), second = load(x + j + wide);
-      even[0] += load(a + j) * first;
-      odd[0] += load(a + j + wide) * second;
-      even[1] += load(b + j) * first;
-      odd[1] += load(b + j + wide) * second;
-      even[2] += load(c + j) * first;
-      odd[2] += load(c + j + wide) * second;
-      even[3] += load(d + j) * first;
-      odd[3] += load(d + j + wide) * second;
-    }
-    for (int l = 0; j < n; ++j, ++l)
-      for (int k = 0; k < 4; ++k) (l < wide ? even : odd)[k][l % wide] += matrix[static_cast<long>(k) * n + j] * x[j];
-    for (int k = 0; k < 4; ++k) out[i + k] = total(even[k], odd[k]);
+    Four even, odd;
+    sum_by_eight(n, even, odd, [&](Four& sums, auto at) {
+      const Wide factor = at(x);
+      sums.a += at(a) * factor;
+      sums.b += at(b) * factor;
+      sums.c += at(c) * factor;
+      sums.d += at(d) * factor;
+    });
+    out[i] = total(even.a, odd.a);
+    out[i + 1] = total(even.b, odd.b);
+    out[i + 2] = total(even.c, odd.c);
+    out[i + 3] = total(even.d, odd.d);
   }
   for (; i < rows; ++i, matrix += n) out[i] = dot_body(n, matrix, x);
 }
@@ -229,16 +247,18 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     for (int b = a; b < width; ++b, form += n) {
       const double* left = x + static_cast<long>(a) * n;
       const double* right = x + static_cast<long>(b) * n;
-      if (b < slots)
-        sum += sum_over(
-            n, [&](int j) { return load(form + j) * load(left + j) * load(right + j); },
-            [&](int j) { return form[j] * left[j] * right[j]; });
-      else if (a < slots)
+      if (a < slots && b >= slots) {
         sum += e[b - slots] * dot_body(n, form, left);
-      else
-        sum += e[a - slots] * e[b - slots] *
-               sum_over(
-                   n, [&](int j) { return load(form + j); }, [&](int j) { return form[j]; });
+        continue;
+      }
+      Wide even{}, odd{};
+      if (b < slots) {
+        sum_by_eight(n, even, odd, [&](Wide& own, auto at) { own += at(form) * at(left) * at(right); });
+        sum += total(even, odd);
+      } else {
+        sum_by_eight(n, even, odd, [&](Wide& own, auto at) { own += at(form); });
+        sum += e[a - slots] * e[b - slots] * total(even, odd);
+      }
     }
   return sum;
 }

@@ -1,8 +1,8 @@
 #pragma once
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/contract/plugin.hpp>
 
 /// \file
@@ -73,7 +73,7 @@ inline bool move_mass(SparseMatrix& mass, const RigidMotions& rigid, const std::
     else if (near(it.row()) && near(it.col()))
       response += diagonal[it.row()] * diagonal[it.col()] * s * s.transpose();
   });
-  const Eigen::Vector3d lambda = response.completeOrthogonalDecomposition().solve(lost);
+  const Eigen::Vector3d lambda = least_norm_solve(response, lost);
   if (!((response * lambda - lost).norm() <= 1e-9 * lost.norm())) return false;
   each([&](SparseMatrix::InnerIterator& it, bool emptied) {
     if (emptied)
@@ -93,7 +93,9 @@ inline bool positive_elsewhere(const SparseMatrix& mass, const std::vector<int>&
   constexpr double regular = 1e-9;
   for (int i = 0; i < scaled.rows(); ++i)
     scaled.coeffRef(i, i) += std::binary_search(empty.begin(), empty.end(), i) ? 1 : -regular;
-  return Eigen::SimplicialLLT<SparseMatrix>(scaled).info() == Eigen::Success;
+  SparseLdlt factors;
+  return factors.factorise(scaled) &&
+         std::all_of(factors.pivot().begin(), factors.pivot().end(), [](double pivot) { return pivot > 0; });
 }
 
 }  // namespace ricochet

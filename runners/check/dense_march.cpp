@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/dense_solvers.hpp>
 
 namespace ricochet::checking {
 namespace {
@@ -100,7 +100,7 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
       Eigen::VectorXd b = load(lane, view.time, stage.load);
       for (std::size_t j = 0; j < stage.history.size(); ++j) b += dense(stage.history[j]) * lane.slots[j];
       if (weights && stage.impulse && impulse != 0) {
-        w = dense(stage.impulse->R).partialPivLu().solve(impulse * (H_.transpose() * p));
+        w = DenseLu(dense(stage.impulse->R)).solve(impulse * (H_.transpose() * p));
         b += dense(stage.impulse->feed) * w;
       }
       if (weights) {
@@ -108,7 +108,7 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
         if (!view.starting)
           for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
       }
-      z = dense(s).partialPivLu().solve(b);
+      z = DenseLu(dense(s)).solve(b);
     }
     if (view.stage == 0) {
       lane.efforts.clear();
