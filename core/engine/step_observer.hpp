@@ -51,7 +51,8 @@ class StepObserver {
   /// The step is complete.
   virtual void step_done(Marcher& marcher) = 0;
   /// How many steps from now on it need not be shown, as long as contact stays what it is: it is told of them by
-  /// skipped(), and the step after them is shown, with the same contact. None, unless it says otherwise.
+  /// skipped(), and the step after them is shown, with the same contact unless Flight::tells_slots(). None, unless it
+  /// says otherwise.
   virtual long long may_skip(const Marcher& /*marcher*/) { return 0; }
   /// Steps were left out; the marcher stands at their end.
   virtual void skipped(Marcher& /*marcher*/, const SkippedSteps& /*steps*/) {}

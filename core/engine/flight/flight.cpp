@@ -26,6 +26,11 @@ Flight::Flight(const Program& program, double layer, long long steps)
   set_ = free_.get();
   held_cause_ = why_not_held(program);
   steps_cause_ = HeldSteps::why_not(program);
+  tells_slots_ = program.stages.size() == 1 && program.width == 1 && (!program.contact || held_cause_.empty());
+  if (tells_slots_) {
+    slots_.assign(program.plan.slots.size(), std::vector<double>(static_cast<std::size_t>(program.model->rows())));
+    for (std::vector<double>& slot : slots_) slot_pointers_.push_back(slot.data());
+  }
   legs_.resize(static_cast<std::size_t>(powers_) + 2);
 }
 
@@ -149,11 +154,14 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   tangents_.resize(columns.size() - 1);
   for (std::size_t k = 0; k < tangents_.size(); ++k)
     if (!set->enter(columns[k + 1], tangents_[k].e, tangents_[k].x)) return fails();
-  const long long k = set->clear_steps().count(start_.x, e, most, pace->next);
-  if (set->held().empty() && k >= 0) clear_ = k < least ? k + 1 : 1;
+  // The steps that begin 0 to `last` steps from now are clear.
+  const long long last = set->clear_steps().count(start_.x, e, most, pace->next);
+  const long long k = tells_slots_ ? std::min(last + 1, most) : last;
+  const long long clear_after = last + 1 - (k < least ? 0 : k);
+  if (set->held().empty() && last >= 0) clear_ = clear_after;
   // What is reached is known to the step: until then there is nothing to look for.
-  if (k < most) pace->wait = k < least ? k + 1 : 1;
-  if (k < 0) return fails();
+  if (last < most) pace->wait = clear_after;
+  if (last < 0) return fails();
   pace->penalty = 0;
   if (k < least) return 0;
   // Points that are near a bound in nearly every step cost as much to follow as steps that are marched: those come
@@ -184,6 +192,13 @@ FlightSums Flight::fly(long long k, Columns columns, HeldSteps::Past past, bool 
   flown_ = k;
   efforts_from_ = -1;
   return sums;
+}
+
+const double* const* Flight::slots_before(long long step) {
+  last_ = start_;
+  advance(step, last_);
+  set_->leave(last_.x, last_.e, slot_pointers_.data());
+  return slot_pointers_.data();
 }
 
 long long Flight::find_efforts(long long first) {

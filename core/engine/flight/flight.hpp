@@ -10,7 +10,8 @@ namespace ricochet {
 
 class Flight;
 
-/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them and in the step after.
+/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them; in the step after too,
+/// where the flight does not tell its slots.
 struct SkippedSteps {
   long long steps = 0;
   double from = 0, to = 0;          ///< s
@@ -38,6 +39,10 @@ class Flight {
   /// Whether steps of closed contact are left to HeldSteps where they are not composed, and if not, why.
   const std::string& steps_cause() const { return steps_cause_; }
 
+  /// Whether the state before any step that is left out can be told. Nobody then has to see a step for what comes
+  /// after it: contact may change in the one that follows a flight.
+  bool tells_slots() const { return tells_slots_; }
+
   /// Another lane: its stops, and the layer from which the law acts.
   void place(const LaneSpec& lane, double layer);
 
@@ -49,8 +54,8 @@ class Flight {
 
   /// Whether a look may find something in a lane with these closed points; to be asked once a step.
   bool due(const Program& program, std::span<const HeldPoint> held);
-  /// How many of the next `most` steps may be left out, such that nothing changes in them nor in the one after; 0:
-  /// march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
+  /// How many of the next `most` steps may be left out, such that nothing changes in them, nor in the one after where
+  /// slots are not told; 0: march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
   long long look(Columns columns, const double* e, HeldSteps::Past past, long long most);
   /// How many steps that come next, the one after a flight among them, no open point can close in, as far as the last
   /// look has seen; no lane without contact then needs to be measured.
@@ -59,6 +64,9 @@ class Flight {
   FlightSums fly(long long k, Columns columns, HeldSteps::Past past, bool works);
   /// Largest penetration after any of them, m.
   double penetration() const { return steps_ ? steps_->penetration() : 0.0; }
+
+  /// The slots before one of the steps last left out, rows each, where tells_slots(); until it is asked again.
+  const double* const* slots_before(long long step);
 
   /// Widens [low, high] by the tip's displacement, absolute, after each of the steps last left out.
   void tip_extremes(double& low, double& high);
@@ -128,6 +136,7 @@ class Flight {
   std::unique_ptr<FlightSet> free_;
   Pace pace_;
   std::string held_cause_, steps_cause_;
+  bool tells_slots_ = false;
   std::vector<std::unique_ptr<Kept>> sets_;
   const Kept* closed_ = nullptr;  // of the last step, and for how many it has been
   long long closed_for_ = 0;
@@ -143,6 +152,8 @@ class Flight {
   Leg after_efforts_;
   long long efforts_from_ = -1, effort_next_ = 0;
   std::vector<Leg> legs_;  // of a search, by depth
+  std::vector<std::vector<double>> slots_;
+  std::vector<double*> slot_pointers_;
 };
 
 }  // namespace ricochet

@@ -27,8 +27,9 @@ ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std
     state.stops.resize(2 * static_cast<std::size_t>(points));
     state.impacts.reserve(std::min<std::size_t>(most, 64));
   }
-  // Steps that are left out have no increment of their own.
-  if (!marcher.program().flight) increment_slot_ = marcher.program().increment_slot;
+  // Of steps that are left out an increment is known where their slots are.
+  tells_slots_ = marcher.program().flight && marcher.program().flight->tells_slots();
+  if (!marcher.program().flight || tells_slots_) increment_slot_ = marcher.program().increment_slot;
   if (!marcher.program().contact || increment_slot_ >= 0) return;
   earlier_.resize(static_cast<std::size_t>(model_.rows()) * static_cast<std::size_t>(T_));
   latest_.resize(earlier_.size());
@@ -74,34 +75,34 @@ void ImpactRecorder::quiet(const Marcher& marcher, const QuietSteps& steps) {
   latest_time_ = steps.last + marcher.program().stages.front().facts.from * h_;
 }
 
-// The velocities over two sub-steps have to be seen of what opened, and those over the last one of what closes next.
+// The velocities over two sub-steps have to be known of what opened, and those over the last one of what closes next.
 long long ImpactRecorder::may_skip(const Marcher& marcher) {
-  if (marcher.program().contact && (known_ < 2 || !lanes_.front().leaving.empty())) return 0;
+  if (marcher.program().contact && (known_ < 2 || (!tells_slots_ && !lanes_.front().leaving.empty()))) return 0;
   return behind_ ? behind_->may_skip(marcher) : std::numeric_limits<long long>::max();
 }
 
 void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
   if (behind_) behind_->skipped(marcher, steps);
+  if (tells_slots_ && marcher.program().contact) know_left_out(marcher, steps);
   if (steps.held.empty()) return;
   Lane& lane = lanes_.front();
   const std::vector<StageProgram>& stages = marcher.program().stages;
   double begins = steps.from, lasts = 0;
-  const double lifted = marcher.support(0, latest_time_);
-  for (const HeldPoint& held : steps.held)
-    lane.points[static_cast<std::size_t>(held.point)].place =
-        model_.contact().times(held.point, latest_.data()) + lifted;
-  left_at_ = latest_time_;
+  if (!tells_slots_) {
+    const double lifted = marcher.support(0, latest_time_);
+    for (const HeldPoint& held : steps.held)
+      lane.points[static_cast<std::size_t>(held.point)].place =
+          model_.contact().times(held.point, latest_.data()) + lifted;
+    left_at_ = latest_time_;
+  }
   steps.flight->each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
     const StageProgram& stage = stages[static_cast<std::size_t>(at)];
     if (!efforts.empty() && stage.opens_instant) {
       const double time = begins + stage.facts.from * h_;
       lasts = 0;
       // Without places they rest.
-      for (std::size_t i = 0; i < steps.held.size(); ++i) {
-        const int point = steps.held[i].point;
-        move(lane, point, places.empty() ? lane.points[static_cast<std::size_t>(point)].place : places[i],
-             time - left_at_);
-      }
+      for (std::size_t i = 0; i < steps.held.size(); ++i)
+        places.empty() ? move(lane, steps.held[i].point, 0) : move_to_place(lane, steps.held[i].point, places[i], time);
       left_at_ = time;
     }
     if (!efforts.empty()) lasts = std::max(lasts, stage.momentum);
@@ -113,15 +114,34 @@ void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
     }
     if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
-  left_ = true;
+  left_ = !tells_slots_;
 }
 
-// A closed point over a sub-step at whose end it stands at `place`.
-void ImpactRecorder::move(Lane& lane, int point, double place, double lasts) {
+// The first of them, of what opened before them, and the last one, for what closes in the step after them.
+void ImpactRecorder::know_left_out(const Marcher& marcher, const SkippedSteps& steps) {
+  const double offset = marcher.program().stages.front().facts.from * h_;
+  const long long first = marcher.step() - steps.steps;
+  const auto time = [&](long long step) { return static_cast<double>(first + step) * h_ + offset; };
+  long long step = 0;
+  for (; step < steps.steps && !lanes_.front().leaving.empty(); ++step)
+    if (know(steps.flight->slots_before(step), time(step))) leave(marcher, 0);
+  if (increment_slot_ >= 0)
+    latest_time_ = time(steps.steps - 1);
+  else if (step < steps.steps)
+    know(steps.flight->slots_before(steps.steps - 1), time(steps.steps - 1));
+}
+
+// A closed point over a sub-step at whose end it moves at `now`.
+void ImpactRecorder::move(Lane& lane, int point, double now) {
   Point& one = lane.points[static_cast<std::size_t>(point)];
-  const double now = (place - one.place) / lasts;
   stop(lane, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
   one.velocity = now;
+}
+
+// The same of one that stands at `place` at a time.
+void ImpactRecorder::move_to_place(Lane& lane, int point, double place, double time) {
+  Point& one = lane.points[static_cast<std::size_t>(point)];
+  move(lane, point, (place - one.place) / (time - left_at_));
   one.place = place;
 }
 
@@ -153,9 +173,16 @@ void ImpactRecorder::open_instant(const Marcher& marcher, const StageView& view)
   move_to(marcher, view.slots, view.from);
 }
 
-// Keeps the positions at a time, and those before them; where a slot holds what they differ by, that is enough. Stages
-// of a start rule may ask several times at the same.
 void ImpactRecorder::move_to(const Marcher& marcher, const double* const* slots, double time) {
+  if (!know(slots, time)) return;
+  for (std::uint32_t mask = busy_; mask != 0; mask &= mask - 1)
+    if (const int lane = std::countr_zero(mask); marcher.status(lane).running) moved(marcher, lane);
+  left_ = false;
+}
+
+// Keeps the positions at a time, and those before them; where a slot holds what they differ by, that is enough. Stages
+// of a start rule may ask several times at the same: nothing moves then.
+bool ImpactRecorder::know(const double* const* slots, double time) {
   const bool moves = known_ > 0 && time > latest_time_ + 1e-9 * h_;
   if (moves) {
     earlier_.swap(latest_);
@@ -167,10 +194,7 @@ void ImpactRecorder::move_to(const Marcher& marcher, const double* const* slots,
     std::copy_n(slots[0], latest_.size(), latest_.data());
   latest_time_ = time;
   known_ = moves ? 2 : std::max(known_, 1);
-  if (!moves) return;
-  for (std::uint32_t mask = busy_; mask != 0; mask &= mask - 1)
-    if (const int lane = std::countr_zero(mask); marcher.status(lane).running) moved(marcher, lane);
-  left_ = false;
+  return moves;
 }
 
 // Absolute velocity of a point over the last sub-step; of the initial state where there was none.
@@ -203,15 +227,19 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const double lifted = lift(marcher, lane);
   state.closed.each([&](int point) {
-    Point& one = state.points[static_cast<std::size_t>(point)];
     if (left_) {
       const double place = model_.contact().times(point, latest_.data()) + marcher.support(lane, latest_time_);
-      return move(state, point, place, latest_time_ - left_at_);
+      return move_to_place(state, point, place, latest_time_);
     }
-    const double now = velocity(marcher, lane, point, lifted);
-    stop(state, point, one.side).normal_work += one.pushed * mean_speed(one.velocity, now);
-    one.velocity = now;
+    move(state, point, velocity(marcher, lane, point, lifted));
   });
+  if (!state.leaving.empty()) leave(marcher, lane);
+}
+
+// The speeds at which points leave, as far as they are known.
+void ImpactRecorder::leave(const Marcher& marcher, int lane) {
+  Lane& state = lanes_[static_cast<std::size_t>(lane)];
+  const double lifted = lift(marcher, lane);
   std::erase_if(state.leaving, [&](int point) {
     Point& one = state.points[static_cast<std::size_t>(point)];
     if (one.row < state.impacts.size()) {

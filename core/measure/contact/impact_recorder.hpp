@@ -118,12 +118,16 @@ class ImpactRecorder final : public StepObserver {
   }
   void open_instant(const Marcher& marcher, const StageView& view);
   void move_to(const Marcher& marcher, const double* const* slots, double time);
+  bool know(const double* const* slots, double time);
+  void know_left_out(const Marcher& marcher, const SkippedSteps& steps);
   void moved(const Marcher& marcher, int lane);
+  void leave(const Marcher& marcher, int lane);
   double velocity(const Marcher& marcher, int lane, int point, double lift) const;
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
-  static void move(Lane& lane, int point, double place, double lasts);
+  static void move(Lane& lane, int point, double now);
+  void move_to_place(Lane& lane, int point, double place, double time);
   static void press(Lane& lane, int point, double lasts);
 
   const MarchModel& model_;
@@ -136,11 +140,12 @@ class ImpactRecorder final : public StepObserver {
   const double* increment_ = nullptr;     // that slot, before the stages of the instant under way
   std::vector<double> earlier_, latest_;  // positions before the instant before the one under way, and before that one
   double earlier_time_ = 0, latest_time_ = 0;
-  int known_ = 0;           // how many of these there are
-  std::uint32_t busy_ = 0;  // lanes with a point that is closed or whose speed out is open
-  bool left_ = false;       // whether steps in which closed points moved were left out since
-  double left_at_ = 0;      // the time before the last instant of them
-  double lasts_ = 0;        // Ω of the instant under way
+  int known_ = 0;             // how many of these there are
+  std::uint32_t busy_ = 0;    // lanes with a point that is closed or whose speed out is open
+  bool tells_slots_ = false;  // of steps that are left out
+  bool left_ = false;         // whether steps in which closed points moved were left out since
+  double left_at_ = 0;        // the time before the last instant of them
+  double lasts_ = 0;          // Ω of the instant under way
 };
 
 }  // namespace ricochet
