@@ -99,6 +99,7 @@ void Marcher::connect_tests() {
 
 // What the operators add up for the observer of a march: of unknowns that only efforts of the same stage may move.
 void Marcher::connect_sums(StepObserver* observer) {
+  tells_tip_ = observer && observer->reads_tip();
   for (std::size_t k = 0; k < stage_states_.size(); ++k) {
     const StageProgram& program = program_.stages[k];
     SquareSum*& sum = stage_states_[k]->sum;
@@ -282,7 +283,7 @@ bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     show(state, z, *observer);
   else if (observer)
     quiet_steps_[quiet_count_++] = {clamp_.sine(), clamp_.cosine(), state.sum ? state.sum->form : 0,
-                                    state.sum ? state.sum->projection : 0};
+                                    state.sum ? state.sum->projection : 0, tells_tip_ ? tip(0) : 0};
   // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());

@@ -209,6 +209,7 @@ class Marcher {
   std::vector<double* const*> column_slots_;
   std::array<QuietSteps::Step, check_interval> quiet_steps_;  // of which the observer has not been told
   std::size_t quiet_count_ = 0;
+  bool tells_tip_ = false;  // of quiet steps
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

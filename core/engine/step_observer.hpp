@@ -34,6 +34,7 @@ struct QuietSteps {
   struct Step {
     double sine = 0, cosine = 1;      ///< of ωt, when it began
     double form = 0, projection = 0;  ///< of the squares that the observer asked for; 0 where it asked for none
+    double tip = 0;                   ///< absolute displacement when it began, m; 0 where the observer does not read it
   };
   std::span<const Step> steps;
   double last = 0;  ///< when the last of them began, s
@@ -46,6 +47,8 @@ class StepObserver {
   /// Squares that it would see added up in each free step of a stage of the plan, if its operator sums_squares(); null:
   /// none. Asked when a march begins or goes on, and kept until it returns.
   virtual SquareSum* squares(int /*stage*/) { return nullptr; }
+  /// Whether it reads QuietSteps::Step::tip. Asked as squares() are.
+  virtual bool reads_tip() const { return false; }
   /// The stage has found z and p; the slots are not yet updated.
   virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
   /// The step is complete.

@@ -22,6 +22,8 @@ class ForceWindow final : public StepObserver {
 
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  long long next_shown(const Marcher& marcher) override { return to_ >= from_ ? 0 : behind_.next_shown(marcher); }
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
 
   /// Whether any instant of contact fell into the window.
   bool told() const { return weight_ > 0; }

@@ -34,14 +34,22 @@ class Sampler final : public StepObserver {
     curve_.columns.resize(curve_.names.size());
   }
   SquareSum* squares(int stage) override { return behind_.squares(stage); }
-  void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
+  bool reads_tip() const override { return true; }
+  void stage_solved(const Marcher& marcher, const StageView& view) override {
+    behind_.stage_solved(marcher, view);
+    see_present(marcher);
+  }
+  long long next_shown(const Marcher& marcher) override { return behind_.next_shown(marcher); }
+  // Each tells where the step before it ended; nothing was at a stop.
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override {
+    behind_.quiet(marcher, steps);
+    for (const QuietSteps::Step& step : steps.steps.subspan(seen_ ? 1 : 0)) see(step.tip);
+    seen_ = false;
+  }
   void step_done(Marcher& marcher) override {
     behind_.step_done(marcher);
     if (!marcher.status(0).running) return;
-    const double tip = marcher.tip(0);
-    largest_tip_ = std::max(largest_tip_, std::abs(tip));
-    low_ = std::min(low_, tip);
-    high_ = std::max(high_, tip);
+    see(marcher.tip(0));
     deepest_ = std::max(deepest_, audit_.penetration(0));
   }
   long long may_skip(const Marcher& marcher) override { return behind_.may_skip(marcher); }
@@ -54,6 +62,7 @@ class Sampler final : public StepObserver {
     largest_tip_ = std::max({largest_tip_, std::abs(low_), std::abs(high_)});
   }
   void take(const Marcher& marcher) {
+    see_present(marcher);
     const EnergySample& energy = audit_.energy(0);
     const ContactTotals& contact = audit_.contact(0);
     const double row[] = {marcher.time(),
@@ -84,11 +93,23 @@ class Sampler final : public StepObserver {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
+  void see(double tip) {
+    largest_tip_ = std::max(largest_tip_, std::abs(tip));
+    low_ = std::min(low_, tip);
+    high_ = std::max(high_, tip);
+    seen_ = true;
+  }
+  // Where the last of quiet steps ended.
+  void see_present(const Marcher& marcher) {
+    if (!seen_) see(marcher.tip(0));
+  }
+
   const EnergyAudit& audit_;
   ImpactRecorder& recorder_;
   StepObserver& behind_;
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;
+  bool seen_ = true;  // the tip where the march stands
   Curve curve_;
 };
 

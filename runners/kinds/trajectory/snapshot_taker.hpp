@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <ricochet/engine/marcher.hpp>
 #include <vector>
 
@@ -21,6 +22,11 @@ class SnapshotTaker final : public StepObserver {
   void step_done(Marcher& marcher) override;
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  long long next_shown(const Marcher& marcher) override {
+    const long long behind = behind_.next_shown(marcher);
+    return next_ > count_ ? behind : std::min(behind, step_of(next_));
+  }
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
 
   bool taken() const { return count_ > 0; }
   Snapshots finish() const;

@@ -28,6 +28,8 @@ class WindowMeans final : public StepObserver {
   /// Up to the step before one at which a part begins or ends.
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  long long next_shown(const Marcher& marcher) override { return parts_ > 0 ? 0 : behind_.next_shown(marcher); }
+  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
   void step_done(Marcher& marcher) override;
 
   /// Puts each mean, and half the width of its interval as confidence.NAME; a note where the run ended before the
