@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <set>
@@ -48,14 +48,14 @@ std::optional<ContactSpring> spring_of(const StudyCase& one, double stiffness, c
   if (!problem || problem->points() == 0 || problem->dofs() > most_dofs) return std::nullopt;
   const Eigen::VectorXd h = Eigen::MatrixXd(problem->contact).row(problem->points() - 1).transpose();
   const Eigen::MatrixXd held = Eigen::MatrixXd(problem->stiffness) + stiffness * h * h.transpose();
-  const SymmetricModes modes = symmetric_modes(dense_mass(problem->inertia), held);
-  if (!modes.found) return std::nullopt;
-  const Eigen::VectorXd shares = stiffness * (modes.vectors.transpose() * h).array().square();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(dense_mass(problem->inertia), held);
+  if (modes.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd shares = stiffness * (modes.eigenvectors().transpose() * h).array().square();
   Eigen::Index most = 0;
   shares.maxCoeff(&most);
-  const double mu = modes.values[most];
+  const double mu = modes.eigenvalues()[most];
   constexpr double massless = 1e-12;  // of the largest
-  if (!(mu > massless * modes.values.maxCoeff())) return std::nullopt;
+  if (!(mu > massless * modes.eigenvalues().maxCoeff())) return std::nullopt;
   return ContactSpring{stiffness, stiffness * mu, 1 / std::sqrt(mu)};
 }
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <optional>
-#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
@@ -60,7 +60,7 @@ DiscreteProblem dense(const SemiDiscrete& problem, const SampleGrid& grid) {
   if (!problem.inertia.assembled()) {
     const MassFactors factors = mass_factors(problem.inertia);
     const Eigen::MatrixXd B = factors.coupling, C = factors.velocity_mass;
-    discrete.mass = B.transpose() * definite_solve(C, B);
+    discrete.mass = B.transpose() * C.llt().solve(B);
   } else {
     discrete.mass = problem.inertia.mass;
   }
