@@ -102,7 +102,10 @@ void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
       lasts = 0;
       // Without places they rest.
       for (std::size_t i = 0; i < steps.held.size(); ++i)
-        places.empty() ? move(lane, steps.held[i].point, 0) : move_to_place(lane, steps.held[i].point, places[i], time);
+        if (places.empty())
+          move(lane, steps.held[i].point, 0);
+        else
+          move_to_place(lane, steps.held[i].point, places[i], time);
       left_at_ = time;
     }
     if (!efforts.empty()) lasts = std::max(lasts, stage.momentum);
@@ -122,13 +125,14 @@ void ImpactRecorder::know_left_out(const Marcher& marcher, const SkippedSteps& s
   const double offset = marcher.program().stages.front().facts.from * h_;
   const long long first = marcher.step() - steps.steps;
   const auto time = [&](long long step) { return static_cast<double>(first + step) * h_ + offset; };
-  long long step = 0;
-  for (; step < steps.steps && !lanes_.front().leaving.empty(); ++step)
-    if (know(steps.flight->slots_before(step), time(step))) leave(marcher, 0);
+  for (long long step = 0; step < steps.steps && !lanes_.front().leaving.empty(); ++step)
+    if (know(steps.flight->slots_before(step), time(step))) leave(marcher, 0, lift(marcher, 0));
+  // Where a slot holds the increment, the step that comes brings it along.
+  const long long last = steps.steps - 1;
   if (increment_slot_ >= 0)
-    latest_time_ = time(steps.steps - 1);
-  else if (step < steps.steps)
-    know(steps.flight->slots_before(steps.steps - 1), time(steps.steps - 1));
+    latest_time_ = time(last);
+  else
+    know(steps.flight->slots_before(last), time(last));
 }
 
 // A closed point over a sub-step at whose end it moves at `now`.
@@ -233,13 +237,12 @@ void ImpactRecorder::moved(const Marcher& marcher, int lane) {
     }
     move(state, point, velocity(marcher, lane, point, lifted));
   });
-  if (!state.leaving.empty()) leave(marcher, lane);
+  leave(marcher, lane, lifted);
 }
 
 // The speeds at which points leave, as far as they are known.
-void ImpactRecorder::leave(const Marcher& marcher, int lane) {
+void ImpactRecorder::leave(const Marcher& marcher, int lane, double lifted) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  const double lifted = lift(marcher, lane);
   std::erase_if(state.leaving, [&](int point) {
     Point& one = state.points[static_cast<std::size_t>(point)];
     if (one.row < state.impacts.size()) {

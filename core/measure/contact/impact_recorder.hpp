@@ -121,7 +121,7 @@ class ImpactRecorder final : public StepObserver {
   bool know(const double* const* slots, double time);
   void know_left_out(const Marcher& marcher, const SkippedSteps& steps);
   void moved(const Marcher& marcher, int lane);
-  void leave(const Marcher& marcher, int lane);
+  void leave(const Marcher& marcher, int lane, double lifted);
   double velocity(const Marcher& marcher, int lane, int point, double lift) const;
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
