@@ -29,4 +29,11 @@ std::vector<std::string> worker_environment() {
   return variables;
 }
 
+sigset_t coordinator_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int one : signals_of_coordinator) sigaddset(&set, one);
+  return set;
+}
+
 }  // namespace ricochet

@@ -98,8 +98,10 @@ WorkerProcess::WorkerProcess() {
   // Ctrl-C in a terminal is for this process, which tells its workers to stop.
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   ::posix_spawnattr_setpgroup(&attributes, 0);
+  const sigset_t not_for_it = coordinator_signals();
+  ::posix_spawnattr_setsigmask(&attributes, &not_for_it);
   std::string name = "ricochet", command = "worker";
   std::array<char*, 3> arguments = {name.data(), command.data(), nullptr};
   std::vector<std::string> variables = worker_environment();

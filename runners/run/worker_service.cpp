@@ -23,6 +23,7 @@
 #include "runners/march/study_identity.hpp"
 #include "runners/march/watched_threads.hpp"
 #include "runners/process/channel.hpp"
+#include "runners/process/worker_environment.hpp"
 #include "runners/process/worker_messages.hpp"
 #include "runners/process/worker_process.hpp"
 #include "runners/run/run_study.hpp"
@@ -302,8 +303,10 @@ class WorkerService : public BlockService {
 }  // namespace
 
 int serve_as_worker() {
-  // The coordinator is asked to stop, and tells its workers.
-  for (const int one : {SIGINT, SIGTERM, SIGUSR1, SIGHUP}) ::signal(one, SIG_IGN);
+  for (const int one : signals_of_coordinator) ::signal(one, SIG_IGN);
+  // Held back until now: a plugin finds a mask as usual.
+  const sigset_t ignored = coordinator_signals();
+  ::pthread_sigmask(SIG_UNBLOCK, &ignored, nullptr);
   const auto guard = CrashGuard::quiet("/proc/self/fd/" + std::to_string(kWorkerCrashRecord));
   return WorkerService().run();
 }

@@ -134,7 +134,7 @@ void Cluster::start() {
       !daemon("slurmd -N n2", "slurmd.n2.pid"))
     return;
   for (int i = 0; i < tries; ++i, ::usleep(between))
-    if (answer("sinfo -h -o %T:%D") == "idle:2\n") return;
+    if (rests()) return;
   failure_ = "the nodes of the cluster do not come up: " + answer("sinfo") + read_text(scratch_ / "slurmd.n1.log");
 }
 
@@ -147,6 +147,10 @@ std::string Cluster::line(const std::string& words) const {
 std::string Cluster::answer(const std::string& words) const {
   const std::string file = (scratch_ / "answer").string();
   return std::system((line(words) + " >'" + file + "' 2>&1").c_str()) == -1 ? "" : read_text(file);
+}
+
+bool Cluster::rests() const {
+  return answer("sinfo -h -o %T:%D") == "idle:2\n";
 }
 
 std::string Cluster::submit(const std::string& script) const {

@@ -23,6 +23,8 @@ class Cluster {
   std::string line(const std::string& words) const;
   /// What such a line writes.
   std::string answer(const std::string& words) const;
+  /// Whether both nodes are up and have nothing to do, nor to clear away.
+  bool rests() const;
   /// Submits a script; the number of the job.
   std::string submit(const std::string& script) const;
   /// What the submitted job wrote.

@@ -146,7 +146,8 @@ class Running {
     std::vector<pid_t> all;
     for (pid_t one = 0; text >> one;) all.push_back(one);
     // Those that threads of it began.
-    for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process_) + "/task")) {
+    std::error_code gone;
+    for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process_) + "/task", gone)) {
       std::istringstream more(read_text(thread.path() / "children"));
       for (pid_t one = 0; more >> one;)
         if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
@@ -183,6 +184,26 @@ TEST_CASE("workers: one that a stranger kills costs nothing but time") {
     CHECK(running.finish() == 0);
     check_same(scratch / "threads", scratch / out);
   }
+}
+
+TEST_CASE("workers: a scheduler's warning reaches them as well, from their first moment on, and ends none of them") {
+  const int signal = GENERATE(SIGUSR1, SIGTERM, SIGINT, SIGHUP);
+  CAPTURE(signal);
+  const ScratchFolder scratch;
+  Running running(scratch, longer(), "out");
+  std::set<pid_t> warned;
+  constexpr int looks = 400;
+  for (int look = 0; look < looks && !running.ended(); look += warned.empty() ? 0 : 1) {
+    for (const pid_t one : running.children())
+      if (::kill(one, signal) == 0) warned.insert(one);
+    ::usleep(500);
+  }
+  REQUIRE_FALSE(running.ended());
+  ::usleep(50000);
+  // One that is lost would have another in its place.
+  for (const pid_t one : running.children()) warned.erase(one);
+  CHECK(warned.empty());
+  CHECK(running.finish() == 0);
 }
 
 TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, and leaves no worker behind") {
