@@ -80,12 +80,18 @@ int command_slurm(const Arguments& arguments, std::ostream& out) {
 # keeps what is under way and ends (130); then, and when a machine is lost, the job goes back into the queue and goes on
 # where it was. `ricochet status {folder}` says how far it is, from any machine.
 
+mkdir -p {folder} && : >{folder}/.started
 srun --mpi=pmix --kill-on-bad-exit=1 --cpus-per-task={each} \
   {program} run {study} --out {folder}{plugins}
 code=$?
+# srun says 0 as well where it could not start the ranks; a run that came to its end has written its report.
+[ $code -ne 0 ] || [ {folder}/report.html -nt {folder}/.started ] || code=1
+rm -f {folder}/.started
 case $code in
   0|2|3|4|5) exit $code ;; # done, or nothing that another try would mend
 esac
+# A node that is stopped while it clears away what is left of the ranks would not start them again.
+sleep 5
 [ "${{SLURM_RESTART_COUNT:-0}}" -lt 10 ] && scontrol requeue "$SLURM_JOB_ID"
 exit $code
 )",

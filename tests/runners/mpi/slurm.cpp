@@ -122,6 +122,36 @@ TEST_CASE("slurm: the script that the command prints is a job that runs to its e
   check_same(scratch / "threads", scratch / "out");
 }
 
+TEST_CASE("slurm: a job whose ranks were never started has not ended well, whatever srun says, and is tried again") {
+  if (without_mpi()) return;
+  const ScratchFolder scratch;
+  const std::string job = script(scratch, study_of("trajectory"), "out");
+  write_text(scratch / "job.sh", job);
+  const auto stand_in = [&](const std::string& name, const std::string& does) {
+    write_text(scratch / name, "#!/bin/sh\n" + does + "\n");
+    fs::permissions(scratch / name, fs::perms::owner_all);
+  };
+  stand_in("scontrol", "echo $1 $2");
+  stand_in("sleep", "");
+  const std::string line = "env SLURM_JOB_ID=4711 SLURM_CPUS_PER_TASK=2 PATH='" + scratch.path().string() +
+                           "':$PATH sh '" + (scratch / "job.sh").string() + "'";
+  stand_in("srun", "exit 0");
+  const Ended never = to_its_end(scratch, line);
+  CHECK(never.code == 1);
+  CHECK(never.out == "requeue 4711\n");
+  stand_in("srun", "'" RICOCHET_COMMAND "' " + run_words(scratch, study_of("trajectory"), "out"));
+  // The second time there is nothing left to run.
+  for (int time = 0; time < 2; ++time) {
+    const Ended ran = to_its_end(scratch, line);
+    INFO(ran.messages);
+    CHECK(ran.code == 0);
+    CHECK_THAT(ran.out, !Contains("requeue"));
+  }
+  stand_in("srun", "exit 0");
+  CHECK(to_its_end(scratch, line).code == 1);
+  CHECK_FALSE(fs::exists(scratch / "out/.started"));
+}
+
 TEST_CASE("slurm: a job that is warned by USR1 keeps what it has, goes back into the queue and on to the same tables") {
   WITH_A_CLUSTER(cluster);
   const ScratchFolder scratch;
