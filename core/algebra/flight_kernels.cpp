@@ -235,6 +235,39 @@ RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double
   for (; i < rows; ++i, matrix += n) out[i] = dot_body(n, matrix, x);
 }
 
+// Two rows and two vectors at a time.
+RICOCHET_BODY void products_body(int n, int rows, const double* matrix, int vectors, const double* const* x,
+                                 double* const* out) {
+  struct Four {
+    Wide a{}, b{}, c{}, d{};
+  };
+  int v = 0;
+  for (; v + 2 <= vectors; v += 2) {
+    const double *one = x[v], *other = x[v + 1], *row = matrix;
+    int i = 0;
+    for (; i + 2 <= rows; i += 2, row += 2L * n) {
+      const double* const next = row + n;
+      Four even, odd;
+      sum_by_eight(n, even, odd, [&](Four& sums, auto at) {
+        const Wide first = at(row), second = at(next), left = at(one), right = at(other);
+        sums.a += first * left;
+        sums.b += second * left;
+        sums.c += first * right;
+        sums.d += second * right;
+      });
+      out[v][i] = total(even.a, odd.a);
+      out[v][i + 1] = total(even.b, odd.b);
+      out[v + 1][i] = total(even.c, odd.c);
+      out[v + 1][i + 1] = total(even.d, odd.d);
+    }
+    for (; i < rows; ++i, row += n) {
+      out[v][i] = dot_body(n, row, one);
+      out[v + 1][i] = dot_body(n, row, other);
+    }
+  }
+  if (v < vectors) dots_body(n, rows, matrix, x[v], out[v]);
+}
+
 RICOCHET_BODY void add_body(int n, double a, const double* x, double* __restrict out) {
   for (int j = 0; j < n; ++j) out[j] += a * x[j];
 }
@@ -285,11 +318,14 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     }                                                                                                                  \
     TARGET static double dot(int n, const double* h, const double* x) { return dot_body(n, h, x); }                    \
     TARGET static void dots(int n, int r, const double* m, const double* x, double* o) { dots_body(n, r, m, x, o); }   \
+    TARGET static void products(int n, int r, const double* m, int v, const double* const* x, double* const* o) {      \
+      products_body(n, r, m, v, x, o);                                                                                 \
+    }                                                                                                                  \
     TARGET static void add(int n, double a, const double* x, double* o) { add_body(n, a, x, o); }                      \
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, reaches, dot, dots, add, quadratic};       \
+    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, reaches, dot, dots, products, add, quadratic}; \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

@@ -309,11 +309,10 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
         return false;
     }
   }
-  for (int j = 0; j < slots_; ++j) {
-    Eigen::Map<VectorXd> mode(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_);
-    flight_kernels().dots(rows_, modes_, basis_.data(), slots[j], mode.data());
-    mode.noalias() -= settle_ * apart_.col(j);
-  }
+  double* modes[most_slots];
+  for (int j = 0; j < slots_; ++j) modes[j] = x.data() + static_cast<std::ptrdiff_t>(j) * modes_;
+  flight_kernels().products(rows_, modes_, basis_.data(), slots_, slots, modes);
+  for (int j = 0; j < slots_; ++j) Eigen::Map<VectorXd>(modes[j], modes_).noalias() -= settle_ * apart_.col(j);
   return true;
 }
 
@@ -323,12 +322,11 @@ void FlightSet::leave(const std::vector<double>& x, const double* e, double* con
     return;
   }
   const Eigen::Map<const VectorXd> drive(e, drive_.count());
-  for (int j = 0; j < slots_; ++j) {
-    Eigen::Map<VectorXd> slot(slots[j], rows_);
-    flight_kernels().dots(modes_, rows_, basis_rows_.data(), x.data() + static_cast<std::ptrdiff_t>(j) * modes_,
-                          slot.data());
-    slot.noalias() += lift_[static_cast<std::size_t>(j)] * drive;
-  }
+  const double* modes[most_slots];
+  for (int j = 0; j < slots_; ++j) modes[j] = x.data() + static_cast<std::ptrdiff_t>(j) * modes_;
+  flight_kernels().products(modes_, rows_, basis_rows_.data(), slots_, modes, slots);
+  for (int j = 0; j < slots_; ++j)
+    Eigen::Map<VectorXd>(slots[j], rows_).noalias() += lift_[static_cast<std::size_t>(j)] * drive;
 }
 
 FlightBound& FlightSet::tip() {
