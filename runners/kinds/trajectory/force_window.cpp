@@ -7,7 +7,7 @@
 namespace ricochet {
 
 ForceWindow::ForceWindow(const Json& settings, StepObserver& behind) : behind_(behind) {
-  if (!settings.is_object() || !settings.contains("window")) return;
+  if (!has_window(settings)) return;
   from_ = settings.at("window").at("from").get<double>();
   to_ = settings.at("window").at("to").get<double>();
 }

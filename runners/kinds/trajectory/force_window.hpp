@@ -5,6 +5,11 @@
 
 namespace ricochet {
 
+/// Whether the settings of a trajectory ask for means over an interval.
+inline bool has_window(const Json& settings) {
+  return settings.is_object() && settings.contains("window");
+}
+
 /// The contact force over an interval of time, as one lane marches. What the efforts of an instant of contact give a
 /// free mass, Σ ω p over its stages and points (N s), is a force F over the largest ω of its stages (s), which is also
 /// what the instant weighs:

@@ -113,7 +113,7 @@ class Sampler final : public StepObserver {
   Curve curve_;
 };
 
-/// What looks at every step of a trajectory, the one before the other.
+/// What looks at every step of a trajectory, the one before the other; what is not asked for does not.
 struct Watched {
   EnergyAudit audit;
   ImpactRecorder recorder;
@@ -126,9 +126,15 @@ struct Watched {
         recorder(marcher, &audit),
         means(study_case.settings, audit, marcher.law().reads().has_value(), recorder),
         forces(study_case.settings, means),
-        snapshots(marcher, steps, snapshots_asked(study_case.settings), forces),
+        snapshots(marcher, steps, snapshots_asked(study_case.settings), behind_snapshots(study_case.settings)),
         sampler(audit, recorder,
-                snapshots_asked(study_case.settings) > 0 ? static_cast<StepObserver&>(snapshots) : forces) {}
+                snapshots_asked(study_case.settings) > 0 ? snapshots : behind_snapshots(study_case.settings)) {}
+
+ private:
+  StepObserver& behind_snapshots(const Json& settings) {
+    if (has_window(settings)) return forces;
+    return recorder;
+  }
 };
 
 void fill_measures(CaseRecord& record, const Marcher& marcher, const EnergyAudit& audit, const SemiDiscrete& problem) {

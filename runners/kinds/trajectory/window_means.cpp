@@ -6,13 +6,14 @@
 #include <cmath>
 #include <ricochet/engine/flight/flight.hpp>
 
+#include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 
 WindowMeans::WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind)
     : audit_(audit), behind_(behind) {
-  if (!settings.is_object() || !settings.contains("window")) return;
+  if (!has_window(settings)) return;
   const Json& window = settings.at("window");
   from_ = window.at("from").get<double>();
   to_ = window.at("to").get<double>();
