@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/measure/stability/contact_spring.hpp>
 #include <set>
 
 #include "runners/march/prepare_case.hpp"
@@ -24,12 +23,6 @@ constexpr int most_dofs = 240;           // of a dense problem of eigenvalues
 constexpr int phases = 8;                // of the instant at which a contact begins within a step
 constexpr double longest_contact = 2e4;  // steps that are marched
 
-/// A spring and the mass that it turns back.
-struct ContactSpring {
-  double stiffness = 0, mass = 0;  ///< N/m, kg
-  double pulsation = 0;            ///< rad/s, of the mass on it and on its own spring
-};
-
 std::optional<double> stiffness_of(const StudyCase& one, const Registry& registry) {
   const auto law = make_law(one, registry);
   if (law->absent() || !law->reads() || law->changes_problem()) return std::nullopt;
@@ -38,25 +31,13 @@ std::optional<double> stiffness_of(const StudyCase& one, const Registry& registr
   return stiffness && *stiffness > 0 ? stiffness : std::nullopt;
 }
 
-// The mode on the spring that has most of its energy in it: M φ = μ (K + κ hᵀh) φ, φᵀ(K + κ hᵀh)φ = 1.
 std::optional<ContactSpring> spring_of(const StudyCase& one, double stiffness, const Registry& registry) {
   if (const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure))
     return ContactSpring{stiffness, oscillator->mass,
                          std::sqrt((oscillator->stiffness + stiffness) / oscillator->mass)};
   const auto built = discretise(one.scene, one.elements, *make_mass(one, registry));
   const auto* problem = std::get_if<SemiDiscrete>(&built);
-  if (!problem || problem->points() == 0 || problem->dofs() > most_dofs) return std::nullopt;
-  const Eigen::VectorXd h = Eigen::MatrixXd(problem->contact).row(problem->points() - 1).transpose();
-  const Eigen::MatrixXd held = Eigen::MatrixXd(problem->stiffness) + stiffness * h * h.transpose();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(dense_mass(problem->inertia), held);
-  if (modes.info() != Eigen::Success) return std::nullopt;
-  const Eigen::VectorXd shares = stiffness * (modes.eigenvectors().transpose() * h).array().square();
-  Eigen::Index most = 0;
-  shares.maxCoeff(&most);
-  const double mu = modes.eigenvalues()[most];
-  constexpr double massless = 1e-12;  // of the largest
-  if (!(mu > massless * modes.eigenvalues().maxCoeff())) return std::nullopt;
-  return ContactSpring{stiffness, stiffness * mu, 1 / std::sqrt(mu)};
+  return problem && problem->dofs() <= most_dofs ? contact_spring(*problem, stiffness) : std::nullopt;
 }
 
 // A free mass that meets the law at one metre per second.
