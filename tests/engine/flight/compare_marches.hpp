@@ -107,15 +107,18 @@ inline Compared compare(const SceneSpec& scene, int elements, const Methods& met
   const Ending one = march_to_end(std::move(program), steps);
   auto every = compiled(problem, methods, h, modal_options(MarchWay::every_step, steps));
   const Ending other = march_to_end(std::move(std::get<Program>(every)), steps);
-  const auto beside = [](const LaneSpec& lane) {
-    LaneSpec twin = lane;
-    twin.position *= 1 + 1e-12;
-    twin.velocity *= 1 + 1e-12;
-    twin.amplitude *= 1 + 1e-12;
-    return std::vector<LaneSpec>{twin};
+  const auto march_beside = [&](double apart) {
+    const auto beside = [apart](const LaneSpec& lane) {
+      LaneSpec twin = lane;
+      twin.position *= 1 + apart;
+      twin.velocity *= 1 + apart;
+      twin.amplitude *= 1 + apart;
+      return std::vector<LaneSpec>{twin};
+    };
+    auto made = compiled(problem, methods, h, modal_options(MarchWay::every_step, steps), beside);
+    return march_to_end(std::move(std::get<Program>(made)), steps);
   };
-  auto second = compiled(problem, methods, h, modal_options(MarchWay::every_step, steps), beside);
-  const Ending twin = march_to_end(std::move(std::get<Program>(second)), steps);
+  const Ending twin = march_beside(1e-12);
   result.steps = steps;
   result.visited = one.visited;
   result.contact_steps = one.contact_steps;
@@ -136,7 +139,16 @@ inline Compared compare(const SceneSpec& scene, int elements, const Methods& met
   // Where the twin is far the motion has forgotten its start: then nothing is to be compared.
   if (open > 1e-4 * size || !other.running) return result;
   if (apart > 30 * open + 1e-11 * size) differ("end", apart, open);
-  if (twin.contact_steps == other.contact_steps && rounded.contact_steps == other.contact_steps) {
+  const auto as_often = [](const Ending& a, const Ending& b) {
+    return a.contact_steps == b.contact_steps && a.impacts == b.impacts;
+  };
+  // A point at rest may be let go for a step by round-off: more twins, where their number differs, say whether it is.
+  const auto round_off_chooses = [&] {
+    for (const double beside : {-1e-12, 5e-13, -5e-13, 2e-12, -2e-12, 1e-13, -1e-13, 3e-12})
+      if (!as_often(march_beside(beside), other)) return true;
+    return false;
+  };
+  if (!as_often(one, other) && as_often(twin, other) && as_often(rounded, other) && !round_off_chooses()) {
     if (one.contact_steps != other.contact_steps)
       differ("contact steps", static_cast<double>(one.contact_steps), static_cast<double>(other.contact_steps));
     if (one.impacts != other.impacts)
