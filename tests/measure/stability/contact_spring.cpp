@@ -10,25 +10,8 @@ using namespace ricochet::testing;
 
 namespace contact_spring_tests {
 
-namespace {
-
-SceneSpec tip_stop() {
-  SceneSpec scene;
-  BeamSpec beam;
-  beam.length = 1.501;
-  beam.young = 2e11;
-  beam.density = 8000;
-  beam.section = {.type = Section::Type::tube, .outer_diameter = 0.01, .wall = 0.0005};
-  scene.structure = beam;
-  scene.stops.lower = Formula(-0.1);
-  scene.stops.place = StopsSpec::Place::tip;
-  return scene;
-}
-
-}  // namespace
-
 TEST_CASE("a stiff spring behind the tip turns back the mass of the last node, where masses are lumped") {
-  const SceneSpec scene = tip_stop();
+  const SceneSpec scene = working_set();
   for (const int elements : {4, 10}) {
     const auto problem = problem_of(scene, elements, {"lumped"});
     const double end = dense_mass(problem->inertia).diagonal().maxCoeff() / 2;  // half of an inner node's
@@ -45,7 +28,7 @@ TEST_CASE("a stiff spring behind the tip turns back the mass of the last node, w
 }
 
 TEST_CASE("a soft spring turns back what the first mode moves, and adds to its own stiffness") {
-  const SceneSpec scene = tip_stop();
+  const SceneSpec scene = working_set();
   const auto problem = problem_of(scene, 10, {"consistent"});
   const auto soft = contact_spring(*problem, 1e-3), stiffer = contact_spring(*problem, 2e-3);
   REQUIRE((soft && stiffer));
@@ -58,7 +41,7 @@ TEST_CASE("a soft spring turns back what the first mode moves, and adds to its o
 }
 
 TEST_CASE("where the point has no mass, no mode is found on its spring") {
-  const SceneSpec scene = tip_stop();
+  const SceneSpec scene = working_set();
   const auto problem = problem_of(scene, 10, {"singular"});
   CHECK_FALSE(contact_spring(*problem, 1e12));
 }
