@@ -211,11 +211,13 @@ RICOCHET_BODY double dot_body(int n, const double* h, const double* x) {
   return total(even, odd);
 }
 
-// Four rows at a time: sums do not wait for each other. Each row has the order of dot_body.
+// Four sums at a time do not wait for each other. Each has the order of dot_body.
+struct Four {
+  Wide a{}, b{}, c{}, d{};
+};
+
+// Of four rows.
 RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double* x, double* out) {
-  struct Four {
-    Wide a{}, b{}, c{}, d{};
-  };
   int i = 0;
   for (; i + 4 <= rows; i += 4, matrix += 4L * n) {
     const double *a = matrix, *b = a + n, *c = b + n, *d = c + n;
@@ -235,12 +237,9 @@ RICOCHET_BODY void dots_body(int n, int rows, const double* matrix, const double
   for (; i < rows; ++i, matrix += n) out[i] = dot_body(n, matrix, x);
 }
 
-// Two rows and two vectors at a time.
+// Of two rows and two vectors.
 RICOCHET_BODY void products_body(int n, int rows, const double* matrix, int vectors, const double* const* x,
                                  double* const* out) {
-  struct Four {
-    Wide a{}, b{}, c{}, d{};
-  };
   int v = 0;
   for (; v + 2 <= vectors; v += 2) {
     const double *one = x[v], *other = x[v + 1], *row = matrix;
@@ -325,7 +324,8 @@ RICOCHET_BODY double quadratic_body(int n, int slots, int drives, const double* 
     TARGET static double quadratic(int n, int s, int d, const double* f, const double* x, const double* e) {           \
       return quadratic_body(n, s, d, f, x, e);                                                                         \
     }                                                                                                                  \
-    static constexpr FlightKernels kernels{leap, row, modulus, cone, reach, reaches, dot, dots, products, add, quadratic}; \
+    static constexpr FlightKernels kernels{leap, row, modulus,  cone, reach,    reaches,                               \
+                                           dot,  dots, products, add,  quadratic};                                     \
   };
 RICOCHET_FLIGHT_SET(Baseline, )
 RICOCHET_FLIGHT_SET(Avx2, RICOCHET_AVX2)

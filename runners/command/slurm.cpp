@@ -91,8 +91,7 @@ case $code in
   0|2|3|4|5) exit $code ;; # done, or nothing that another try would mend
 esac
 # A node that is stopped while it clears away what is left of the ranks would not start them again.
-sleep 5
-[ "${{SLURM_RESTART_COUNT:-0}}" -lt 10 ] && scontrol requeue "$SLURM_JOB_ID"
+[ "${{SLURM_RESTART_COUNT:-0}}" -lt 10 ] && sleep 5 && scontrol requeue "$SLURM_JOB_ID"
 exit $code
 )",
         fmt::arg("name", shell_word(open.study.name)), fmt::arg("nodes", std::max(1, arguments.nodes)),

@@ -36,15 +36,14 @@ void ForceWindow::add(double force, double lasts) {
 
 // Of steps with several instants each has a weight of its own: they are all seen.
 long long ForceWindow::may_skip(const Marcher& marcher) {
-  if (to_ >= from_ && marcher.program().stages.size() > 1) return 0;
-  return behind_.may_skip(marcher);
+  return marcher.program().stages.size() > 1 ? 0 : behind_.may_skip(marcher);
 }
 
 void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
   behind_.skipped(marcher, steps);
   const StageProgram& program = marcher.program().stages.front();
   const double h = marcher.program().h, lasts = program.momentum, first = steps.from + program.facts.instant * h;
-  if (to_ < from_ || !(lasts > 0) || !program.reads_contact) return;
+  if (!(lasts > 0) || !program.reads_contact) return;
   if (!steps.held.empty()) {
     long long step = 0;
     steps.flight->each_stage([&](int, std::span<const double> efforts, std::span<const double>) {

@@ -18,7 +18,7 @@ inline bool has_window(const Json& settings) {
 /// a projection, is no force. Passes everything on to the observer behind it; allocates nothing.
 class ForceWindow final : public StepObserver {
  public:
-  /// [from, to], s; `settings` are those of a trajectory, with or without a window.
+  /// [from, to], s; `settings` are those of a trajectory. Without a window it has nothing to look at, and shall not.
   ForceWindow(const Json& settings, StepObserver& behind);
 
   SquareSum* squares(int stage) override { return behind_.squares(stage); }
@@ -27,8 +27,6 @@ class ForceWindow final : public StepObserver {
 
   long long may_skip(const Marcher& marcher) override;
   void skipped(Marcher& marcher, const SkippedSteps& steps) override;
-  long long next_shown(const Marcher& marcher) override { return to_ >= from_ ? 0 : behind_.next_shown(marcher); }
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
 
   /// Whether any instant of contact fell into the window.
   bool told() const { return weight_ > 0; }
