@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "misbehave.hpp"
 #include "stand_in.hpp"
 
 namespace {
@@ -23,7 +24,7 @@ class Misbehaves final : public TimeScheme {
   PlanOrRefusal plan(double h, const ProblemFacts&) const override {
     if (how_ == "throw") throw std::runtime_error("my plan failed");
     if (how_ == "throw-int") throw 42;
-    if (how_ == "crash") *nothing_ = 1;
+    if (how_ == "crash") misbehave("segv");
     if (how_ == "exit") std::exit(7);
     if (how_ == "hang") never_return();
     if (how_ == "empty-refusal") return Refusal{""};
@@ -41,7 +42,6 @@ class Misbehaves final : public TimeScheme {
 
  private:
   std::string how_;
-  int* volatile nothing_ = nullptr;
 };
 
 void register_all(Registry& registry) {
