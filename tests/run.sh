@@ -21,4 +21,5 @@ fetch_charts
 
 cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi
 cmake --build --preset release --target tests
-exec ctest --preset release -j "$(nproc)"
+# Tests of processes and of the browser wait for much of their time.
+exec ctest --preset release -j "$(($(nproc) + 2))"

@@ -128,8 +128,10 @@ TEST_CASE("works are those of the definition, and explain the energy of every st
   constexpr double h = 2e-5;  // below the limits of explicit schemes on this mesh
   constexpr long long steps = 3000;
   const Damping damping = GENERATE(Damping{2e-5, 0}, Damping{0, 0.4}, Damping{2e-5, 0.4}, Damping{});
-  const bool loaded = GENERATE(false, true), alone = GENERATE(true, false);
+  const bool loaded = GENERATE(false, true);
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
+  // Half of the combinations, in which any two choices still meet in every way.
+  const bool alone = ((damping.stiffness > 0) + (damping.mass > 0) + loaded + (kind == OperatorKind::modal)) % 2 == 0;
   int balanced = 0, touched = 0;
   for (const std::string& time : registry().names(Role::time))
     for (const std::string& law : registry().names(Role::contact)) {

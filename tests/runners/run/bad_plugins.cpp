@@ -288,7 +288,7 @@ TEST_CASE("bad plugins: Ctrl-C names the call that never returns, keeps what is 
 
 TEST_CASE("bad plugins: a call that takes long is told by case, plugin and function") {
   const ScratchFolder scratch;
-  const Bad bad{"loop"};
+  const Bad bad{"sleep"};
   const Ended only = run(bad, scratch, [&] {
     return read_text(scratch / "messages").find("solve() has not returned for") != std::string::npos;
   });
