@@ -50,7 +50,7 @@ void check_no_failed_row(const fs::path& out) {
 /// Some seconds of orbits, in six cases.
 Json sweep() {
   Json study = study_of("bifurcation");
-  study["steps_per_period"] = 2500;
+  study["steps_per_period"] = 1500;
   study["mesh"]["elements"] = {3, 4, 5};
   study["refine"] = nullptr;
   return study;
