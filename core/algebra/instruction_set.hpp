@@ -5,7 +5,12 @@
 /// The same without fused operations: what it computes number by number is rounded as elsewhere.
 #define RICOCHET_AVX2_ALONE __attribute__((target("avx2")))
 /// Of one that may use vectors of eight doubles as well, to be called only where has_avx512().
+#ifdef __clang__
+// It has no word for the width, and drops an attribute of which it does not know one word.
+#define RICOCHET_AVX512 __attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq")))
+#else
 #define RICOCHET_AVX512 __attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
+#endif
 
 namespace ricochet {
 

@@ -19,6 +19,7 @@
 
 #include "runners/command/ranks.hpp"
 #include "runners/process/transport.hpp"
+#include "runners/process/worker_environment.hpp"
 
 namespace ricochet {
 namespace {
@@ -173,7 +174,7 @@ int main(int argc, char** argv) {
     ricochet::MpiTransport transport;
     // Launchers signal all ranks; rank 0 stops the run and then sends the agents home.
     if (transport.rank() != 0)
-      for (const int one : {SIGINT, SIGTERM, SIGUSR1}) ::signal(one, SIG_IGN);
+      for (const int one : ricochet::signals_of_coordinator) ::signal(one, SIG_IGN);
     code = ricochet::run_rank(transport, {argv + std::min(argc, 1), argv + argc}, std::cout, std::cerr, lost);
     if (lost) {
       std::cout.flush();

@@ -96,15 +96,15 @@ void HeldRows::find_memory(const Program& program) {
   }
 }
 
-HeldRows::Row HeldRows::row_of(int stage, const Combination& c, const RowVectorXd& points,
+HeldRows::Row HeldRows::row_of(int stage, const Combination& c, const RowVectorXd& at_point,
                                const RowVectorXd& drive) const {
   Row row;
   MatrixXd weights = MatrixXd::Zero(modes_, slots_);
   RowVectorXd e = drive;
   for (int mode = 0; mode < modes_; ++mode) {
     const RowVectorXd own = rows_->of(mode, stage, c);
-    weights.row(mode) = points[mode] * own.head(slots_);
-    e += points[mode] * own.tail(drives_);
+    weights.row(mode) = at_point[mode] * own.head(slots_);
+    e += at_point[mode] * own.tail(drives_);
   }
   int begin = 0, end = slots_;
   while (begin < end && weights.col(begin).isZero(0)) ++begin;
@@ -113,7 +113,7 @@ HeldRows::Row HeldRows::row_of(int stage, const Combination& c, const RowVectorX
   row.x.assign(weights.data() + static_cast<Index>(begin) * modes_, weights.data() + static_cast<Index>(end) * modes_);
   std::copy_n(e.data(), drives_, row.e.begin());
   for (const auto& of_steps : responses_)
-    for (const EffortResponse& response : of_steps) row.p.push_back(points.dot(response.of(stage, c)));
+    for (const EffortResponse& response : of_steps) row.p.push_back(at_point.dot(response.of(stage, c)));
   return row;
 }
 

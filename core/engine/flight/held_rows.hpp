@@ -80,7 +80,8 @@ class HeldRows {
   std::vector<std::vector<std::vector<double>>> reach;
 
  private:
-  Row row_of(int stage, const Combination& c, const Eigen::RowVectorXd& points, const Eigen::RowVectorXd& drive) const;
+  Row row_of(int stage, const Combination& c, const Eigen::RowVectorXd& at_point,
+             const Eigen::RowVectorXd& drive) const;
   Vector vector_of(int stage, const Combination& c) const;
   void add_points(const Program& program);
   void add_balances(const Program& program);
