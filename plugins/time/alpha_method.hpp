@@ -1,6 +1,8 @@
 #pragma once
 #include <ricochet/contract/plugin.hpp>
 
+#include "initial_acceleration.hpp"
+
 namespace ricochet {
 
 /// The α-methods: Newmark's updates, with inertia weighted over both ends of the step by α_m, and elastic, viscous and
@@ -42,7 +44,7 @@ struct AlphaMethod {
     plan.slots = {"q", "v", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}};
     plan.velocity = {.slots = {0, 1}};
-    plan.start = {initial_acceleration(h, facts.mass_kernel_dimension > 0)};
+    plan.start = {initial_acceleration(h, 1, facts.mass_kernel_dimension > 0 ? beta * h * h : 0)};
     plan.stages = {step(h)};
     plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
     plan.facts.order = 2;
@@ -63,20 +65,6 @@ struct AlphaMethod {
     stage.at(Evaluation::explicit_start) = {
         {.slots = {1, h, curve(h)}}, {{1, 1}}, {.slots = {0, 1, lag(h)}}, {{1, 1}}, {1}};
     stage.update = {end(h), end_rate(h), {.slots = {}, .z = 1}};
-    return stage;
-  }
-
-  /// M a₀ = F(0) − C v₀ − K q₀ (+ Hᵀp so that the Taylor step does not pass a stop that the state rests on). On the
-  /// kernel of a singular mass a₀ is not defined: βh²K is added to M there, an O(h²) change of a₀ on the regular modes.
-  Stage initial_acceleration(double h, bool singular_mass) const {
-    Stage stage;
-    stage.matrix = {1, 0, singular_mass ? beta * h * h : 0};
-    stage.history = {{0, 0, -1}, {0, -1, 0}};
-    stage.load = {{0, 1}};
-    stage.impact = {.value = {.slots = {1, h}, .z = 0.5 * h * h}, .bound = {{1, 1}}};
-    for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-      stage.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
     return stage;
   }
 

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
+#include "initial_acceleration.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -30,8 +32,10 @@ class Bathe final : public TimeScheme {
     plan.slots = {"q", "v", "a", "b"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
     plan.velocity = {.slots = {0, 1}};
-    plan.start = {initial_acceleration(split_ * h, facts.mass_kernel_dimension > 0)};
-    plan.stages = {trapezium(split_ * h), quadrature(h)};
+    const double d = split_ * h;
+    plan.start = {initial_acceleration(d, split_, facts.mass_kernel_dimension > 0 ? d * d / 4 : 0)};
+    plan.start.front().update.push_back({.slots = {0, 0, 0, 1}});
+    plan.stages = {trapezium(d), quadrature(h)};
     plan.facts.order = 2;
     return plan;
   }
@@ -72,20 +76,6 @@ class Bathe final : public TimeScheme {
     Combination known = end, known_rate = rate;
     known.z = known_rate.z = 0;
     stage.at(Evaluation::explicit_start) = {known, {{at, 1}}, known_rate, {{at, 1}}, {1}};
-  }
-
-  // M a₀ = F(0) − C v₀ − K q₀ (+ Hᵀp so that the Taylor sub-step does not pass a stop that the state rests on). On the
-  // kernel of a singular mass a₀ is not defined: d²/4 K is added to M there.
-  Stage initial_acceleration(double d, bool singular_mass) const {
-    Stage stage;
-    stage.matrix = {1, 0, singular_mass ? d * d / 4 : 0};
-    stage.history = {{0, 0, -1}, {0, -1, 0}};
-    stage.load = {{0, 1}};
-    stage.impact = {.value = {.slots = {1, d}, .z = 0.5 * d * d}, .bound = {{split_, 1}}};
-    for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-      stage.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
-    return stage;
   }
 
   double split_, q0_ = 0, q1_ = 0, q2_ = 0;

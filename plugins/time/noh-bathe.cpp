@@ -2,6 +2,8 @@
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
+#include "initial_acceleration.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -36,7 +38,8 @@ class NohBathe final : public TimeScheme {
     plan.slots = {"q", "v", "a", "b"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
     plan.velocity = {.slots = {0, 1}};
-    plan.start = {initial_acceleration(c)};
+    plan.start = {initial_acceleration(c, p_, 0)};
+    plan.start.front().update.push_back({.slots = {0, 0, 0, 1}});
     plan.stages = {substep(c, d, p_, 1, first_rate), substep(d, c, 1, 1 + p_, second_rate)};
     plan.facts.order = 2;
     plan.facts.needs_regular_mass = true;
@@ -64,18 +67,6 @@ class NohBathe final : public TimeScheme {
     stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
     stage.at(Evaluation::explicit_start) = {position, {{at, 1}}, known_rate, {{at, 1}}, {1}};
     stage.update = {position, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 1}}};
-    return stage;
-  }
-
-  Stage initial_acceleration(double c) const {
-    Stage stage;
-    stage.matrix = {1, 0, 0};
-    stage.history = {{0, 0, -1}, {0, -1, 0}};
-    stage.load = {{0, 1}};
-    stage.impact = {.value = {.slots = {1, c}, .z = c * c / 2}, .bound = {{p_, 1}}};
-    for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-      stage.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
     return stage;
   }
 

@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <ricochet/scene/assembly.hpp>
+#include <memory>
+#include <ricochet/scene/discrete_problem.hpp>
 
 #include "runners/check/bench.hpp"
 #include "runners/check/closed_forms.hpp"
@@ -20,35 +21,13 @@ SampleGrid grid_of(double duration, int samples, const std::vector<double>& plac
   return grid;
 }
 
-// The matrices that the methods of a study would march.
-std::shared_ptr<const DiscreteProblem> matrices(const SemiDiscrete& problem, const SampleGrid& grid) {
-  auto discrete = std::make_shared<DiscreteProblem>();
-  discrete->mass = problem.inertia.mass;
-  discrete->stiffness = problem.stiffness;
-  discrete->contact = problem.contact;
-  discrete->lower = problem.lower;
-  discrete->upper = problem.upper;
-  discrete->support_shape = problem.support_shape;
-  discrete->position = problem.position;
-  discrete->velocity = problem.velocity;
-  discrete->load_constant = Eigen::VectorXd::Zero(problem.dofs());
-  discrete->tip = Eigen::MatrixXd(problem.tip).row(0);
-  const auto places = static_cast<Eigen::Index>(grid.places.size());
-  discrete->places = Eigen::MatrixXd(displacement_rows(problem.space, grid.places));
-  discrete->strains = Eigen::MatrixXd::Zero(places, problem.dofs());
-  for (Eigen::Index i = 0; i < places; ++i)
-    for (const auto& [dof, value] : strain_row(problem.space, grid.places[static_cast<std::size_t>(i)]))
-      discrete->strains(i, dof) = value;
-  return discrete;
-}
-
 ReferenceScene described(std::string name, SceneSpec scene, int elements, double duration,
                          const std::vector<double>& places) {
   ReferenceScene described;
   described.name = std::move(name);
   described.grid = grid_of(duration, 40, places);
   const ProblemPointer problem = discretised(scene, elements);
-  described.discrete = matrices(*problem, described.grid);
+  described.discrete = std::make_shared<DiscreteProblem>(discrete_problem(*problem, described.grid.places));
   ReferenceProblem& asked = described.problem;
   asked.discrete = described.discrete.get();
   asked.structure = problem->space.structure;

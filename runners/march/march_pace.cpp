@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
 namespace {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <ricochet/measure/stability/amplification.hpp>
 
 #include "runners/march/explicit_limit.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
 namespace {
@@ -41,12 +41,6 @@ const Found& registered(const Found* found, Role role, const std::string& name) 
 }
 
 }  // namespace
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double budget_of(const StudyCase& study_case) {
   return study_case.settings.is_object() ? study_case.settings.value("budget", std::numeric_limits<double>::infinity())

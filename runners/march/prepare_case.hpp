@@ -49,10 +49,6 @@ std::optional<double> scheme_restitution(const StudyCase& study_case, const Regi
 /// Item and reason of everything that a program does without.
 std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items);
 
-/// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from
-/// start to end.
-double thread_seconds();
-
 /// The processor time that a case may take, s; infinite without a budget.
 double budget_of(const StudyCase& study_case);
 

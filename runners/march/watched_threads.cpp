@@ -13,6 +13,8 @@
 #include <optional>
 #include <thread>
 
+#include "runners/march/seconds.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -24,10 +26,6 @@ constexpr double kAfterStop = 3;      // s for coming back
 constexpr double kAsleepShare = 0.1;  // of the time that passes counts for a thread that only waits
 
 std::atomic<int> left_behind_count{0};
-
-double since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
-}
 
 // One call as the watcher follows it.
 struct Followed {
@@ -51,7 +49,7 @@ class Watcher {
         ended_->count = 0;
       }
       collect();
-      if (workers_.empty() || since(looked_) < std::chrono::duration<double>(kLookEvery).count()) continue;
+      if (workers_.empty() || seconds_since(looked_) < std::chrono::duration<double>(kLookEvery).count()) continue;
       looked_ = Clock::now();
       look();
     }
@@ -106,7 +104,7 @@ class Watcher {
     if (hooks_.waiting) hooks_.waiting(waiting);
     if (!stop_) return;
     if (!stopped_) stopped_ = Clock::now();
-    if (since(*stopped_) > kAfterStop) leave(calls, seen);
+    if (seconds_since(*stopped_) > kAfterStop) leave(calls, seen);
   }
 
   std::vector<Call> follow(const std::vector<SeenThread>& seen) {
@@ -122,7 +120,7 @@ class Watcher {
       call.ticket = one.ticket;
       call.plugin = one.plugin;
       call.function = one.function;
-      call.seconds = since(known.seen);
+      call.seconds = seconds_since(known.seen);
       call.limited_seconds = std::max(one.processor_seconds - known.processor, kAsleepShare * call.seconds);
       call.limited = std::isfinite(one.ticket->budget) && one.role != "reference";
     }

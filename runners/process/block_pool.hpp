@@ -42,6 +42,7 @@ class BlockPool {
 
  private:
   struct Marching {
+    Marching(int of, std::uint32_t block) : owner(of), about(block) {}
     int owner;
     std::uint32_t about;
     std::atomic<bool> stop{false};

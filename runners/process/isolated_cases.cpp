@@ -12,6 +12,7 @@
 
 #include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/process/block_pool.hpp"
 #include "runners/process/key_claims.hpp"
@@ -36,10 +37,6 @@ std::string other_arithmetic(const std::string& host) {
       "{} computes other last digits than this machine (another processor or C library): a study's results come from "
       "one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
       host);
-}
-
-double since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
 /// A worker ended, or gave up.
@@ -284,8 +281,8 @@ class IsolatedCases::Desk {
         told_to_stop = Clock::now();
         worker.send({Word::stop});
       }
-      if (told_to_stop && since(*told_to_stop) > patience) worker.kill();
-      quiet += std::min(since(looked), 2 * look_up);
+      if (told_to_stop && seconds_since(*told_to_stop) > patience) worker.kill();
+      quiet += std::min(seconds_since(looked), 2 * look_up);
       looked = Clock::now();
       if (state == Channel::Heard::silence) {
         silent = quiet > longest_silence;

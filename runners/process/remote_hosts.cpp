@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runners/march/seconds.hpp"
+
 namespace ricochet {
 namespace {
 
@@ -14,10 +16,6 @@ using What = HostMessage::What;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr double look_around = 0.25;  // s
-
-double seconds_since(SteadyClock::time_point then) {
-  return std::chrono::duration<double>(SteadyClock::now() - then).count();
-}
 
 }  // namespace
 

@@ -49,7 +49,7 @@ std::optional<StudyResults> shown_cases(const StudyResults& results) {
   for (const CaseRecord& record : results.cases)
     if (ids.contains(record.id)) shown.cases.push_back(record);
   for (const Table& table : results.derived) {
-    Table& kept = shown.derived.emplace_back(table.name, table.text, table.columns, std::vector<Row>());
+    Table& kept = shown.derived.emplace_back(Table{table.name, table.text, table.columns, {}});
     const bool of_cases = !table.columns.empty() && table.columns.front().name == "case";
     for (const Row& row : table.rows)
       if (!of_cases || ids.contains(row.front().text())) kept.rows.push_back(row);

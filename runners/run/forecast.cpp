@@ -10,6 +10,7 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/run/alike_cases.hpp"
 #include "runners/store/fingerprint.hpp"
 

@@ -5,6 +5,7 @@
 #include <ricochet/loader/child.hpp>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/run/run_study.hpp"
 
 namespace ricochet {

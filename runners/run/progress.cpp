@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/march/seconds.hpp"
 #include "runners/run/say.hpp"
 #include "runners/table/plain_text.hpp"
 
@@ -21,10 +22,6 @@ constexpr double kOverrun = 0.1;
 constexpr double kFirstGuess = 0.02;
 // s beyond twice the prediction after which a case is waited for.
 constexpr double kPatience = 5;
-
-double seconds_since(std::chrono::steady_clock::time_point since) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
-}
 
 int terminal_width(std::FILE* out) {
   winsize size{};

@@ -11,6 +11,7 @@
 
 #include "runners/march/crash_record.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
@@ -227,10 +228,9 @@ class FolderRun {
 
   void say_waiting(const std::vector<LongCall>& calls) {
     constexpr double every = 10;
-    const auto now = std::chrono::steady_clock::now();
     for (const LongCall& call : calls)
-      if (call.seconds > every / 2 && std::chrono::duration<double>(now - said_waiting_).count() > every) {
-        said_waiting_ = now;
+      if (call.seconds > every / 2 && seconds_since(said_waiting_) > every) {
+        said_waiting_ = std::chrono::steady_clock::now();
         tell(fmt::format("waiting{}: {}", call.ticket->id.empty() ? "" : " for case " + call.ticket->id, call.text()));
       }
   }
@@ -339,7 +339,7 @@ class FolderRun {
 
   int finish() {
     const StudyResults results = write_folder(store_, folder_, runner_.render, &fresh_);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const double seconds = seconds_since(begin_);
     return tell_results(runner_.out, results, folder_,
                         fmt::format("{} run now in {}, {} kept", fresh_.size(), duration_text(seconds), kept_.size()),
                         table_);

@@ -6,6 +6,7 @@
 #include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
 
@@ -50,7 +51,7 @@ std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study
       }
     }
   // One busy thread of ours: the rest of the wall time went to others.
-  const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  const double passed = seconds_since(wall);
   const double share = passed > 0 ? 1 - (thread_seconds() - processor) / passed : 0;
   constexpr double loaded = 0.1;
   for (std::size_t i = 0; i < records.size(); ++i) {

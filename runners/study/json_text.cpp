@@ -1,8 +1,14 @@
 #include "runners/study/json_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "runners/study/json_fault.hpp"
 
@@ -209,6 +215,27 @@ std::optional<TextPosition> locate(const std::string& text, const std::string& p
   });
   if (!found) return std::nullopt;
   return position_of(text, offset);
+}
+
+std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError("", "is a folder; expected " + expected + ", a JSON file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
+    throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
+  return text.str();
+}
+
+std::string explained(const InputError& error, std::string place, const std::string& text) {
+  if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))
+    return fmt::format("{}:{}:{}: {}", place, syntax->where().line, syntax->where().column, error.what());
+  if (error.pointer().empty()) return place + ": " + error.what();
+  if (!text.empty())
+    if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
+  return place + ": at " + error.pointer() + ": " + error.what();
 }
 
 }  // namespace ricochet

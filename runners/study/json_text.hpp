@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <string>
@@ -30,6 +31,13 @@ Json parse_json(const std::string& text);
 /// Where the value of a JSON pointer stands in a valid JSON text: its key, or the element of a list. When the pointer
 /// names nothing (a missing key), where its nearest ancestor stands. None for the whole document.
 std::optional<TextPosition> locate(const std::string& text, const std::string& pointer);
+
+/// A text file. Throws InputError, pointer "", where it cannot be read or is a folder; `expected`: "a study".
+std::string read_text(const std::filesystem::path& file, const std::string& expected);
+
+/// The error as a person reads it: "PLACE:LINE: at /json/pointer: what is wrong; what was expected", the line where
+/// `text` is not empty.
+std::string explained(const InputError& error, std::string place, const std::string& text);
 
 /// `parent` + "/" + key, escaped as RFC 6901 asks.
 std::string pointer_to(const std::string& parent, const std::string& key);

@@ -3,12 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <ricochet/scene/semi_discrete.hpp>
-#include <sstream>
 
 #include "runners/study/axis_meaning.hpp"
 #include "runners/study/case_id.hpp"
@@ -34,16 +30,6 @@ struct SceneOption {
   Json json;
   Axes axes;
 };
-
-std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError("", "is a folder; expected a study, a JSON file");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
-    throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
-  return text.str();
-}
 
 void check_name(const std::string& name) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
@@ -282,7 +268,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
 }
 
 Study load_study(const std::filesystem::path& file, Catalogue& catalogue, Registry& registry) {
-  return parse_study(read_text(file), catalogue, registry, file.parent_path());
+  return parse_study(read_text(file, "a study"), catalogue, registry, file.parent_path());
 }
 
 const StudyCase* find_case(const Study& study, const std::string& id) {
@@ -292,20 +278,14 @@ const StudyCase* find_case(const Study& study, const std::string& id) {
 }
 
 std::string explain(const InputError& error, const std::filesystem::path& file) {
-  std::string place = file.string();
-  if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))
-    return fmt::format("{}:{}:{}: {}", place, syntax->where().line, syntax->where().column, error.what());
-  if (error.pointer().empty()) return place + ": " + error.what();
+  std::string text;
   try {
-    const std::string text = read_text(file);
-    parse_json(text);
-    if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
+    if (!error.pointer().empty()) parse_json(text = read_text(file, "a study"));
   } catch (const InputError& twice) {
     // A key given twice: the text can still be located in. Anything else has no line to tell.
-    if (!twice.pointer().empty())
-      if (const auto where = locate(read_text(file), error.pointer())) place += ":" + std::to_string(where->line);
+    if (twice.pointer().empty()) text.clear();
   }
-  return place + ": at " + error.pointer() + ": " + error.what();
+  return explained(error, file.string(), text);
 }
 
 }  // namespace ricochet

@@ -2,12 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <ricochet/contract/stage_facts.hpp>
-#include <sstream>
 
 #include "runners/study/json_text.hpp"
 #include "runners/study/plan_manual.hpp"
@@ -82,27 +78,14 @@ void require_well_formed(const JsonPlace& plan, const Parameters& defaults, doub
 
 std::string PlanSource::explain(const InputError& error) const {
   if (file.empty()) return error.pointer().empty() ? error.what() : "at " + error.pointer() + ": " + error.what();
-  std::string place = file.string();
-  if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))
-    return fmt::format("{}:{}:{}: {}", place, syntax->where().line, syntax->where().column, error.what());
-  if (error.pointer().empty()) return place + ": " + error.what();
-  if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
-  return place + ": at " + error.pointer() + ": " + error.what();
+  return explained(error, file.string(), text);
 }
 
 PlanSource read_plan_file(const std::filesystem::path& file) {
   PlanSource source;
   source.file = file;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
-    throw InputError("", file.string() + ": is a folder; expected a plan, a JSON file");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
-    throw InputError("", file.string() + ": cannot be read: " + (errno ? std::strerror(errno) : "unknown cause"));
-  source.text = text.str();
   try {
+    source.text = read_text(file, "a plan");
     source.plan = parse_json(source.text);
   } catch (const InputError& error) {
     throw InputError("", source.explain(error));

@@ -27,6 +27,7 @@
 #include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_runner.hpp"

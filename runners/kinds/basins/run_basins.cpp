@@ -15,6 +15,7 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -20,6 +20,7 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/partial_pace.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -305,8 +306,8 @@ class BifurcationRun {
       record_.notes.push_back(fmt::format("only {} changes of class per start were refined at a time", most_brackets));
     long long marched = 0, bad = 0;
     for (const OrbitView& view : all) (view.complete() ? marched : bad) += 1;
-    for (int task = 0; task < scheduler_->count(); ++task)
-      if (scheduler_->finished(task)) record_.steps += scheduler_->marched_periods(task) * section_.steps_per_period;
+    for (int one = 0; one < scheduler_->count(); ++one)
+      if (scheduler_->finished(one)) record_.steps += scheduler_->marched_periods(one) * section_.steps_per_period;
     put_measure(record_, "orbits", static_cast<double>(marched));
     for (const OrbitView& view : all) lost_ += view.orbit && view.orbit->end.cause == EndCause::process_ended;
     if (lost_ > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost_));

@@ -4,6 +4,7 @@
 #include <ricochet/measure/statistics/quantiles.hpp>
 
 #include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"

@@ -5,6 +5,7 @@
 
 #include "runners/kinds/comparison/comparison_answers.hpp"
 #include "runners/kinds/comparison/precision_targets.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/table/plain_text.hpp"

@@ -9,6 +9,8 @@
 
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
+#include "runners/study/field.hpp"
 
 namespace ricochet {
 namespace {

@@ -10,6 +10,7 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/discrete_problem.hpp>
 #include <set>
 
 #include "runners/kinds/comparison/motion_bytes.hpp"
@@ -52,35 +53,6 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
     marched.refusal = fmt::format("at h = {:g} s the method itself stops at t = {:.6g} s: {}", study_case.step,
                                   marcher.status(0).time, text(marcher.status(0).end));
   return marched;
-}
-
-DiscreteProblem dense(const SemiDiscrete& problem, const SampleGrid& grid) {
-  DiscreteProblem discrete;
-  const Eigen::Index n = problem.dofs();
-  if (!problem.inertia.assembled()) {
-    const MassFactors factors = mass_factors(problem.inertia);
-    const Eigen::MatrixXd B = factors.coupling, C = factors.velocity_mass;
-    discrete.mass = B.transpose() * C.llt().solve(B);
-  } else {
-    discrete.mass = problem.inertia.mass;
-  }
-  discrete.stiffness = problem.stiffness;
-  discrete.contact = problem.measured();
-  discrete.lower = problem.lower;
-  discrete.upper = problem.upper;
-  discrete.support_shape = problem.support_shape;
-  discrete.position = problem.position;
-  discrete.velocity = problem.velocity;
-  discrete.load_constant = Eigen::VectorXd::Zero(n);
-  if (!problem.load->absent()) problem.load->assemble(0, discrete.load_constant.data());
-  discrete.tip = Eigen::MatrixXd(problem.tip).row(0);
-  const auto places = static_cast<Eigen::Index>(grid.places.size());
-  discrete.places = Eigen::MatrixXd(displacement_rows(problem.space, grid.places));
-  discrete.strains = Eigen::MatrixXd::Zero(places, n);
-  for (Eigen::Index i = 0; i < places; ++i)
-    for (const auto& [dof, value] : strain_row(problem.space, grid.places[static_cast<std::size_t>(i)]))
-      discrete.strains(i, dof) = value;
-  return discrete;
 }
 
 // A case of the same scene and methods at another step and mesh.
@@ -233,7 +205,7 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
       known.refusal = refusal->sentence;
       return known;
     }
-    discrete = dense(std::get<SemiDiscrete>(built), grid);
+    discrete = discrete_problem(std::get<SemiDiscrete>(built), grid.places);
     problem.discrete = &discrete;
     // The stiffness of a law that changes the problem is known since.
     if (law->changes_problem() && law->constant_stiffness(0)) {

@@ -8,6 +8,7 @@
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

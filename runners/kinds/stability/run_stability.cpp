@@ -15,6 +15,7 @@
 #include "runners/kinds/stability/stability_steps.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

@@ -6,6 +6,7 @@
 #include "runners/kinds/sweep/orbit_archive.hpp"
 #include "runners/march/bytes.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
 namespace {

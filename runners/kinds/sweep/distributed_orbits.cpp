@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
 namespace {
@@ -162,7 +163,7 @@ void DistributedOrbits::run(const std::atomic<bool>& stop,
       }
     }
     over_budget_ = over_budget_ || seconds_ > options_.budget;
-    if (std::chrono::duration<double>(Clock::now() - last).count() > options_.interval) {
+    if (seconds_since(last) > options_.interval) {
       last = Clock::now();
       checkpoint(under_way());
     }

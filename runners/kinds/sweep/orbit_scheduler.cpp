@@ -10,17 +10,9 @@
 #include "runners/kinds/sweep/distributed_orbits.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
-}
-
-}  // namespace
 
 /// What the workers of one run share. Each function takes the lock for itself; nobody marches while it is held.
 class OrbitScheduler::Shared {
@@ -97,7 +89,7 @@ class OrbitScheduler::Shared {
   /// goes on.
   bool look_around(int place, const SectionMarch& block) {
     const std::lock_guard guard(mutex_);
-    const bool due = since(last_) > owner_.options_.interval, spent = spent_ > owner_.options_.budget;
+    const bool due = seconds_since(last_) > owner_.options_.interval, spent = spent_ > owner_.options_.budget;
     long long& shown = shown_[static_cast<std::size_t>(place)];
     if (due) ++wanted_;
     if (wanted_ != shown) snapshots_[static_cast<std::size_t>(place)] = block.running();
@@ -105,7 +97,7 @@ class OrbitScheduler::Shared {
     owner_.over_budget_ = owner_.over_budget_ || spent;
     ended_ = ended_ || spent || stop_;
     if (due) {
-      last_ = Clock::now();
+      last_ = std::chrono::steady_clock::now();
       checkpoint_(queue_.stock(snapshots_));
     }
     if (!ended_) workers_.call(queue_.waiting());
@@ -155,7 +147,7 @@ class OrbitScheduler::Shared {
   bool ended_ = false;
   std::vector<bool> taken_;                    // places of workers
   std::vector<std::vector<Orbit>> snapshots_;  // per place, what is on its way
-  Clock::time_point last_ = Clock::now();
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
   long long wanted_ = 0;          // snapshots asked for so far
   std::vector<long long> shown_;  // and given, per place
   double spent_ = 0;

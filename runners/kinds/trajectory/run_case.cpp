@@ -16,6 +16,7 @@
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
 #include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {

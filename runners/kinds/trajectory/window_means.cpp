@@ -84,14 +84,14 @@ void WindowMeans::put(CaseRecord& record) const {
         fmt::format("no means over the window: the run ended in part {} of {}", series_[tip].size() + 1, parts_));
     return;
   }
-  const char* const names[kinds] = {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
-  for (int kind = 0; kind < kinds; ++kind) {
+  const char* const names[means] = {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
+  for (int mean = 0; mean < means; ++mean) {
     // Without a work form it is not known what the stops take.
-    if (kind == power && !audit_.balances()) continue;
-    const Interval mean = block_bootstrap_mean(series_[static_cast<std::size_t>(kind)]);
-    put_measure(record, names[kind], mean.value);
-    put_measure(record, std::string("confidence.") + names[kind],
-                std::max(mean.high - mean.value, mean.value - mean.low));
+    if (mean == power && !audit_.balances()) continue;
+    const Interval found = block_bootstrap_mean(series_[static_cast<std::size_t>(mean)]);
+    put_measure(record, names[mean], found.value);
+    put_measure(record, std::string("confidence.") + names[mean],
+                std::max(found.high - found.value, found.value - found.low));
   }
 }
 

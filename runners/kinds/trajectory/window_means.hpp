@@ -37,7 +37,7 @@ class WindowMeans final : public StepObserver {
   void put(CaseRecord& record) const;
 
  private:
-  enum Kind { power, force, rate, tip, kinds };
+  enum Mean { power, force, rate, tip, means };
   struct Totals {
     double t = 0, lost = 0, impulse = 0, impacts = 0;
   };
@@ -52,7 +52,7 @@ class WindowMeans final : public StepObserver {
   Totals begin_;  // of the part under way
   double squares_ = 0;
   long long steps_ = 0;
-  std::array<std::vector<double>, kinds> series_;
+  std::array<std::vector<double>, means> series_;
 };
 
 }  // namespace ricochet

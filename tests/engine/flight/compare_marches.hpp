@@ -1,6 +1,8 @@
 #pragma once
 // A march that leaves out steps beside the same march of every step, by all that is read of it. How far round-off may
 // carry two equal motions apart a twin says that begins 1e-12 beside, and the same march with another operator.
+#include <fmt/format.h>
+
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 

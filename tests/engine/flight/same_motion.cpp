@@ -1,5 +1,7 @@
 // Leaving out steps changes nothing: every scheme, law and mass matrix, and random scenes, against the same march of
 // every step.
+#include <fmt/format.h>
+
 #include <random>
 
 #include "tests/engine/flight/compare_marches.hpp"

@@ -1,6 +1,7 @@
 #include <set>
 
 #include "runners/kinds/stability/page/page.hpp"
+#include "runners/report/html.hpp"
 #include "runners/report/html_table.hpp"
 #include "runners/table/table_reader.hpp"
 

@@ -1,0 +1,12 @@
+#pragma once
+#include <ricochet/contract/reference.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// The problem as references of the semi-discrete problem are given it: the matrices that a method would march, dense,
+/// and rows that give w and its strain at `places` (x, m). A load that depends on t is given by its value at 0.
+DiscreteProblem discrete_problem(const SemiDiscrete& problem, const std::vector<double>& places);
+
+}  // namespace ricochet

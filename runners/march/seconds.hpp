@@ -1,0 +1,15 @@
+#pragma once
+#include <chrono>
+
+namespace ricochet {
+
+/// Processor time of this thread: what a case costs, whatever else the machine does. A case runs on one thread from
+/// start to end.
+double thread_seconds();
+
+/// Wall time since then, on a clock that nobody sets.
+inline double seconds_since(std::chrono::steady_clock::time_point then) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+}  // namespace ricochet
