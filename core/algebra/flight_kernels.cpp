@@ -11,7 +11,9 @@ namespace {
 // Four numbers: a sum by four has one order, whatever the instruction set.
 constexpr int wide = 4;
 using Wide = double __attribute__((vector_size(32)));
-using Loose = double __attribute__((vector_size(32), aligned(8), may_alias));
+// A typedef: in a using, clang leaves the alignment out.
+typedef double Loose __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(Loose) == 8);
 
 RICOCHET_BODY void add_row(int n, int slots, int drives, const double* row, const double* x, const double* e,
                            double* __restrict out) {

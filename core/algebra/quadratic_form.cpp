@@ -8,7 +8,9 @@
 namespace ricochet {
 namespace {
 
-using Loose4 = double __attribute__((vector_size(32), aligned(8), may_alias));
+// A typedef: in a using, clang leaves the alignment out.
+typedef double Loose4 __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(Loose4) == 8);
 
 // x + Σ_s l_s x_{+s}, s = 1 … W, l_s after l_{s−1}. Products are rounded before they are added, whatever the
 // instruction set.
