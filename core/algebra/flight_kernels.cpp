@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/instruction_set.hpp>
+#include <ricochet/algebra/loose_four.hpp>
 
 namespace ricochet {
 namespace {
@@ -11,9 +12,6 @@ namespace {
 // Four numbers: a sum by four has one order, whatever the instruction set.
 constexpr int wide = 4;
 using Wide = double __attribute__((vector_size(32)));
-// A typedef: in a using, clang leaves the alignment out.
-typedef double Loose __attribute__((vector_size(32), aligned(8), may_alias));
-static_assert(alignof(Loose) == 8);
 
 RICOCHET_BODY void add_row(int n, int slots, int drives, const double* row, const double* x, const double* e,
                            double* __restrict out) {
@@ -55,7 +53,7 @@ RICOCHET_BODY void cone_body(int n, double k, const double* value, const double*
 }
 
 RICOCHET_BODY Wide load(const double* x) {
-  return *reinterpret_cast<const Loose*>(x);
+  return *reinterpret_cast<const LooseFour*>(x);
 }
 // Fewer than four of them, and zeros.
 RICOCHET_BODY Wide load_some(const double* x, int count) {
@@ -96,7 +94,7 @@ RICOCHET_BODY void leap_slots(int n, const double* table, const double* x, const
   for (; j + wide <= n; j += wide)
     leap(
         j, [](const double* from) { return load(from); },
-        [](double* to, Wide value) { *reinterpret_cast<Loose*>(to) = value; });
+        [](double* to, Wide value) { *reinterpret_cast<LooseFour*>(to) = value; });
   for (; j < n; ++j)
     leap(
         j, [](const double* from) { return *from; }, [](double* to, double value) { *to = value; });
@@ -182,7 +180,7 @@ RICOCHET_BODY void reaches_body(int n, long stride, int points, const double* h,
   for (; i + wide <= points; i += wide)
     reaches_from<Wide>(
         i, n, stride, points, h, places, out, [](const double* from) { return load(from); },
-        [](double* to, Wide value) { *reinterpret_cast<Loose*>(to) = value; });
+        [](double* to, Wide value) { *reinterpret_cast<LooseFour*>(to) = value; });
   for (; i < points; ++i)
     reaches_from<double>(
         i, n, stride, points, h, places, out, [](const double* from) { return *from; },

@@ -1,5 +1,6 @@
 #pragma once
 #include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/algebra/loose_four.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -65,9 +66,8 @@ RICOCHET_INLINE V<T>* row(double* block, long i) {
 RICOCHET_INLINE Vector4 load4(const double* from) {
   return *reinterpret_cast<const Vector4*>(from);
 }
-typedef double Unaligned4 __attribute__((vector_size(32), may_alias, aligned(8)));
 RICOCHET_INLINE Vector4 loadu4(const double* from) {
-  return *reinterpret_cast<const Unaligned4*>(from);
+  return *reinterpret_cast<const LooseFour*>(from);
 }
 
 // In a loop of unknown length over one lane the compiler would multiply in vectors and add one by one, unfused: this

@@ -2,15 +2,12 @@
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/instruction_set.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/algebra/loose_four.hpp>
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <stdexcept>
 
 namespace ricochet {
 namespace {
-
-// A typedef: in a using, clang leaves the alignment out.
-typedef double Loose4 __attribute__((vector_size(32), aligned(8), may_alias));
-static_assert(alignof(Loose4) == 8);
 
 // x + Σ_s l_s x_{+s}, s = 1 … W, l_s after l_{s−1}. Products are rounded before they are added, whatever the
 // instruction set.
@@ -18,10 +15,10 @@ template <int W>
 [[gnu::always_inline]] inline void strain_body(int n, const double* l, const double* x, double* out) {
   int i = 0;
   for (; i + 4 + W <= n; i += 4) {
-    Loose4 sum = *reinterpret_cast<const Loose4*>(x + i);
+    LooseFour sum = *reinterpret_cast<const LooseFour*>(x + i);
     for (int s = 1; s <= W; ++s)
-      sum += *reinterpret_cast<const Loose4*>(l + (s - 1) * n + i) * *reinterpret_cast<const Loose4*>(x + i + s);
-    *reinterpret_cast<Loose4*>(out + i) = sum;
+      sum += *reinterpret_cast<const LooseFour*>(l + (s - 1) * n + i) * *reinterpret_cast<const LooseFour*>(x + i + s);
+    *reinterpret_cast<LooseFour*>(out + i) = sum;
   }
   for (; i < n; ++i) {
     double sum = x[i];

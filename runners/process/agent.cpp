@@ -5,8 +5,6 @@
 #include <map>
 #include <thread>
 
-#include "runners/march/seconds.hpp"
-
 namespace ricochet {
 namespace {
 
@@ -75,13 +73,14 @@ bool serve_as_agent(Transport& transport, const HostFacts& facts,
   auto told = std::chrono::steady_clock::now(), heard = told;
   for (;;) {
     const auto parcel = transport.receive(alive_every / 4);
-    if (seconds_since(told) > alive_every) {
-      told = std::chrono::steady_clock::now();
+    const auto now = std::chrono::steady_clock::now();
+    if (std::chrono::duration<double>(now - told).count() > alive_every) {
+      told = now;
       transport.send(coordinator, to_bytes(HostMessage{What::alive}));
       std::erase_if(charges, [](const auto& one) { return one.second->ended(); });
     }
-    if (parcel) heard = std::chrono::steady_clock::now();
-    if (seconds_since(heard) > silence) return false;
+    if (parcel) heard = now;
+    if (std::chrono::duration<double>(now - heard).count() > silence) return false;
     if (!parcel) continue;
     const HostMessage said = host_message(parcel->bytes);
     if (said.what == What::leave) return true;

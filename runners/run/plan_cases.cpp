@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <ricochet/loader/child.hpp>
 
-#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/run/run_study.hpp"
 

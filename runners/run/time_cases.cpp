@@ -5,7 +5,7 @@
 #include <map>
 #include <ricochet/measure/statistics/quantiles.hpp>
 
-#include "runners/march/prepare_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"

@@ -26,7 +26,6 @@
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/march/arithmetic_digest.hpp"
-#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/environment.hpp"
@@ -40,10 +39,6 @@ namespace {
 using namespace ricochet;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
-}
 
 double processor_seconds() {
   rusage used{};
@@ -186,7 +181,7 @@ void coordinator(int side, double from, const fs::path& folder) {
   const auto begin = Clock::now();
   const double before = processor_seconds();
   run_study_with(runner, study, options);
-  const double wall = since(begin), spent = processor_seconds() - before - echo.seconds;
+  const double wall = seconds_since(begin), spent = processor_seconds() - before - echo.seconds;
   std::fclose(runner.out);
   const double cells = static_cast<double>(side) * side;
   std::uintmax_t store = 0, page = 0;
@@ -214,7 +209,7 @@ double run_seconds(const std::string& study, const fs::path& folder, const std::
       fmt::format("'{}' run '{}' --out '{}' {} > /dev/null 2>&1", RICOCHET_COMMAND, study, folder.string(), options);
   const int code = std::system(command.c_str());
   if (code != 0) std::cerr << fmt::format("{}: exit code {}\n", command, code);
-  return since(begin);
+  return seconds_since(begin);
 }
 
 }  // namespace

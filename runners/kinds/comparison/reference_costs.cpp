@@ -8,7 +8,6 @@
 #include <set>
 
 #include "runners/kinds/comparison/references.hpp"
-#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/study/field.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "runners/kinds/sweep/orbit_archive.hpp"
 #include "runners/march/bytes.hpp"
-#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {

@@ -1,6 +1,5 @@
 #include "runners/kinds/sweep/case_workers.hpp"
 
-#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {

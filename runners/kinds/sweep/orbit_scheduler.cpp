@@ -9,7 +9,7 @@
 #include "runners/kinds/sweep/case_workers.hpp"
 #include "runners/kinds/sweep/distributed_orbits.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/march/prepare_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {
