@@ -48,19 +48,20 @@ int run_rank(Transport& transport, const std::vector<std::string>& arguments, st
     const std::string why_not = objections(machines);
     if (!why_not.empty()) {
       err << "ricochet: these machines cannot march one study together:\n" << why_not;
-      return exit_bad_input;
+      code = exit_bad_input;
+    } else {
+      const std::vector<int> workers = workers_of(machines);
+      err << oddities(machines, workers);
+      code = run_command(arguments, out, err, [&](int jobs) {
+        const std::vector<int> asked = jobs > 0 ? std::vector<int>(machines.size(), jobs) : workers;
+        err << "ricochet: " << words_of(machines, asked) << "\n" << std::flush;
+        return hosts_of(remote, machines, jobs);
+      });
     }
-    const std::vector<int> workers = workers_of(machines);
-    err << oddities(machines, workers);
-    code = run_command(arguments, out, err, [&](int jobs) {
-      const std::vector<int> asked = jobs > 0 ? std::vector<int>(machines.size(), jobs) : workers;
-      err << "ricochet: " << words_of(machines, asked) << "\n" << std::flush;
-      return hosts_of(remote, machines, jobs);
-    });
   } catch (const std::exception& error) {
     err << "ricochet: " << error.what() << "\n";
   }
-  lost = !remote.complete();
+  lost = !remote.dismiss();
   return code;
 }
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "runners/command/ranks.hpp"
+#include "runners/process/host_messages.hpp"
 #include "runners/process/transport.hpp"
 #include "runners/process/worker_environment.hpp"
 
@@ -42,14 +43,20 @@ class MpiTransport : public Transport {
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     pump_ = std::thread([this] { pump(); });
   }
-  /// What was sent before is on its way.
   ~MpiTransport() override {
-    {
-      const std::lock_guard guard(mutex_);
-      ending_ = true;
-    }
-    to_send_.notify_all();
+    end(0);
     pump_.join();
+  }
+
+  /// Waits until what was sent is on its way, so many s at most, and sends and receives nothing more. False where it is
+  /// not: nobody takes it any more.
+  bool end(double seconds) {
+    std::unique_lock lock(mutex_);
+    ending_ = true;
+    to_send_.notify_all();
+    const bool all = ended_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return done_; });
+    abandons_ = true;
+    return all;
   }
 
   int rank() const override { return rank_; }
@@ -87,7 +94,11 @@ class MpiTransport : public Transport {
       moved = receive_pieces() || moved;
       if (moved) last = Clock::now();
       std::unique_lock lock(mutex_);
-      if (ending_ && outgoing_.empty() && sending_.empty()) return;
+      if (abandons_ || (ending_ && outgoing_.empty() && sending_.empty())) {
+        done_ = true;
+        ended_.notify_all();
+        return;
+      }
       if (!moved) to_send_.wait_for(lock, Clock::now() - last < busy_for ? short_nap : long_nap);
     }
   }
@@ -148,10 +159,10 @@ class MpiTransport : public Transport {
 
   int rank_ = 0, size_ = 1;
   std::mutex mutex_;
-  std::condition_variable to_send_, arrived_;
+  std::condition_variable to_send_, arrived_, ended_;
   std::map<int, std::string> outgoing_;
   std::deque<Parcel> incoming_;
-  bool ending_ = false;
+  bool ending_ = false, abandons_ = false, done_ = false;
   // Of the pump alone.
   std::map<int, Sending> sending_;
   std::map<int, std::string> received_;
@@ -176,6 +187,12 @@ int main(int argc, char** argv) {
     if (transport.rank() != 0)
       for (const int one : ricochet::signals_of_coordinator) ::signal(one, SIG_IGN);
     code = ricochet::run_rank(transport, {argv + std::min(argc, 1), argv + argc}, std::cout, std::cerr, lost);
+    // MPI_Finalize is no place to meet: under srun with PMIx it may let one go to whom others still speak.
+    if (!lost && !transport.end(ricochet::lost_after)) {
+      std::cerr << "ricochet: rank " << transport.rank() << ": nobody takes what it has said\n";
+      code = std::max(code, 1);
+      lost = true;
+    }
     if (lost) {
       std::cout.flush();
       std::cerr.flush();

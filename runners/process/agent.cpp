@@ -83,7 +83,11 @@ bool serve_as_agent(Transport& transport, const HostFacts& facts,
     if (std::chrono::duration<double>(now - heard).count() > silence) return false;
     if (!parcel) continue;
     const HostMessage said = host_message(parcel->bytes);
-    if (said.what == What::leave) return true;
+    if (said.what == What::leave) {
+      charges.clear();
+      transport.send(coordinator, to_bytes(HostMessage{What::gone}));
+      return true;
+    }
     if (said.what == What::start) charges[said.worker] = std::make_unique<Charge>(transport, said.worker, start_worker);
     const auto found = charges.find(said.worker);
     if (found == charges.end()) continue;

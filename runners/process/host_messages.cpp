@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* host_mark = "host 2";
-constexpr std::string_view known_words = "f.smkel";
+constexpr const char* host_mark = "host 3";
+constexpr std::string_view known_words = "f.smkelg";
 
 // What stands before a message's own bytes, which are as they came.
 struct HostHead {

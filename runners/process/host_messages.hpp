@@ -32,7 +32,8 @@ struct HostMessage {
     message = 'm',  ///< either: a Message to or from a worker
     kill = 'k',     ///< coordinator
     ended = 'e',    ///< agent: WorkerEnd
-    leave = 'l',    ///< coordinator: ends the agent
+    leave = 'l',    ///< coordinator: ends the agent; its last word to it
+    gone = 'g',     ///< agent: it has heard so, and its workers are no more; its last word
   };
   What what = What::alive;
   std::uint32_t worker = 0;

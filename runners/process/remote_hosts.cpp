@@ -125,10 +125,20 @@ RemoteHosts::RemoteHosts(Transport& transport, TellLost lost, double silence)
 }
 
 RemoteHosts::~RemoteHosts() {
+  dismiss();
   ending_ = true;
   listener_.join();
-  for (const auto& [number, rank] : ranks_)
-    if (!rank.lost) tell(number, {What::leave, 0, {}});
+}
+
+bool RemoteHosts::dismiss() {
+  std::unique_lock lock(mutex_);
+  if (!leaving_.exchange(true))
+    for (const auto& [number, rank] : ranks_)
+      if (!rank.lost) tell(number, {What::leave, 0, {}});
+  changed_.wait(lock, [this] {
+    return std::all_of(ranks_.begin(), ranks_.end(), [](const auto& one) { return one.second.lost || one.second.gone; });
+  });
+  return std::none_of(ranks_.begin(), ranks_.end(), [](const auto& one) { return one.second.lost.load(); });
 }
 
 void RemoteHosts::tell(int rank, const HostMessage& message) {
@@ -142,9 +152,15 @@ void RemoteHosts::listen() {
     look_for_lost();
     if (seconds_since(told) < alive_every) continue;
     told = SteadyClock::now();
-    for (const auto& [number, rank] : ranks_)
-      if (!rank.lost) tell(number, {What::alive, 0, {}});
+    say_alive();
   }
+}
+
+void RemoteHosts::say_alive() {
+  const std::lock_guard guard(mutex_);
+  if (leaving_) return;
+  for (const auto& [number, rank] : ranks_)
+    if (!rank.lost) tell(number, {What::alive, 0, {}});
 }
 
 void RemoteHosts::hear(Transport::Parcel parcel) {
@@ -167,6 +183,13 @@ void RemoteHosts::hear(Rank& rank, HostMessage said) {
     changed_.notify_all();
     return;
   }
+  if (said.what == What::gone) {
+    if (!leaving_) throw std::runtime_error("an agent went that nobody had sent home");
+    const std::lock_guard guard(mutex_);
+    rank.gone = true;
+    changed_.notify_all();
+    return;
+  }
   std::shared_ptr<Inbox> inbox;
   {
     const std::lock_guard guard(mutex_);
@@ -184,7 +207,8 @@ void RemoteHosts::look_for_lost() {
   const double passed = std::min({seconds_since(looked_), 2 * look_around, silence_ / 4});
   looked_ = SteadyClock::now();
   for (auto& [number, rank] : ranks_) {
-    if (rank.lost || !rank.facts) continue;
+    // Facts are waited for elsewhere.
+    if (rank.lost || rank.gone || !(rank.facts || leaving_)) continue;
     rank.silent += passed;
     if (rank.silent >= silence_) lose(rank, "does not answer any more");
   }
@@ -207,8 +231,13 @@ std::vector<HostFacts> RemoteHosts::facts() {
   for (auto& [number, rank] : ranks_) {
     changed_.wait_for(lock, std::chrono::duration<double>(silence_),
                       [&one = rank] { return one.facts.has_value() || one.lost; });
+    if (!rank.facts && !rank.lost) {
+      lock.unlock();
+      lose(rank, "does not answer");
+      lock.lock();
+    }
     if (!rank.facts)
-      throw std::runtime_error(fmt::format("rank {} {}", number, rank.lost ? rank.why : "does not answer"));
+      throw std::runtime_error(fmt::format("rank {} {}", number, rank.why));
     all.push_back(*rank.facts);
   }
   return all;
@@ -217,12 +246,6 @@ std::vector<HostFacts> RemoteHosts::facts() {
 std::shared_ptr<WorkerHost> RemoteHosts::host(int rank, int width, double memory) {
   const std::lock_guard guard(mutex_);
   return std::make_shared<Host>(*this, rank, ranks_.at(rank).facts.value().name, width, memory);
-}
-
-bool RemoteHosts::complete() const {
-  for (const auto& [number, rank] : ranks_)
-    if (rank.lost) return false;
-  return true;
 }
 
 }  // namespace ricochet

@@ -25,7 +25,7 @@ class RemoteHosts {
   /// Told once of each machine that is lost, and why: "does not answer any more".
   using TellLost = std::function<void(const HostFacts&, const std::string& why)>;
   RemoteHosts(Transport& transport, TellLost lost, double silence = lost_after);
-  /// Sends the agents home. All workers of its hosts are gone before.
+  /// Dismisses the agents.
   ~RemoteHosts();
   RemoteHosts(const RemoteHosts&) = delete;
   RemoteHosts& operator=(const RemoteHosts&) = delete;
@@ -35,8 +35,9 @@ class RemoteHosts {
   std::vector<HostFacts> facts();
   /// The machine of a rank, with room for so many workers.
   std::shared_ptr<WorkerHost> host(int rank, int width, double memory);
-  /// Whether none is lost.
-  bool complete() const;
+  /// Sends the agents home and waits until they are gone: nobody speaks afterwards to who is not there any more. All
+  /// workers of its hosts are gone before. False where a machine is lost.
+  bool dismiss();
 
  private:
   class Host;
@@ -47,6 +48,7 @@ class RemoteHosts {
     std::optional<HostFacts> facts;
     double silent = 0;  ///< s, of the listener's time
     std::atomic<bool> lost{false};
+    bool gone = false;  ///< sent home, and it said so
     std::string why;  ///< it is lost
     std::map<std::uint32_t, std::shared_ptr<Inbox>> workers;
   };
@@ -55,6 +57,7 @@ class RemoteHosts {
   void hear(Rank& rank, HostMessage said);
   void look_for_lost();
   void lose(Rank& rank, const std::string& why);
+  void say_alive();
   void tell(int rank, const HostMessage& message);
 
   Transport& transport_;
@@ -65,7 +68,7 @@ class RemoteHosts {
   std::map<int, Rank> ranks_;
   std::uint32_t born_ = 0;
   std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
-  std::atomic<bool> ending_{false};
+  std::atomic<bool> leaving_{false}, ending_{false};
   std::thread listener_;
 };
 

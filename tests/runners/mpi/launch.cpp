@@ -116,6 +116,10 @@ void UnderWay::give_up_a_launcher() {
 Ended UnderWay::finish(int signal) {
   if (signal != 0) ::kill(process_, signal);
   give_up_a_launcher();
+  // Half of the time that a test has: who hangs is ended, and what it told is to be read.
+  constexpr int looks = 60000, between = 5;  // ms
+  for (int i = 0; i < looks && !ended(); ++i) ::usleep(1000 * between);
+  if (!ended()) ::kill(-process_, SIGKILL);
   ::waitpid(process_, &status_, 0);
   process_ = -1;
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), read_text(scratch_ / "said"),

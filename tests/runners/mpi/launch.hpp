@@ -46,7 +46,7 @@ class UnderWay {
 
   pid_t process() const { return process_; }
   bool ended() const;
-  /// Sends a signal to the program, and waits.
+  /// Sends a signal to the program, and waits; after five minutes it is killed.
   Ended finish(int signal = 0);
   /// Processes below it with these words in their command line, "ricochet worker".
   std::vector<pid_t> below(const std::string& words) const;

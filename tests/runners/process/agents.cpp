@@ -282,6 +282,12 @@ class Exchange {
     const int rank_;
   };
 
+  /// Parcels to a rank that it has not taken.
+  std::size_t unheard(int rank) {
+    const std::lock_guard guard(mutex_);
+    return boxes_.at(static_cast<std::size_t>(rank)).size();
+  }
+
  private:
   void put(int to, Transport::Parcel parcel) {
     const std::lock_guard guard(mutex_);
@@ -346,6 +352,8 @@ TEST_CASE("agents: the real ones pass on what workers say and how they end, and 
       check_all(study, kept);
     }
     for (std::thread& one : agents) one.join();
+    // Whoever went had heard all that is ever said to it: nothing waits for one who is not there any more.
+    for (int rank = 0; rank < ranks; ++rank) CHECK(exchange.unheard(rank) == 0);
     CHECK(served == ranks - 1);
     CHECK(there == 0);
   }
@@ -399,8 +407,10 @@ TEST_CASE("agents: one that talks nonsense before its facts is named with its ra
   facts.rank = 2;
   Exchange::End(exchange, 1).send(0, "host 0: an older build says hello");
   other.send(0, to_bytes(HostMessage{HostMessage::What::facts, 0, {.content = to_bytes(facts)}}));
-  RemoteHosts remote(end, [](const HostFacts&, const std::string&) {});
+  RemoteHosts remote(
+      end, [](const HostFacts&, const std::string&) {}, 0.2);
   CHECK_THROWS_WITH(remote.facts(), Catch::Contains("rank 1") && Catch::Contains("another build"));
+  CHECK_FALSE(remote.dismiss());
 }
 
 }  // namespace agents_tests

@@ -70,6 +70,7 @@ void ScriptedNetwork::hear(Agent& agent, const std::string& bytes) {
   if (said.what == HostWhat::leave) {
     agent.home = true;
     agent.workers.clear();
+    agent.from_it.push_back(to_bytes(HostMessage{HostWhat::gone}));
   }
   if (said.what == HostWhat::start) agent.workers[said.worker] = std::make_unique<ScriptedWorker>(world_);
   const auto found = agent.workers.find(said.worker);
