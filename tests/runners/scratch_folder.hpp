@@ -3,7 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string>
 
 /// A folder of its own for one test, removed at the end.
@@ -27,9 +27,11 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+/// What can be read of a file: of a process in /proc that ends meanwhile, what was read before.
 inline std::string read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 inline void write_text(const std::filesystem::path& file, const std::string& text) {
