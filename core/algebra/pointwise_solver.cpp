@@ -271,6 +271,10 @@ LaneOutcome PointwiseSolver::finish(const Lane& lane, bool converged, int iterat
     slopes_[static_cast<std::size_t>(i) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane.lane)] = {
         answer.stiffness, answer.viscosity, answer.before};
     if (wrong == 0) continue;
+    if (!std::isfinite(wrong)) {
+      outcome.residual = infinity;
+      continue;
+    }
     const double mobility = problem.delassus->column(i)[i];
     // By how much the measure, or where no effort moves it the depth, is off.
     double apart = wrong / (1 + lane.weight(answer) * mobility);

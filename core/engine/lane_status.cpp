@@ -17,6 +17,7 @@ std::string text(const LaneEnd& end) {
       if (std::isinf(end.value))
         return "the contact law has no finite force at the state that the step reaches: take a smaller step, or a "
                "scheme (or an evaluation) whose step knows the force while it moves";
+      if (end.count == 0) return fmt::format("the contact law found no solution (residual {:.3g})", end.value);
       return fmt::format("the contact law did not converge (residual {:.3g} after {} iterations)", end.value,
                          end.count);
     case EndCause::state_not_finite:

@@ -375,4 +375,28 @@ TEST_CASE("data that are not finite end a nonlinear solve", "[pointwise]") {
   }
 }
 
+TEST_CASE("a law without a finite force has no residual of a finite size, whatever slope it names", "[pointwise]") {
+  struct Wall final : PointwiseLaw {
+    double slope = 0;
+    PointForce force(const ContactState& s) const override {
+      return s.depth > 0 ? PointForce{infinity, slope, 0, 0, 0} : PointForce{};
+    }
+  } wall;
+  for (const double slope : {0.0, 1.0, infinity, std::nan("")})
+    for (const double reach : {0.0, 1.0}) {
+      CAPTURE(slope, reach);
+      wall.slope = slope;
+      Problem problem;
+      problem.W = MatrixXd::Identity(2, 2);
+      problem.reach = reach;
+      problem.free = problem.upper = VectorXd::Ones(2);
+      problem.rate = VectorXd::Zero(2);
+      problem.lower = VectorXd::Zero(2);
+      problem.free[1] = 2;
+      const Solution s = solve(wall, problem);
+      if (!s.outcome.converged) CHECK(s.outcome.residual == infinity);
+      if (reach == 0) CHECK_FALSE(s.outcome.converged);
+    }
+}
+
 }  // namespace pointwise_solver_tests

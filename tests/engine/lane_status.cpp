@@ -22,6 +22,8 @@ TEST_CASE("each cause of an end has a sentence of its own, only a step that cann
 TEST_CASE("the numbers of a cause stand in its sentence") {
   CHECK(text(LaneEnd{.cause = EndCause::law_not_converged, .value = 0.25, .count = 50}) ==
         "the contact law did not converge (residual 0.25 after 50 iterations)");
+  CHECK(text(LaneEnd{.cause = EndCause::law_not_converged, .value = 0.25}) ==
+        "the contact law found no solution (residual 0.25)");
   CHECK_THAT(text(LaneEnd{.cause = EndCause::law_not_converged, .value = std::numeric_limits<double>::infinity()}),
              Catch::Contains("no finite force"));
   CHECK(text(LaneEnd{.cause = EndCause::elastic_energy_beyond, .value = 3e9, .bound = 2e9, .factor = 1e9}) ==

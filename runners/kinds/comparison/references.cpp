@@ -23,6 +23,7 @@ namespace ricochet {
 namespace {
 
 constexpr int cells = 64;
+constexpr const char* to_the_end = "the end of the run";
 
 // A motion marched to the end of the grid, or why there is none.
 struct Marched {
@@ -243,41 +244,46 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
 }
 
 References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {
-  // One pair of nearby runs per scene and mesh: the first case of them, at its own step.
+  // One pair of nearby runs per scene and mesh: of the first case of them that marches to its end, at its own step.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
-  const auto first = std::find_if(study_.cases.begin(), study_.cases.end(), [&](const StudyCase& other) {
-    return !other.excluded && other.scene_json == study_case.scene_json && other.elements == study_case.elements &&
-           !(shelf_.failed && shelf_.failed(other.id));
-  });
-  const StudyCase& chosen = first == study_.cases.end() ? study_case : *first;
   return once<Twin>(twins_, name.dump(), stop, [&]() -> Twin {
-    std::optional<CaseScope> blamed;
-    if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
-    constexpr double offset = 1e-6, share = 1e-2;
-    SampleGrid grid = comparison_grid(chosen.scene, chosen.duration, chosen.samples);
-    grid.places.clear();
-    grid.weights.clear();
-    const auto offset_by = [](LaneSpec& lane) {
-      lane.position *= 1 + offset;
-      lane.velocity *= 1 + offset;
-      lane.amplitude *= 1 + offset;
-    };
-    Marched one, other;
-    try {
-      one = march(chosen, registry_, grid, nullptr, stop);
-      other = march(chosen, registry_, grid, offset_by, stop);
-    } catch (const Interrupted&) {
-      throw;
-    } catch (...) {
-      // The first case says in its own row what is wrong with it; the others are compared to their ends.
+    for (const StudyCase& chosen : study_.cases) {
+      if (chosen.excluded || chosen.scene_json != study_case.scene_json || chosen.elements != study_case.elements ||
+          (shelf_.failed && shelf_.failed(chosen.id)))
+        continue;
+      std::optional<CaseScope> blamed;
+      if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
+      if (const auto twin = twin_of(chosen, stop)) return *twin;
     }
-    if (!one.motion || !other.motion) return {chosen.duration, "the end of the run"};
-    const double horizon = common_horizon(*one.motion, *other.motion, grid, share);
-    if (horizon >= chosen.duration) return {chosen.duration, "the end of the run"};
-    return {horizon, fmt::format("two runs whose states differ by {:g} at the start (relative) differ by {:g} of the "
-                                 "largest tip displacement from then on",
-                                 offset, share)};
+    return {study_case.duration, to_the_end};
   });
+}
+
+std::optional<References::Twin> References::twin_of(const StudyCase& chosen, const std::atomic<bool>& stop) const {
+  constexpr double offset = 1e-6, share = 1e-2;
+  SampleGrid grid = comparison_grid(chosen.scene, chosen.duration, chosen.samples);
+  grid.places.clear();
+  grid.weights.clear();
+  const auto offset_by = [](LaneSpec& lane) {
+    lane.position *= 1 + offset;
+    lane.velocity *= 1 + offset;
+    lane.amplitude *= 1 + offset;
+  };
+  try {
+    const Marched one = march(chosen, registry_, grid, nullptr, stop);
+    if (!one.motion) return std::nullopt;
+    const Marched other = march(chosen, registry_, grid, offset_by, stop);
+    if (!other.motion) return std::nullopt;
+    const double horizon = common_horizon(*one.motion, *other.motion, grid, share);
+    if (horizon >= chosen.duration) return Twin{chosen.duration, to_the_end};
+    return Twin{horizon, fmt::format("two runs whose states differ by {:g} at the start (relative) differ by {:g} of "
+                                     "the largest tip displacement from then on",
+                                     offset, share)};
+  } catch (const Interrupted&) {
+    throw;
+  } catch (...) {
+    return std::nullopt;  // the case says in its own row what is wrong with it
+  }
 }
 
 ReferenceSet References::of(const StudyCase& study_case, const std::atomic<bool>& stop) {
@@ -290,6 +296,7 @@ ReferenceSet References::of(const StudyCase& study_case, const std::atomic<bool>
     else
       set.refusals.push_back(choice.name + ": " + known->refusal);
   }
+  if (set.applicable.empty()) return set;
   if (study_case.settings.contains("horizon")) {
     set.horizon = study_case.settings["horizon"].get<double>();
     set.horizon_why = "the study's horizon";

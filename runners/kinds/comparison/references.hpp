@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <string>
@@ -73,6 +74,8 @@ class References {
   KnownReference march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const;
   std::string key(const StudyCase& study_case, const MethodChoice& choice) const;
   Twin twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop);
+  /// Of this case's own methods; nothing where they do not march to the end.
+  std::optional<Twin> twin_of(const StudyCase& chosen, const std::atomic<bool>& stop) const;
   /// What one thread computes and the others wait for; `owner`: the case of that thread.
   template <class Value>
   struct Promised {
