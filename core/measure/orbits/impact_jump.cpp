@@ -56,6 +56,22 @@ std::vector<bool> resolved_points(const SemiDiscrete& problem, double h) {
   return resolved;
 }
 
+bool stops_met_at_steps(const Program& program) {
+  const auto& stages = program.plan.stages;
+  return program.contact && !program.law->reads() && std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+           return stage.impact && stage.impact->gate;
+         });
+}
+
+bool tangents_miss_impacts(const Program& program) {
+  if (!stops_met_at_steps(program)) return false;
+  const std::vector<bool> massive = points_with_mass(*program.problem),
+                          resolved = resolved_points(*program.problem, program.h);
+  for (std::size_t i = 0; i < massive.size(); ++i)
+    if (massive[i] && !resolved[i]) return true;
+  return false;
+}
+
 // The last three displacements, newest first.
 struct ImpactJump::Past {
   std::array<Eigen::VectorXd, 3> q;

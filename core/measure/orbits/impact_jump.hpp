@@ -62,4 +62,14 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem);
 /// 0.1.
 std::vector<bool> resolved_points(const SemiDiscrete& problem, double h);
 
+/// Whether rigid stops are met at whole steps: a gate finds the point at its stop, and then the velocity jumps by a rule
+/// that knows no position. Between two orbits with the same gates the step is linear, whatever happens between them:
+/// their impacts do not move with them as they do in the motion. Two of them closer than a step's way stay together, or
+/// part at once where one gate differs.
+bool stops_met_at_steps(const Program& program);
+
+/// Whether the tangents of this program say nothing of the motion once there are impacts, nor a twin nearby: stops met
+/// at steps, by a mass whose impacts ImpactJump does not look at.
+bool tangents_miss_impacts(const Program& program);
+
 }  // namespace ricochet

@@ -8,6 +8,7 @@
 #include <optional>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
+#include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/discrete_problem.hpp>
@@ -24,12 +25,17 @@ namespace {
 
 constexpr int cells = 64;
 constexpr const char* to_the_end = "the end of the run";
+constexpr const char* not_seen =
+    "the end of the run; how long two runs nearby stay together is not told: the schemes meet the stops at whole "
+    "steps, "
+    "which runs nearby share";
 
 // A motion marched to the end of the grid, or why there is none.
 struct Marched {
   std::optional<SampledMotion> motion;
   std::string refusal;
   double order = 1;
+  bool at_steps = false;  ///< stops_met_at_steps()
 };
 
 Marched march(const StudyCase& study_case, const Registry& registry, const SampleGrid& grid,
@@ -41,6 +47,7 @@ Marched march(const StudyCase& study_case, const Registry& registry, const Sampl
     return marched;
   }
   marched.order = prepared.program->plan.facts.order;
+  marched.at_steps = stops_met_at_steps(*prepared.program);
   if (change) change(prepared.program->lanes.front());
   Marcher marcher(std::move(*prepared.program));
   MotionSampler sampler(marcher, grid);
@@ -244,22 +251,25 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
 }
 
 References::Twin References::twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop) {
-  // One pair of nearby runs per scene and mesh: of the first case of them that marches to its end, at its own step.
+  // One pair of nearby runs per scene and mesh: of the first case of them that marches to its end and whose impacts
+  // move with its motion, at its own step.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
   return once<Twin>(twins_, name.dump(), stop, [&]() -> Twin {
+    bool blind = false;
     for (const StudyCase& chosen : study_.cases) {
       if (chosen.excluded || chosen.scene_json != study_case.scene_json || chosen.elements != study_case.elements ||
           (shelf_.failed && shelf_.failed(chosen.id)))
         continue;
       std::optional<CaseScope> blamed;
       if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
-      if (const auto twin = twin_of(chosen, stop)) return *twin;
+      if (const auto twin = twin_of(chosen, blind, stop)) return *twin;
     }
-    return {study_case.duration, to_the_end};
+    return {study_case.duration, blind ? not_seen : to_the_end};
   });
 }
 
-std::optional<References::Twin> References::twin_of(const StudyCase& chosen, const std::atomic<bool>& stop) const {
+std::optional<References::Twin> References::twin_of(const StudyCase& chosen, bool& blind,
+                                                    const std::atomic<bool>& stop) const {
   constexpr double offset = 1e-6, share = 1e-2;
   SampleGrid grid = comparison_grid(chosen.scene, chosen.duration, chosen.samples);
   grid.places.clear();
@@ -272,6 +282,10 @@ std::optional<References::Twin> References::twin_of(const StudyCase& chosen, con
   try {
     const Marched one = march(chosen, registry_, grid, nullptr, stop);
     if (!one.motion) return std::nullopt;
+    if (one.at_steps && !one.motion->events.empty()) {
+      blind = true;
+      return std::nullopt;
+    }
     const Marched other = march(chosen, registry_, grid, offset_by, stop);
     if (!other.motion) return std::nullopt;
     const double horizon = common_horizon(*one.motion, *other.motion, grid, share);

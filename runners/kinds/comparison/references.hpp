@@ -74,8 +74,9 @@ class References {
   KnownReference march_finer(const StudyCase& study_case, const std::atomic<bool>& stop) const;
   std::string key(const StudyCase& study_case, const MethodChoice& choice) const;
   Twin twin_horizon(const StudyCase& study_case, const std::atomic<bool>& stop);
-  /// Of this case's own methods; nothing where they do not march to the end.
-  std::optional<Twin> twin_of(const StudyCase& chosen, const std::atomic<bool>& stop) const;
+  /// Of this case's own methods; nothing where they do not march to the end, or where they are blind: impacts at whole
+  /// steps do not move with the motion.
+  std::optional<Twin> twin_of(const StudyCase& chosen, bool& blind, const std::atomic<bool>& stop) const;
   /// What one thread computes and the others wait for; `owner`: the case of that thread.
   template <class Value>
   struct Promised {

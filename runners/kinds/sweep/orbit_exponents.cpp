@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 #include <ricochet/measure/orbits/exponent_intervals.hpp>
+#include <ricochet/measure/orbits/impact_jump.hpp>
+#include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
@@ -45,7 +47,14 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
   const int count = task.count;
   std::vector<OrbitExponents> found(orbits.size());
   std::map<int, std::vector<std::size_t>> by_group;
-  for (std::size_t i = 0; i < orbits.size(); ++i) by_group[task.groups[i]].push_back(i);
+  std::map<int, bool> misses;
+  for (std::size_t i = 0; i < orbits.size(); ++i) {
+    const int group = task.groups[i];
+    const auto [at, fresh] = misses.try_emplace(group, false);
+    if (fresh) at->second = tangents_miss_impacts(scenes.program(group, {orbits[i]->lane}));
+    found[i].blind = at->second && impacts_per_period(*orbits[i]) > 0;
+    if (!found[i].blind) by_group[group].push_back(i);
+  }
   std::vector<Batch> batches;
   // One column more than asked for: it may belong to the last one as a complex pair.
   const int columns =

@@ -17,6 +17,7 @@ struct OrbitExponents {
   std::vector<Interval> values;  ///< largest first; those owed to the scheme set apart
   std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
   std::string method;            ///< "tangent", "tangent+jump", "twin(1e-07)"; "" where none could be measured
+  bool blind = false;            ///< none would see its impacts move: tangents_miss_impacts()
 };
 
 /// What the stability analysis says of roots of modulus one that are the scheme's.

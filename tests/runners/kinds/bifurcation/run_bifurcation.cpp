@@ -142,6 +142,25 @@ TEST_CASE("bifurcation: impacts with inertia say that their jump was put on") {
   CHECK(sum / 2 == Approx(-0.1 + std::log(0.8) * 2.2 / (2 * 3.14159265358979)).margin(2e-3));
 }
 
+TEST_CASE("bifurcation: no exponent where it would miss how impacts move, and the case says why") {
+  Json text = beam_sweep({0.02, 0.09});
+  text["methods"]["mass"] = "consistent";
+  text["exponents"] = 1;
+  text["methods"]["time"] = "newmark-dumont-paoli";
+  for (const Cell& one : of_values(run_sweep(text), "exponent_1")) CHECK(one.number());
+  text["methods"]["time"] = "moreau-jean";
+  const CaseRecord record = run_sweep(text);
+  // The first one swings freely: nothing is missed there.
+  REQUIRE(of_values(record, "impacts_per_period")[0] == 0.0);
+  CHECK(of_values(record, "exponent_1")[0].number());
+  REQUIRE(of_values(record, "impacts_per_period")[1].number().value() > 1);
+  CHECK_FALSE(of_values(record, "exponent_1")[1].number());
+  CHECK_FALSE(of_values(record, "exponent_twin")[1].number());
+  CHECK(of_values(record, "exponent_method")[1] == "");
+  CHECK(std::any_of(record.notes.begin(), record.notes.end(),
+                    [](const std::string& note) { return note.starts_with("no exponents of 1 orbit"); }));
+}
+
 TEST_CASE("bifurcation: an impact says where the point is that closes") {
   Json text = beam_sweep({0.09});
   text["scene"]["stops"] = {{"lower", "x<1 ? -0.04 : -0.5"}, {"upper", "x<1 ? 0.04 : 0.1"}, {"at", {0.75, 1.501}}};

@@ -165,6 +165,60 @@ TEST_CASE("a reference that does not apply is refused before anything runs, with
   CHECK(problem_of(study).find("did you mean \"tip-linf\"?") != std::string::npos);
 }
 
+namespace {
+
+Json bouncing_beam(const Json& masses, const Json& schemes) {
+  Json study = Json::parse(R"({
+    "name": "bouncing", "kind": "convergence",
+    "scene": {"structure": {"type": "beam", "length": 1.501, "young": 2e11, "density": 8000,
+                            "section": {"type": "tube", "outer_diameter": 0.01, "wall": 0.0005}},
+              "stops": {"lower": -0.02, "upper": 0.02, "at": "tip"},
+              "initial": {"displacement": "0.008*x^2", "velocity": "-2*x"}},
+    "mesh": {"elements": 4}, "step": [2e-4, 1e-4], "duration": 4, "samples": 400, "reference": "self"
+  })");
+  study["methods"] = {{"mass", masses}, {"contact", "signorini"}, {"time", schemes}};
+  return study;
+}
+
+const Json velocity_level = {{"name", "moreau-jean"}, {"theta", 0.5}, {"restitution", 1}};
+const Json position_level = {{"name", "newmark-dumont-paoli"}, {"restitution", 1}};
+
+std::vector<double> horizons(const StudyResults& results) {
+  std::vector<double> found;
+  for (const CaseRecord& one : results.cases)
+    for (const auto& [name, value] : one.measures)
+      if (name == "horizon") found.push_back(value);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("a method that does not march costs its own rows, and neither the study nor the others' horizon") {
+  Run run, without;
+  CHECK(run.go(bouncing_beam({"redistributed", "consistent"}, position_level)) == 0);
+  CHECK(without.go(bouncing_beam("consistent", position_level)) == 0);
+  const StudyResults results = run.results();
+  REQUIRE(results.cases.size() == 4);
+  for (const CaseRecord& one : results.cases)
+    CHECK(one.status == (one.axes.front().second == "consistent" ? "done" : "refused"));
+  const std::vector<double> told = horizons(results);
+  CHECK(told == horizons(without.results()));
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] < 1);
+}
+
+TEST_CASE("a horizon is told by runs whose impacts move with the motion, or not at all") {
+  Run both, alone;
+  CHECK(both.go(bouncing_beam("consistent", {velocity_level, position_level})) == 0);
+  for (const double one : horizons(both.results())) CHECK(one < 1);
+  CHECK(alone.go(bouncing_beam("consistent", velocity_level)) == 0);
+  const StudyResults results = alone.results();
+  CHECK(horizons(results) == std::vector<double>{4, 4});
+  for (const CaseRecord& one : results.cases)
+    CHECK(std::any_of(one.notes.begin(), one.notes.end(),
+                      [](const std::string& note) { return note.find("is not told") != std::string::npos; }));
+}
+
 TEST_CASE("a budget stops a case, which counts as failed and leaves a study of itself that runs") {
   Run run;
   Json study = oscillator("convergence");
