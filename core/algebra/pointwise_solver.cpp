@@ -114,7 +114,9 @@ double PointwiseSolver::solve_point(const Lane& lane, int i, double others, doub
   if (!(p > low && p < high)) p = high / (1 + lane.weight(still) * mobility);
   if (!std::isfinite(p)) p = 1;
   for (int step = 0; step < most_point_steps; ++step) {
-    const Answer now = lane.answer(i, others + mobility * (side * p));
+    const double moved = others + mobility * (side * p);
+    if (!std::isfinite(moved)) return side * infinity;  // no effort moves the point to where the law is finite
+    const Answer now = lane.answer(i, moved);
     double wrong = p - side * now.force;
     if (std::isnan(wrong)) return wrong;
     if (std::abs(wrong) <= lane.round_off(i, std::abs(others) + mobility * p, p, now)) return side * p;
@@ -130,7 +132,7 @@ double PointwiseSolver::solve_point(const Lane& lane, int i, double others, doub
     if (next == p || next == low || next == high) return side * high;
     p = next;
   }
-  return side * p;
+  return side * (high == infinity ? infinity : p);
 }
 
 // The measures of the present efforts and what the law answers.

@@ -382,21 +382,23 @@ TEST_CASE("a law without a finite force has no residual of a finite size, whatev
       return s.depth > 0 ? PointForce{infinity, slope, 0, 0, 0} : PointForce{};
     }
   } wall;
-  for (const double slope : {0.0, 1.0, infinity, std::nan("")})
-    for (const double reach : {0.0, 1.0}) {
-      CAPTURE(slope, reach);
-      wall.slope = slope;
-      Problem problem;
-      problem.W = MatrixXd::Identity(2, 2);
-      problem.reach = reach;
-      problem.free = problem.upper = VectorXd::Ones(2);
-      problem.rate = VectorXd::Zero(2);
-      problem.lower = VectorXd::Zero(2);
-      problem.free[1] = 2;
-      const Solution s = solve(wall, problem);
-      if (!s.outcome.converged) CHECK(s.outcome.residual == infinity);
-      if (reach == 0) CHECK_FALSE(s.outcome.converged);
-    }
+  for (const int points : {1, 2})
+    for (const double slope : {0.0, 1.0, infinity, std::nan("")})
+      for (const double reach : {0.0, 1.0})
+        for (const double rate_reach : {0.0, 1.0}) {
+          CAPTURE(points, slope, reach, rate_reach);
+          wall.slope = slope;
+          Problem problem;
+          problem.W = 200 * MatrixXd::Identity(points, points);
+          problem.reach = reach;
+          problem.rate_reach = rate_reach;
+          problem.free = VectorXd::Constant(points, 2);
+          problem.upper = VectorXd::Ones(points);
+          problem.lower = problem.rate = VectorXd::Zero(points);
+          const Solution s = solve(wall, problem);
+          if (!s.outcome.converged) CHECK(s.outcome.residual == infinity);
+          if (reach == 0) CHECK_FALSE(s.outcome.converged);
+        }
 }
 
 }  // namespace pointwise_solver_tests
