@@ -129,6 +129,7 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
   Marcher marcher(std::move(program));
   const int origin = plan.strobe + 1;
   const double period = plan.steps_per_period * marcher.program().h;
+  constexpr double far = 1e-2;  // of the orbit's own size
   const Columns metric(marcher.program(), plan.pulsation);
   std::vector<LyapunovRates> found(states.size());
   std::vector<double> growth(1);
@@ -166,7 +167,9 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
         continue;
       }
       place_twin(i, direction, orbit);
-      if (n >= 0) found[i].rates[0].push_back((growth[0] - std::log(offset)) / period);
+      if (n < 0) continue;
+      found[i].rates[0].push_back((growth[0] - std::log(offset)) / period);
+      found[i].saturated += growth[0] > std::log(far * std::sqrt(metric.product(orbit, orbit)));
     }
   }
   return found;

@@ -24,6 +24,7 @@ struct LyapunovRates {
   std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
   LaneEnd end;                             ///< of a lane that stopped; none otherwise
   int jumps = 0;                           ///< impacts with inertia whose jump was applied
+  int saturated = 0;                       ///< measured periods after which a twin was a hundredth of the orbit away
   std::vector<LaneState> orbit;            ///< of the lane itself after each period, discarded ones first
 };
 
@@ -38,7 +39,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
 /// The same growth measured with a twin: a second trajectory `offset` metres away (in the norm above), brought back to
 /// that distance once per period. The lanes of the program are the twins; `states` are those of the orbits, and
 /// `orbits[i].orbit` where orbit i went from there (lyapunov_rates() with keep_orbit; without tangent columns it does
-/// nothing else).
+/// nothing else). Of a twin that is as far away as orbits are, a rate is a lower bound: `saturated` counts those.
 std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneState>& states,
                                       const std::vector<LyapunovRates>& orbits, const LyapunovPlan& plan,
                                       double offset);

@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* order_mark = "block 2";
-constexpr const char* answer_mark = "answer of a block 2";
+constexpr const char* order_mark = "block 3";
+constexpr const char* answer_mark = "answer of a block 3";
 constexpr std::size_t most_scenes = 8192, most_kept_cases = 8;  // that are kept for later blocks
 
 std::vector<double> numbers(const Eigen::VectorXd& vector) {

@@ -69,7 +69,7 @@ void serialize(Archive& archive, Interval& interval) {
 
 template <class Archive>
 void serialize(Archive& archive, OrbitExponents& exponents) {
-  archive(exponents.values, exponents.twin, exponents.method);
+  archive(exponents.values, exponents.twin, exponents.method, exponents.blind, exponents.saturated);
 }
 
 }  // namespace ricochet

@@ -7,7 +7,7 @@ namespace ricochet {
 namespace {
 
 constexpr const char* orbits_mark = "orbits 7";
-constexpr const char* exponents_mark = "exponents 2";
+constexpr const char* exponents_mark = "exponents 3";
 
 }  // namespace
 

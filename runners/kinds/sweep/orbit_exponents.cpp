@@ -30,6 +30,11 @@ bool usable(const std::vector<double>& rates) {
   return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
 }
 
+// More than one period in a hundred: the mean is a lower bound.
+bool saturates(const LyapunovRates& twin) {
+  return 100 * twin.saturated > static_cast<int>(twin.rates[0].size());
+}
+
 }  // namespace
 
 MarginalRoots marginal_roots(const ForcedScenes& scenes, int group) {
@@ -105,6 +110,10 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
       if (twin[b].end || !usable(twin[b].rates[0])) continue;
+      if (saturates(twin[b])) {
+        exponents.saturated = !tangents;
+        continue;
+      }
       exponents.twin = exponent_interval(twin[b].rates[0]);
       if (tangents) continue;
       exponents.values = {*exponents.twin};

@@ -18,6 +18,7 @@ struct OrbitExponents {
   std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
   std::string method;            ///< "tangent", "tangent+jump", "twin(1e-07)"; "" where none could be measured
   bool blind = false;            ///< none would see its impacts move: tangents_miss_impacts()
+  bool saturated = false;        ///< there are no tangents, and the twin is soon as far away as orbits are
 };
 
 /// What the stability analysis says of roots of modulus one that are the scheme's.

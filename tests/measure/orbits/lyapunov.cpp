@@ -136,6 +136,10 @@ TEST_CASE("tangents and twins agree") {
   const auto bare = lyapunov_rates(program_of(scene, 4, methods, steps, 1, 0), {state}, plan);
   CHECK(bare[0].rates.empty());
   CHECK(twin_rates(program_of(scene, 4, methods, steps, 1, 0), {state}, bare, plan, 1e-8)[0].rates == twin[0].rates);
+  // One that is brought back to a tenth of a metre is about as far away as orbits are, though it comes nearer again.
+  CHECK(twin[0].saturated == 0);
+  const auto far = twin_rates(program_of(scene, 4, methods, steps, 1, 0), {state}, tangent, plan, 0.1);
+  CHECK(2 * far[0].saturated > static_cast<int>(far[0].rates[0].size()));
 }
 
 TEST_CASE("the root −1 of β = ¼ on a singular mass is taken out where the plan says so") {

@@ -92,7 +92,9 @@ TEST_CASE("bytes that are cut short or of another kind are refused") {
 }
 
 TEST_CASE("exponents come back, with and without a twin") {
-  const std::vector<OrbitExponents> some = {{{{1, 0.5, 1.5}, {-2, -3, -1}}, Interval{1.25, 1, 2}, "tangent"}, {}};
+  const std::vector<OrbitExponents> some = {
+      {{{1, 0.5, 1.5}, {-2, -3, -1}}, Interval{1.25, 1, 2}, "tangent"},
+      {.values = {}, .twin = {}, .method = "", .blind = false, .saturated = true}};
   const std::vector<OrbitExponents> back = orbit_exponents(to_bytes(some));
   REQUIRE(back.size() == 2);
   REQUIRE(back[0].values.size() == 2);
@@ -101,5 +103,6 @@ TEST_CASE("exponents come back, with and without a twin") {
   CHECK(back[0].twin->high == 2);
   CHECK(back[0].method == "tangent");
   CHECK_FALSE(back[1].twin);
+  CHECK(back[1].saturated);
   CHECK((to_bytes(back) == to_bytes(some)));
 }
