@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ricochet/measure/orbits/impact_jump.hpp>
 
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/kinds/sweep/forced_scenes.hpp"
+#include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
@@ -82,7 +84,10 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   constexpr double bytes_of_period = 220, bytes_of_orbit = 2000;
   out.bytes = (count + more.orbits) * (chains + singles) * (bytes_of_orbit + bytes_of_period * kept);
   // The orbit again, one column more than exponents, and the twin.
-  if (exponents > 0) out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
+  const bool blind = exponents > 0 && tangents_miss_impacts(scenes.program(0, {scenes[representative].lane}));
+  if (blind) out.notes.push_back(fmt::format("no exponents of orbits with impacts: {}", why_blind));
+  if (exponents > 0 && !blind)
+    out.predicted_seconds += kept * period * count * (chains + singles) * (exponents + 3) * lanes(8);
   return out;
 }
 

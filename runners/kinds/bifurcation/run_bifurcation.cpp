@@ -304,12 +304,8 @@ class BifurcationRun {
                         saturated, saturated == 1 ? "" : "s"));
       const auto blind = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.blind; });
       if (blind > 0)
-        record_.notes.push_back(fmt::format(
-            "no exponents of {} orbit{} with impacts: this scheme changes the velocity at the step that finds a point "
-            "at "
-            "its stop, and the time of an impact moves with the orbit by whole steps alone; the derivative of the step "
-            "and a twin nearby do not see it, and would call a chaotic orbit stable",
-            blind, blind == 1 ? "" : "s"));
+        record_.notes.push_back(
+            fmt::format("no exponents of {} orbit{} with impacts: {}", blind, blind == 1 ? "" : "s", why_blind));
     }
     classify_all(all);
     write_tables(record_, all);

@@ -21,6 +21,12 @@ struct OrbitExponents {
   bool saturated = false;        ///< there are no tangents, and the twin is soon as far away as orbits are
 };
 
+/// Why orbits with impacts have none where tangents_miss_impacts().
+constexpr const char* why_blind =
+    "this scheme changes the velocity at the step that finds a point at its stop, and the time of an impact moves with "
+    "the orbit by whole steps alone; the derivative of the step and a twin nearby do not see it, and would call a "
+    "chaotic orbit stable";
+
 /// What the stability analysis says of roots of modulus one that are the scheme's.
 struct MarginalRoots {
   std::string sentence;   ///< "" when there are none

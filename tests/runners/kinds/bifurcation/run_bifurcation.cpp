@@ -157,8 +157,14 @@ TEST_CASE("bifurcation: no exponent where it would miss how impacts move, and th
   CHECK_FALSE(of_values(record, "exponent_1")[1].number());
   CHECK_FALSE(of_values(record, "exponent_twin")[1].number());
   CHECK(of_values(record, "exponent_method")[1] == "");
-  CHECK(std::any_of(record.notes.begin(), record.notes.end(),
-                    [](const std::string& note) { return note.starts_with("no exponents of 1 orbit"); }));
+  CHECK(std::any_of(record.notes.begin(), record.notes.end(), [](const std::string& note) {
+    return note.starts_with("no exponents of 1 orbit with impacts: ");
+  }));
+  // Told before anything runs, too.
+  const OpenedSweep opened = opened_sweep(text);
+  const std::vector<std::string> planned = plan_bifurcation(opened.first(), *opened.registry).notes;
+  CHECK(std::any_of(planned.begin(), planned.end(),
+                    [](const std::string& note) { return note.starts_with("no exponents of orbits with impacts: "); }));
 }
 
 TEST_CASE("bifurcation: an impact says where the point is that closes") {
