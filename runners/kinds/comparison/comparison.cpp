@@ -13,6 +13,16 @@
 namespace ricochet {
 namespace {
 
+InputError no_reference(const std::set<std::string>& refusals) {
+  return {"/reference", fmt::format("no reference applies to this scene: {}; \"{}\" applies wherever the methods march",
+                                    fmt::join(refusals, "; "), marched_reference)};
+}
+
+bool marches_itself(const StudyCase& one) {
+  return std::any_of(one.references.begin(), one.references.end(),
+                     [](const MethodChoice& choice) { return choice.name == marched_reference; });
+}
+
 // A study none of whose cases has a reference is told so before anything runs. Where it marches its methods themselves,
 // what these refuse is theirs to say, in the rows of their cases.
 void require_reference(const Study& study, References& references, const MotionShelf& shelf,
@@ -20,9 +30,7 @@ void require_reference(const Study& study, References& references, const MotionS
   std::set<std::string> refusals;
   for (const StudyCase& one : study.cases) {
     if (one.excluded) continue;
-    if (std::any_of(one.references.begin(), one.references.end(),
-                    [](const MethodChoice& choice) { return choice.name == marched_reference; }))
-      return;
+    if (marches_itself(one)) return;
     if (shelf.failed && shelf.failed(one.id)) return;
     std::optional<CaseScope> named;
     if (shelf.ticket) named.emplace(shelf.ticket(one));
@@ -38,10 +46,18 @@ void require_reference(const Study& study, References& references, const MotionS
       return;  // a method or a reference that fails is told in the rows of its cases
     }
   }
-  if (refusals.empty()) return;
-  throw InputError("/reference", fmt::format("no reference applies to this scene: {}; \"{}\" applies wherever the "
-                                             "methods march",
-                                             fmt::join(refusals, "; "), marched_reference));
+  if (!refusals.empty()) throw no_reference(refusals);
+}
+
+// Said by a plan as well, where the beginnings that it solves tell.
+void require_some(const References& references, const Study& study) {
+  std::vector<const StudyCase*> cases;
+  for (const StudyCase& one : study.cases) {
+    if (marches_itself(one)) return;
+    if (!one.excluded) cases.push_back(&one);
+  }
+  const References::Solutions all = references.solutions(cases);
+  if (!all.may_apply && !all.refusals.empty()) throw no_reference(all.refusals);
 }
 
 }  // namespace
@@ -74,7 +90,9 @@ double seconds_beside(const ForecastContext& context) {
   // there is one place.
   constexpr double per_sample = 1.2e-5, per_sample_of_one_place = 2e-6;
   const References references(context.study, context.registry, {});
-  double seconds = references.solution_seconds(context.cases);
+  const References::Solutions solved = references.solutions(context.cases);
+  if (!solved.may_apply && !solved.refusals.empty()) require_some(references, context.study);
+  double seconds = solved.seconds;
   for (const auto& [study_case, steps, times] : references.marches(context.cases))
     seconds += steps * times * context.step_seconds(*study_case);
   for (const StudyCase* one : context.cases) {

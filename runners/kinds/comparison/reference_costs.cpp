@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <ricochet/loader/child.hpp>
@@ -18,6 +19,7 @@ namespace {
 // had been.
 constexpr double enough_trying = 1, longest_trial = 2;
 // Shares of the duration that are solved: what the second adds to the first, the rest will add as well.
+const std::string refused = "refused: ";
 constexpr double first_share = 0.125, second_share = 0.25;
 
 StudyCase beginning_of(const StudyCase& study_case, double share) {
@@ -47,18 +49,21 @@ std::vector<References::Aside> References::marches(const std::vector<const Study
   return found;
 }
 
-double References::solution_seconds(const std::vector<const StudyCase*>& cases) const {
+References::Solutions References::solutions(const std::vector<const StudyCase*>& cases) const {
+  Solutions found;
   std::set<std::string> known;
   std::map<std::string, std::vector<double>> tried;  // by name
   std::map<std::string, std::size_t> untried;
-  double spent = 0, all = 0;
+  double spent = 0;
   for (const StudyCase* one : cases)
     for (const MethodChoice& choice : one->references) {
       if (choice.name == marched_reference || !known.insert(key(*one, choice)).second) continue;
       if (spent > enough_trying) {
         ++untried[choice.name];
+        found.may_apply = true;
         continue;
       }
+      const auto begun = std::chrono::steady_clock::now();
       // A reference may be anybody's library, and never return.
       const ChildOutcome outcome = run_in_child(
           [&] {
@@ -66,7 +71,9 @@ double References::solution_seconds(const std::vector<const StudyCase*>& cases) 
             double seconds[2] = {};
             for (const int k : {0, 1}) {
               const double begin = thread_seconds();
-              compute(beginning_of(*one, k == 0 ? first_share : second_share), choice, stop);
+              const KnownReference part =
+                  compute(beginning_of(*one, k == 0 ? first_share : second_share), choice, stop);
+              if (!part.refusal.empty()) return refused + part.refusal;
               seconds[k] = thread_seconds() - begin;
             }
             const double more = std::max(0.0, seconds[1] - seconds[0]) / (second_share - first_share);
@@ -74,6 +81,12 @@ double References::solution_seconds(const std::vector<const StudyCase*>& cases) 
           },
           longest_trial);
       double trial = longest_trial, seconds = longest_trial / (first_share + second_share);
+      if (outcome.ok() && outcome.text.starts_with(refused)) {
+        found.refusals.insert(choice.name + ": " + outcome.text.substr(refused.size()));
+        spent += seconds_since(begun);
+        continue;
+      }
+      found.may_apply = true;
       if (outcome.ok()) {
         char* rest = nullptr;
         trial = std::strtod(outcome.text.c_str(), &rest);
@@ -82,15 +95,16 @@ double References::solution_seconds(const std::vector<const StudyCase*>& cases) 
         continue;  // told in the rows of its cases
       }
       spent += trial;
-      all += seconds;
+      found.seconds += seconds;
       tried[choice.name].push_back(seconds);
     }
   for (const auto& [name, count] : untried) {
     double sum = 0;
     for (const double seconds : tried[name]) sum += seconds;
-    all += tried[name].empty() ? 0 : sum / static_cast<double>(tried[name].size()) * static_cast<double>(count);
+    found.seconds +=
+        tried[name].empty() ? 0 : sum / static_cast<double>(tried[name].size()) * static_cast<double>(count);
   }
-  return all;
+  return found;
 }
 
 }  // namespace ricochet

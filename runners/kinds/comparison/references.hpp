@@ -8,6 +8,7 @@
 #include <optional>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/contract/registry.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,9 +61,14 @@ class References {
     double steps, times;
   };
   std::vector<Aside> marches(const std::vector<const StudyCase*>& cases) const;
-  /// Processor seconds of the references that are solved rather than marched, each once for all cases that share it:
-  /// the beginnings of some are solved.
-  double solution_seconds(const std::vector<const StudyCase*>& cases) const;
+  /// The references that are solved rather than marched, each once for all cases that share it.
+  struct Solutions {
+    double seconds = 0;              ///< of processor time
+    bool may_apply = false;          ///< one applies, or nobody knows before it is solved
+    std::set<std::string> refusals;  ///< "NAME: sentence"
+  };
+  /// What they take, by the beginnings of some.
+  Solutions solutions(const std::vector<const StudyCase*>& cases) const;
 
  private:
   struct Twin {

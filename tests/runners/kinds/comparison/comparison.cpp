@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -151,6 +152,13 @@ TEST_CASE("a reference that does not apply is refused before anything runs, with
   const std::string told = problem_of(study);
   CHECK(told.starts_with("/reference: no reference applies to this scene: event-driven: "));
   CHECK(told.find("\"self\" applies") != std::string::npos);
+  // A plan says so as well.
+  Run planned;
+  const Study parsed = parse_study(study.dump(), planned.catalogue, planned.registry);
+  std::vector<const StudyCase*> cases;
+  for (const StudyCase& one : parsed.cases) cases.push_back(&one);
+  const ForecastContext context{parsed, planned.registry, cases, [](const StudyCase&) { return 1e-6; }};
+  CHECK_THROWS_WITH(seconds_beside(context), Catch::StartsWith("no reference applies to this scene: event-driven: "));
   study["reference"] = "slef";
   CHECK(problem_of(study).find("did you mean \"self\"?") != std::string::npos);
   study["reference"] = "exakt";
