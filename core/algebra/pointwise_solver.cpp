@@ -132,7 +132,7 @@ double PointwiseSolver::solve_point(const Lane& lane, int i, double others, doub
     if (next == p || next == low || next == high) return side * high;
     p = next;
   }
-  return side * (high == infinity ? infinity : p);
+  return side * p;
 }
 
 // The measures of the present efforts and what the law answers.

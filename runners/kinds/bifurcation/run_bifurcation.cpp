@@ -296,16 +296,14 @@ class BifurcationRun {
       record_.run_seconds += seconds;
       for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
       put_measure(record_, "exponent_seconds", seconds);
-      const auto saturated = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.saturated; });
-      if (saturated > 0)
-        record_.notes.push_back(
-            fmt::format("no exponents of {} orbit{}: these methods have no derivative, and a twin is "
-                        "as far away as orbits are within one period",
-                        saturated, saturated == 1 ? "" : "s"));
-      const auto blind = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.blind; });
-      if (blind > 0)
-        record_.notes.push_back(
-            fmt::format("no exponents of {} orbit{} with impacts: {}", blind, blind == 1 ? "" : "s", why_blind));
+      const auto none_where = [&](bool OrbitExponents::*fact, const char* which, const char* why) {
+        const auto count = std::count_if(found.begin(), found.end(), [&](const auto& one) { return one.*fact; });
+        if (count > 0)
+          record_.notes.push_back(
+              fmt::format("no exponents of {} orbit{}{}: {}", count, count == 1 ? "" : "s", which, why));
+      };
+      none_where(&OrbitExponents::saturated, "", why_saturated);
+      none_where(&OrbitExponents::blind, " with impacts", why_blind);
     }
     classify_all(all);
     write_tables(record_, all);

@@ -49,7 +49,7 @@ void require_reference(const Study& study, References& references, const MotionS
   if (!refusals.empty()) throw no_reference(refusals);
 }
 
-// Said by a plan as well, where the beginnings that it solves tell.
+// Said by a plan as well, where the beginnings that it solves tell: of all cases, of which it may see a part.
 void require_some(const References& references, const Study& study) {
   std::vector<const StudyCase*> cases;
   for (const StudyCase& one : study.cases) {
@@ -57,7 +57,7 @@ void require_some(const References& references, const Study& study) {
     if (!one.excluded) cases.push_back(&one);
   }
   const References::Solutions all = references.solutions(cases);
-  if (!all.may_apply && !all.refusals.empty()) throw no_reference(all.refusals);
+  if (all.none_applies()) throw no_reference(all.refusals);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ double seconds_beside(const ForecastContext& context) {
   constexpr double per_sample = 1.2e-5, per_sample_of_one_place = 2e-6;
   const References references(context.study, context.registry, {});
   const References::Solutions solved = references.solutions(context.cases);
-  if (!solved.may_apply && !solved.refusals.empty()) require_some(references, context.study);
+  if (solved.none_applies()) require_some(references, context.study);
   double seconds = solved.seconds;
   for (const auto& [study_case, steps, times] : references.marches(context.cases))
     seconds += steps * times * context.step_seconds(*study_case);

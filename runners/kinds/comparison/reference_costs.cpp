@@ -19,8 +19,8 @@ namespace {
 // had been.
 constexpr double enough_trying = 1, longest_trial = 2;
 // Shares of the duration that are solved: what the second adds to the first, the rest will add as well.
-const std::string refused = "refused: ";
 constexpr double first_share = 0.125, second_share = 0.25;
+const std::string refused = "refused: ";  // what a child says of a reference that does not apply begins so
 
 StudyCase beginning_of(const StudyCase& study_case, double share) {
   StudyCase part = study_case;

@@ -66,6 +66,7 @@ class References {
     double seconds = 0;              ///< of processor time
     bool may_apply = false;          ///< one applies, or nobody knows before it is solved
     std::set<std::string> refusals;  ///< "NAME: sentence"
+    bool none_applies() const { return !may_apply && !refusals.empty(); }
   };
   /// What they take, by the beginnings of some.
   Solutions solutions(const std::vector<const StudyCase*>& cases) const;

@@ -21,7 +21,9 @@ struct OrbitExponents {
   bool saturated = false;        ///< there are no tangents, and the twin is soon as far away as orbits are
 };
 
-/// Why orbits with impacts have none where tangents_miss_impacts().
+/// Why saturated ones have none, and orbits with impacts where tangents_miss_impacts().
+constexpr const char* why_saturated =
+    "these methods have no derivative, and a twin is as far away as orbits are within one period";
 constexpr const char* why_blind =
     "this scheme changes the velocity at the step that finds a point at its stop, and the time of an impact moves with "
     "the orbit by whole steps alone; the derivative of the step and a twin nearby do not see it, and would call a "
