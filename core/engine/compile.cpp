@@ -275,6 +275,7 @@ ProgramOrRefusal compile(std::shared_ptr<const SemiDiscrete> problem, StepPlan p
   program.load = problem->load && !problem->load->absent();
   program.load_constant = program.load && problem->load->constant_in_time();
   program.eager_delassus = options.eager_delassus;
+  program.bounded = options.bounded;
 
   const int slots = static_cast<int>(program.plan.slots.size());
   StepWork work{slots, 0, true};

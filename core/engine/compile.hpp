@@ -44,6 +44,7 @@ struct CompileOptions {
   int tangents = 0;                   ///< tangent columns per lane
   bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
   MarchWay march = MarchWay::every_step;
+  bool bounded = true;  ///< a lane beyond its energy bound is stopped
   std::optional<double> memory = {};  ///< bytes that may be taken for leaving out steps; none: what there is
 };
 
@@ -100,6 +101,7 @@ struct Program {
   OperatorKind kind = OperatorKind::band;
   std::vector<StageProgram> start, stages;
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;
+  bool bounded = true;  ///< whether a lane beyond its energy bound is stopped
   double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;

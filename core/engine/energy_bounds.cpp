@@ -5,12 +5,16 @@
 namespace ricochet {
 
 EnergyBounds::EnergyBounds(const Program& program)
-    : scale_(*program.problem), load_varies_(program.load && !program.load_constant), lanes_(program.lanes.size()) {
+
+    : scale_(*program.problem),
+      bounded_(program.bounded),
+      load_varies_(program.load && !program.load_constant),
+      lanes_(program.lanes.size()) {
   if (program.load) load_ = factor * scale_.of_load(0);
 }
 
 void EnergyBounds::place(int lane, const LaneSpec& spec) {
-  lanes_[static_cast<std::size_t>(lane)] = factor * scale_.of_lane(spec);
+  lanes_[static_cast<std::size_t>(lane)] = bounded_ ? factor * scale_.of_lane(spec) : infinity;
 }
 
 double EnergyBounds::known(int lane) const {

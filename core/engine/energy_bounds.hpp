@@ -4,7 +4,8 @@
 
 namespace ricochet {
 
-/// Energies (J) beyond which lanes count as diverged: a multiple of what the scene's own data mention.
+/// Energies (J) beyond which lanes count as diverged: a multiple of what the scene's own data mention; infinite where
+/// the program is not bounded.
 class EnergyBounds {
  public:
   static constexpr double factor = 1e9;  ///< of EnergyScale
@@ -21,6 +22,7 @@ class EnergyBounds {
   double known(int lane) const;
 
   EnergyScale scale_;
+  bool bounded_;
   bool load_varies_;           // with time
   std::vector<double> lanes_;  // without the load
   double load_ = 0, load_known_until_ = 0;

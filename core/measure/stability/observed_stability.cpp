@@ -31,6 +31,16 @@ class NoContact final : public ContactLaw {
   void solve(ReducedProblem&) override {}
 };
 
+// Whether what its largest values of each third of a march say grows on to the end.
+bool grows_on(double first, double second, double third) {
+  return first > 0 && third >= growth_since_start * first && third >= growth_at_end * second;
+}
+
+// Which third of a march of so many steps a step belongs to.
+std::size_t third_of(long long step, long long steps) {
+  return static_cast<std::size_t>(std::min(2LL, 3 * step / std::max(steps, 3LL)));
+}
+
 // |x_j|² in K and in M for every slot, the largest of each third of the horizon.
 class NormWatch final : public StepObserver {
  public:
@@ -45,7 +55,7 @@ class NormWatch final : public StepObserver {
   void stage_solved(const Marcher&, const StageView&) override {}
   void step_done(Marcher& marcher) override {
     if (!marcher.status(0).running) return;
-    const auto third = static_cast<std::size_t>(std::min(2LL, 3 * marcher.step() / steps_));
+    const std::size_t third = third_of(marcher.step(), steps_);
     for (int j = 0; j < marcher.slot_count(); ++j) {
       const double* x = marcher.slot(j);
       for (Eigen::Index i = 0; i < column_.size(); ++i) column_[i] = x[i * marcher.width()];
@@ -59,7 +69,7 @@ class NormWatch final : public StepObserver {
   void judge(ObservedCell& cell) const {
     for (std::size_t s = 0; s < largest_[0].size(); ++s) {
       const double first = largest_[0][s], second = largest_[1][s], third = largest_[2][s];
-      if (!(first > 0) || third < growth_since_start * first || third < growth_at_end * second) continue;
+      if (!grows_on(first, second, third)) continue;
       const double late = third / second, early = second / first;
       // Linear growth of amplitudes: 2.25 and 4.
       const bool linear = late < 3 && early > 1.3 * late;
@@ -114,7 +124,7 @@ class ForceWindows {
 // The energy that nothing gave, and the contact force.
 class GainWatch final : public StepObserver {
  public:
-  explicit GainWatch(const Marcher& marcher) : audit_(marcher) {}
+  GainWatch(const Marcher& marcher, long long steps) : audit_(marcher), steps_(steps) {}
   void stage_solved(const Marcher& marcher, const StageView& view) override { audit_.stage_solved(marcher, view); }
   void step_done(Marcher& marcher) override {
     audit_.step_done(marcher);
@@ -124,15 +134,23 @@ class GainWatch final : public StepObserver {
     const double energy = totals.last.scheme + totals.last.contact;
     const double unearned = energy - totals.scheme_start - totals.work_of_loads + totals.work_of_damping;
     if (given_ > 0 && std::isfinite(unearned)) gain_ = std::max(gain_, unearned / given_);
+    if (gain_ > 1 && first_bad_ < 0) first_bad_ = marcher.step();
     // A scheme's own energy has no sign beyond its limit.
     const double common = totals.last.common();
-    if (given_ > 0 && common > blown_up * given_) gain_ = std::max(gain_, common / given_);
-    if (gain_ > 1 && first_bad_ < 0) first_bad_ = marcher.step();
+    if (!(given_ > 0)) return force_.add(audit_.contact(0).force);
+    double& most = common_[third_of(marcher.step(), steps_)];
+    most = std::max(most, common / given_);
+    if (most > blown_up && first_blown_ < 0) first_blown_ = marcher.step();
     force_.add(audit_.contact(0).force);
   }
 
   void judge(ObservedCell& cell) {
     const ContactTotals& contact = audit_.contact(0);
+    // What swells and falls again is a transient: high modes of a step far beyond their period.
+    if (common_[2] > std::max(blown_up, gain_) && grows_on(common_[0], common_[1], common_[2])) {
+      gain_ = common_[2];
+      if (first_bad_ < 0) first_bad_ = first_blown_;
+    }
     cell.gain = gain_;
     cell.impacts = contact.impacts;
     if (contact.spells > 0)
@@ -148,8 +166,10 @@ class GainWatch final : public StepObserver {
  private:
   EnergyAudit audit_;
   ForceWindows force_;
+  long long steps_;
   double given_ = 0, gain_ = 0;
-  long long first_bad_ = -1;
+  std::array<double, 3> common_{};  // largest common energy over what was given, of each third
+  long long first_bad_ = -1, first_blown_ = -1;
 };
 
 template <class Watch>
@@ -177,13 +197,38 @@ ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
   return cell;
 }
 
-ProgramOrRefusal compiled(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                          std::unique_ptr<ContactLaw> law, LaneSpec lane, const Horizon& horizon) {
+/// What one observation marches: the law is made anew for each march.
+struct Observation {
+  std::shared_ptr<const SemiDiscrete> problem;
+  const StepPlan& plan;
+  double h;
+  std::function<std::unique_ptr<ContactLaw>()> law;
+  LaneSpec lane;
+  const Horizon& horizon;
+};
+
+template <class Watch>
+ObservedOrRefusal march_once(const Observation& of, bool bounded) {
   CompileOptions options;
-  options.expected_steps = horizon.steps;
-  std::vector<LaneSpec> lanes;
-  lanes.push_back(std::move(lane));
-  return compile(problem, plan, h, std::move(law), std::move(lanes), options);
+  options.expected_steps = of.horizon.steps;
+  options.bounded = bounded;
+  auto program = compile(of.problem, of.plan, of.h, of.law(), {of.lane}, options);
+  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
+  Marcher marcher(std::move(std::get<Program>(program)));
+  Watch watch(marcher, of.horizon.steps);
+  return march(marcher, watch, of.horizon);
+}
+
+// A march that its energy bound stopped is made again without: where it then ends without growing, the energy was that
+// of a transient.
+template <class Watch>
+ObservedOrRefusal observe(const Observation& of) {
+  const ObservedOrRefusal stopped = march_once<Watch>(of, true);
+  const auto* cell = std::get_if<ObservedCell>(&stopped);
+  if (!cell || cell->behaviour != Behaviour::diverged || (of.horizon.go_on && !of.horizon.go_on())) return stopped;
+  const ObservedOrRefusal whole = march_once<Watch>(of, false);
+  const auto* seen = std::get_if<ObservedCell>(&whole);
+  return seen && seen->stable() ? whole : stopped;
 }
 
 std::shared_ptr<const SemiDiscrete> without_loads(const SemiDiscrete& problem) {
@@ -254,20 +299,13 @@ ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& proble
     lane.position = start.position;
     lane.velocity = start.velocity;
   }
-  auto program = compiled(bare, plan, h, std::make_unique<NoContact>(), std::move(lane), horizon);
-  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
-  Marcher marcher(std::move(std::get<Program>(program)));
-  NormWatch watch(marcher, horizon.steps);
-  return march(marcher, watch, horizon);
+  return observe<NormWatch>({bare, plan, h, [] { return std::make_unique<NoContact>(); }, std::move(lane), horizon});
 }
 
 ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                                std::unique_ptr<ContactLaw> law, const Parameters& parameters, const Horizon& horizon) {
-  auto program = compiled(problem, plan, h, std::move(law), scene_lane(*problem, parameters), horizon);
-  if (const auto* refusal = std::get_if<Refusal>(&program)) return *refusal;
-  Marcher marcher(std::move(std::get<Program>(program)));
-  GainWatch watch(marcher);
-  return march(marcher, watch, horizon);
+                                const std::function<std::unique_ptr<ContactLaw>()>& law, const Parameters& parameters,
+                                const Horizon& horizon) {
+  return observe<GainWatch>({problem, plan, h, law, scene_lane(*problem, parameters), horizon});
 }
 
 ObservedLimit observed_limit(const std::vector<double>& steps, const std::vector<std::optional<ObservedCell>>& known,

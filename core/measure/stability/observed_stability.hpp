@@ -50,15 +50,19 @@ struct Horizon {
 
 /// The structure alone, without loads, stops and support motion, from `start` (where empty: from the scene's own
 /// state). Growth is read from the squared K- and M-norms of every slot, the largest in each third of the horizon: the
-/// last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step shows.
+/// last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step shows. A march that
+/// the energy bound stops is made again without it: energy that swells and falls again (high modes of a step far beyond
+/// their period) is no limit.
 ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                const Excitation& start, const Horizon& horizon);
 
 /// The scene itself, impacts and loads included. Growing: at some step the energy exceeds everything that the initial
 /// state and the loads gave by as much again (the scheme's own energy where it has one, plus the springs' of compliant
-/// laws), or the common energy is a thousand times that.
+/// laws), or the common energy is a thousand times that and grows on to the end, by thirds as above. `law` makes one
+/// for each march.
 ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
-                                std::unique_ptr<ContactLaw> law, const Parameters& parameters, const Horizon& horizon);
+                                const std::function<std::unique_ptr<ContactLaw>()>& law, const Parameters& parameters,
+                                const Horizon& horizon);
 
 /// The step between the last stable of `steps` (increasing) and the first unstable one after it, to 1 %.
 struct ObservedLimit {

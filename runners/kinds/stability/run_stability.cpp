@@ -192,9 +192,10 @@ class StabilityRun {
       check_stop();
       return whole = !spent();
     };
-    const auto seen =
-        side.closed ? observe_scene(problem_, step, h, make_law(case_, registry_), case_.contact.parameters, horizon)
-                    : observe_free(problem_, step, h, predictor_->excitation(h), horizon);
+    const auto seen = side.closed ? observe_scene(
+                                        problem_, step, h, [&] { return make_law(case_, registry_); },
+                                        case_.contact.parameters, horizon)
+                                  : observe_free(problem_, step, h, predictor_->excitation(h), horizon);
     const auto* cell = std::get_if<ObservedCell>(&seen);
     if (!cell) return std::nullopt;
     record_.steps += cell->steps;
