@@ -74,7 +74,8 @@ struct Impulse {
   OperatorWeights feed;  ///< (f_M, f_C, f_K)
 };
 
-/// Velocity-level closure: which sides take part in the box problem, and how fast they rebound.
+/// Velocity-level closure: which sides take part in the box problem, and how fast they rebound. z is here that of the
+/// stage without its own effort.
 /// Gap test: the predicted position H·predictor has reached the bound Σ weight·bound(t + at·h); other sides are open.
 /// Approach, w⁻ = H·approach − (bound rate at the approach levels): where w⁻ does not leave the side (up to 1e-10 of
 /// the largest speed the lane has shown at its stops, so that a point at rest on a stop stays there whatever its

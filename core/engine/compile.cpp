@@ -118,6 +118,13 @@ std::optional<Refusal> fill(StageProgram& program, const Stage& stage, const Pro
   return std::nullopt;
 }
 
+// What momentum an effort of 1 N gives to a free mass within the stage itself, N s.
+double momentum_at_once(const StepPlan& plan, const Stage& stage) {
+  double moved = 0;
+  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) moved += plan.velocity.slots[j] * stage.update[j].z;
+  return stage.matrix.M != 0 ? moved / stage.matrix.M : 0.0;
+}
+
 // What a stage that gives work back needs to know of the one whose work it is.
 void connect_works(Program& program) {
   for (std::size_t k = 0; k < program.stages.size(); ++k) {
@@ -209,9 +216,12 @@ void add_contact_facts(Program& program) {
     StageProgram& stage = program.start[k];
     if (!stage.reads_contact) continue;
     stage.opens_instant = stage.closes_instant = true;
-    if (const auto& work = program.plan.start[k].work) stage.work_effort = work_efforts(*work, k, start, false);
     const double given = start_momentum(program.plan, k, start, efforts);
     stage.momentum = std::isfinite(given) ? given : program.h;
+    if (const auto& work = program.plan.start[k].work)
+      stage.work_effort = work_efforts(*work, k, start, false);
+    else
+      stage.work_effort = {momentum_at_once(program.plan, program.plan.start[k])};
   }
 }
 

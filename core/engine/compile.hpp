@@ -44,7 +44,7 @@ struct CompileOptions {
   int tangents = 0;                   ///< tangent columns per lane
   bool moving_support = false;        ///< lanes may get an amplitude later, even if none has one now
   MarchWay march = MarchWay::every_step;
-  bool bounded = true;  ///< a lane beyond its energy bound is stopped
+  bool bounded = true;                ///< a lane beyond its energy bound is stopped
   std::optional<double> memory = {};  ///< bytes that may be taken for leaving out steps; none: what there is
 };
 
@@ -75,7 +75,9 @@ struct StageProgram {
   double reach = 0, rate_reach = 0;
   ImpulseProgram impulse;
   std::vector<double> effort = {1.0};  ///< π
-  std::vector<double> work_effort;  ///< p̄ of the work form over p, p₋₁, …: its weights and those of the equations
+  /// p̄ of the work form over p, p₋₁, …: its weights and those of the equations. Of a start rule without work form, the
+  /// momentum that p gives within it.
+  std::vector<double> work_effort;
   std::optional<VelocityGate> gate;
   std::optional<ComplianceMeasure> compliance;  ///< the one the law reads, with its rate
   PhaseWeights load_phase, measure_phase, rate_phase, before_phase, predictor_phase, approach_phase, motion_phase;
@@ -101,7 +103,7 @@ struct Program {
   OperatorKind kind = OperatorKind::band;
   std::vector<StageProgram> start, stages;
   bool contact = false, support = false, load = false, load_constant = false, eager_delassus = false;
-  bool bounded = true;  ///< whether a lane beyond its energy bound is stopped
+  bool bounded = true;                ///< whether a lane beyond its energy bound is stopped
   double predicted_step_seconds = 0;  ///< per step of the whole block
   double predicted_setup_seconds = 0;
   std::vector<LeftOut> left_out;

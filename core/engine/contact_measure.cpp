@@ -24,17 +24,17 @@ void Marcher::measure_rows(const RowMatrix& rows, int terms, const double* const
 }
 
 // Gap test and approach test: a side that is open has an infinite bound; a closed one may rebound.
-void Marcher::open_gates(StageProgram& program, StageState& state) {
+void Marcher::open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms) {
   const VelocityGate& gate = *program.gate;
   const int points = lower_.rows(), T = program_.width;
-  std::vector<const double*>& slots = slot_pointers_;
   const double* offset = nullptr;
   const auto measure = [&](const std::vector<double>& weights, const PhaseWeights& phase, bool rate, Block& out) {
     if (program_.support) {
       clamp_.offsets(phase, offset_.data(), rate);
       offset = offset_.data();
     }
-    measure_rows(program_.model->measured(), slot_count(), slots.data(), weights.data(), offset, out.data());
+    const int count = slot_count() + (weights.back() != 0);
+    measure_rows(program_.model->measured(), count, terms.data(), weights.data(), offset, out.data());
   };
   measure(state.gap_weights, program.predictor_phase, false, state.gap);
   state.closed_lanes = 0;
@@ -73,9 +73,12 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
   state.closed_lanes = 0;
   if (clear_ > 0 && state.contact_lanes == 0) return 0;
   if (state.test) return state.test->outside;
+  std::array<const double*, most_slots + 1> slots{};
+  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
+  slots[static_cast<std::size_t>(slot_count())] = z;
   const bool gated = program.gate.has_value();
   if (gated) {
-    open_gates(program, state);
+    open_gates(program, state, slots);
     if (state.closed_lanes == 0 && state.contact_lanes == 0) return 0;
     if (state.closed_lanes == 0) {
       state.gate_lower.fill(-infinity);
@@ -84,9 +87,6 @@ std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state,
   }
   // Work is given back where some was taken, and nowhere else.
   if (state.restored && (state.restored->contact_lanes | state.contact_lanes) == 0) return 0;
-  std::array<const double*, most_slots + 1> slots{};
-  std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());
-  slots[static_cast<std::size_t>(slot_count())] = z;
   const double* offset = nullptr;
   if (program_.support) {
     clamp_.offsets(program.measure_phase, offset_.data(), gated);

@@ -151,7 +151,7 @@ class Marcher {
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
   void measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                     const double* offset, double* out);
-  void open_gates(StageProgram& program, StageState& state);
+  void open_gates(StageProgram& program, StageState& state, std::span<const double* const> terms);
 
   // effort_history.cpp: efforts of stages and steps before.
   void connect_efforts();

@@ -13,17 +13,21 @@ void register_all(Registry& registry) {
            "the "
            "scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the combination "
            "(q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the kernel of a "
-           "singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α > 0).",
+           "singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α > 0). No "
+           "q₋₁ exists that contact could "
+           "lean on: in the first step e = 0 holds q₁ between the stops, and with e > 0 a point whose free q₁ passes "
+           "its "
+           "stop rebounds with (q₁ − q₀)/h = −e v₀. A start at a stop so keeps order 1, as an impact on the way does.",
        .source = "Dumont and Paoli (2006), Vibrations of a beam between obstacles: convergence of a fully discretized "
                  "approximation; Paoli and Schatzman (2002) for the combination that carries the restitution",
-       .parameters = {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5},
-                                     "β, weight of the outer levels in K q and F"),
-                      with_role(
-                          real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
-                          ParameterRole::restitution),
-                      word_parameter(
-                          "start", {"first-order", "second-order"}, "second-order",
-                          "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation")}},
+       .parameters =
+           {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5}, "β, weight of the outer levels in K q and F"),
+            with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+                      ParameterRole::restitution),
+            word_parameter(
+                "start", {"first-order", "second-order"}, "second-order",
+                "first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation; stops "
+                "hold either")}},
       [](const Parameters& p) {
         return std::make_unique<ThreeLevel>(p.real("beta"), p.real("restitution"), p.word("start") == "second-order");
       });

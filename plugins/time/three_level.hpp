@@ -33,7 +33,7 @@ class ThreeLevel final : public TimeScheme {
     plan.initial = {{1, 0}, {0, h}};
     plan.velocity = {.slots = {0, 1 / h}};
     plan.stages = {step(h)};
-    plan.start = {second_order_ ? symmetric_start(h) : taylor_start()};
+    plan.start = {start(h)};
     plan.start_advances = true;
     plan.energy = {{QuadraticTerm::Matrix::M, 0.5 / (h * h), {0, 1}},
                    {QuadraticTerm::Matrix::K, 0.5, {1, -0.5}},
@@ -71,14 +71,17 @@ class ThreeLevel final : public TimeScheme {
     return stage;
   }
 
-  // q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, z = 2(q₁ − q₀ − h v₀); d holds h v₀. C then acts on v₀ alone.
-  Stage symmetric_start(double h) const {
+  // z = 2(q₁ − q₀ − h v₀), d holds h v₀. Second order: q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, C acting on
+  // v₀ alone. First order: no force acts, z is what rigid stops make it.
+  Stage start(double h) const {
     Stage stage;
     stage.matrix = {1 / (h * h), 0, beta_};
+    const Combination end{.slots = {1, 1}, .z = 0.5}, way{.slots = {0, 1}, .z = 0.5};
+    stage.impact = start_measure(h);
+    stage.update = {end, way};
+    if (!second_order_) return stage;
     stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
     stage.load = averaged_levels();
-    stage.impact = {{.slots = {1, (1 - e_) / (1 + e_)}, .z = 0.5}, constrained_levels(), std::nullopt};
-    const Combination end{.slots = {1, 1}, .z = 0.5};
     const Combination rate{.slots = {0, 1 / h}};
     stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
     stage.at(Evaluation::averaged) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
@@ -86,14 +89,17 @@ class ThreeLevel final : public TimeScheme {
     // q₋₁ is taken as q₀ − h v₀: the difference is the first order's, and a start beyond a stop has no past anyway.
     stage.at(Evaluation::conserving) = {{.slots = {1, 0.5}, .z = 0.25},  {{0, 0.5}, {1, 0.5}}, rate, {{0, 1}}, {1},
                                         Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
-    stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
     return stage;
   }
 
-  static Stage taylor_start() {
-    Stage stage;
-    stage.update = {{.slots = {1, 1}}, {.slots = {0, 1}}};
-    return stage;
+  // There is no q₋₁ that contact may lean on: e = 0 holds q₁, e > 0 lets (q₁ − q₀)/h rebound with −e v₀ where the free
+  // q₁ passes the stop.
+  ImpactMeasure start_measure(double h) const {
+    const Combination end{.slots = {1, 1}, .z = 0.5};
+    if (e_ == 0) return {end, {{1, 1}}, std::nullopt};
+    return {{.slots = {0, 1 / h}, .z = 0.5 / h},
+            {{0.5, 1}},
+            VelocityGate{end, {{1, 1}}, {.slots = {0, 1 / h}}, {{0, 1}}, e_}};
   }
 
   double beta_, e_;

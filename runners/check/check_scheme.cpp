@@ -20,6 +20,7 @@ const std::vector<Check<TimeScheme>>& scheme_checks() {
       {"compliant contact", compliance_is_right},
       {"rigid stops", rigid_stops_hold},
       {"restitution", restitution_as_declared},
+      {"start at a stop", start_at_a_stop},
       {"order at contact", contact_order_as_declared},
       {"impulse", impulse_is_momentum},
       {"energy", energy_in_free_flight},

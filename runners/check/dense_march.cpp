@@ -89,7 +89,7 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
     else
       reads(stage.impact);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(M_.rows());
-    Found found{none, none, Eigen::VectorXd::Zero(points)};
+    Found found{none, none, Eigen::VectorXd::Zero(points), none};
     Eigen::VectorXd &z = found.z, &w = found.w, &p = found.p;
     if (weights && view.effort)
       for (Eigen::Index i = 0; i < points; ++i)
@@ -99,16 +99,16 @@ void DenseMarch::stage_solved(const Marcher& marcher, const StageView& view) {
     if (s.M != 0 || s.C != 0 || s.K != 0) {
       Eigen::VectorXd b = load(lane, view.time, stage.load);
       for (std::size_t j = 0; j < stage.history.size(); ++j) b += dense(stage.history[j]) * lane.slots[j];
+      if (weights && !view.starting)
+        for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
+      const DenseLu S(dense(s));
+      found.free = S.solve(b);
       if (weights && stage.impulse && impulse != 0) {
         w = DenseLu(dense(stage.impulse->R)).solve(impulse * (H_.transpose() * p));
         b += dense(stage.impulse->feed) * w;
       }
-      if (weights) {
-        b += weights->front() * (H_.transpose() * p);
-        if (!view.starting)
-          for (std::size_t k = 1; k < weights->size(); ++k) b += (*weights)[k] * (H_.transpose() * lane.past[k - 1]);
-      }
-      z = DenseLu(dense(s)).solve(b);
+      if (weights) b += weights->front() * (H_.transpose() * p);
+      z = S.solve(b);
     }
     if (view.stage == 0) {
       lane.efforts.clear();
@@ -143,7 +143,7 @@ void DenseMarch::look_at_contact(const Stage& stage, const Lane& lane, const Fou
   const bool gated = !reads_ && stage.impact->gate;
   const Eigen::VectorXd y = (H_ * combined(lane, value, found)).array() + support(lane, t, bound, gated);
   if (gated) {
-    look_at_gate(*stage.impact, lane, y, p, t);
+    look_at_gate(*stage.impact, lane, y, found, t);
     return;
   }
   for (Eigen::Index i = 0; i < y.size(); ++i) {
@@ -178,10 +178,10 @@ void DenseMarch::look_at_work(const Lane& lane, std::size_t k, std::size_t sourc
 
 // Only sides that the gate finds closed carry an effort, and on them y is not below the rebound.
 void DenseMarch::look_at_gate(const ImpactMeasure& impact, const Lane& lane, const Eigen::VectorXd& y,
-                              const Eigen::VectorXd& p, double t) {
+                              const Found& found, double t) {
   const VelocityGate& gate = *impact.gate;
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(M_.rows());
-  const Found none{rest, rest, p};
+  const Eigen::VectorXd& p = found.p;
+  const Found none{found.free, Eigen::VectorXd::Zero(M_.rows()), p, found.free};
   const Eigen::VectorXd gap =
       (H_ * combined(lane, gate.predictor, none)).array() + support(lane, t, gate.predictor_bound, false);
   const Eigen::VectorXd speed =

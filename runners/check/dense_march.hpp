@@ -29,13 +29,14 @@ class DenseMarch final : public StepObserver {
   /// What a stage has found.
   struct Found {
     Eigen::VectorXd z, w, p;
+    Eigen::VectorXd free;  ///< z without p
   };
   Eigen::VectorXd combined(const Lane& lane, const Combination& c, const Found& found) const;
   double support(const Lane& lane, double t, const Levels& levels, bool rate) const;
   Eigen::VectorXd load(const Lane& lane, double t, const Levels& levels) const;
   void look_at_contact(const Stage& stage, const Lane& lane, const Found& found, double t);
   void look_at_work(const Lane& lane, std::size_t k, std::size_t source);
-  void look_at_gate(const ImpactMeasure& impact, const Lane& lane, const Eigen::VectorXd& y, const Eigen::VectorXd& p,
+  void look_at_gate(const ImpactMeasure& impact, const Lane& lane, const Eigen::VectorXd& y, const Found& found,
                     double t);
   void note(const std::string& sentence);
 

@@ -27,6 +27,7 @@ Verdict compliance_is_right(const Scheme& scheme);
 // Contact and energies (scheme_contact.cpp, scheme_energy.cpp).
 Verdict rigid_stops_hold(const Scheme& scheme);
 Verdict restitution_as_declared(const Scheme& scheme);
+Verdict start_at_a_stop(const Scheme& scheme);
 Verdict contact_order_as_declared(const Scheme& scheme);
 Verdict impulse_is_momentum(const Scheme& scheme);
 Verdict energy_in_free_flight(const Scheme& scheme);

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <ricochet/measure/energy/energy_audit.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 
@@ -63,18 +65,27 @@ Bounce bounce(const Scheme& scheme, double h, int phase, std::unique_ptr<Contact
   return result;
 }
 
-// An oscillator (1 kg, 2 rad/s about 0.2 m) let go above a stop at 0: w up to the impact and after it.
+// An oscillator (1 kg, 2 rad/s about `rest`) above a stop at 0: w between its first impact and the next.
 struct OscillatorBounce {
-  static constexpr double omega = 2, rest = 0.2;
-  double height, impact, speed;
-  explicit OscillatorBounce(double from) : height(from) {
-    const double a = from - rest;
-    impact = std::acos(-rest / a) / omega;
-    speed = a * omega * std::sin(omega * impact);
-  }
+  static constexpr double omega = 2;
+  double rest = 0.2, impact = 0, speed = 0;  // s, and m/s towards the stop
   double after(double t, double e) const {
     const double s = omega * (t - impact);
     return rest - rest * std::cos(s) + e * speed / omega * std::sin(s);
+  }
+  // Let go at rest at `height`.
+  static OscillatorBounce from_rest(double height) {
+    OscillatorBounce bounce;
+    const double a = height - bounce.rest;
+    bounce.impact = std::acos(-bounce.rest / a) / omega;
+    bounce.speed = a * omega * std::sin(omega * bounce.impact);
+    return bounce;
+  }
+  SceneSpec scene(double position, double velocity) const {
+    SceneSpec scene = oscillator_scene(
+        {.mass = 1, .stiffness = omega * omega, .position = position, .velocity = velocity, .stop = true});
+    scene.load = Formula(rest * omega * omega);
+    return scene;
   }
 };
 
@@ -84,11 +95,9 @@ std::vector<double> errors_after_impact(const Scheme& scheme, const std::vector<
   for (const double h : steps) {
     double sum = 0;
     for (int phase = 0; phase < phases; ++phase) {
-      const OscillatorBounce exact(0.7 + 1.3 * h * (phase + 0.37) / phases);
-      SceneSpec scene =
-          oscillator_scene({.mass = 1, .stiffness = exact.omega * exact.omega, .position = exact.height, .stop = true});
-      scene.load = Formula(exact.rest * exact.omega * exact.omega);
-      Marcher marcher = marcher_of(scheme, discretised(scene), h, rigid_stops());
+      const double height = 0.7 + 1.3 * h * (phase + 0.37) / phases;
+      const OscillatorBounce exact = OscillatorBounce::from_rest(height);
+      Marcher marcher = marcher_of(scheme, discretised(exact.scene(height, 0)), h, rigid_stops());
       marcher.start();
       double worst = 0;
       while (marcher.time() < exact.impact + 0.4) {
@@ -100,6 +109,43 @@ std::vector<double> errors_after_impact(const Scheme& scheme, const std::vector<
     }
     errors.push_back(sum);
   }
+  return errors;
+}
+
+/// A start at a stop, or a share of a step's way from it, and what the march then errs by.
+struct StopStart {
+  const char* what;
+  double away;      // in steps of the way h |v|
+  double velocity;  // m/s, away from the stop
+  double rest;      // of the oscillator, m: below the stop, it is pressed
+};
+constexpr std::array<StopStart, 5> stop_starts = {{{"on the stop, moving in", 0, -1, 0.2},
+                                                   {"half a step from the stop, moving in", 0.5, -1, 0.2},
+                                                   {"a step from the stop, moving in", 1, -1, 0.2},
+                                                   {"on the stop, moving away, pressed", 0, 1, -0.2},
+                                                   {"on the stop, at rest, pressed", 0, 0, -0.2}}};
+struct StopStartErrors {
+  double displacement = 0;         // largest until 0.4 s, m
+  std::optional<double> lost = 0;  // of what the stops took, J; none where no balance is known
+};
+StopStartErrors errors_after_start(const Scheme& scheme, const StopStart& start, double h, double e) {
+  const OscillatorBounce exact{.rest = start.rest, .impact = 0, .speed = start.velocity};
+  const bool rests = start.velocity == 0, comes = start.velocity < 0;
+  Marcher marcher = marcher_of(
+      scheme, discretised(exact.scene(start.away * h * std::abs(start.velocity), start.velocity)), h, rigid_stops());
+  EnergyAudit audit(marcher);
+  marcher.start(&audit);
+  StopStartErrors errors;
+  while (marcher.time() < 0.4) {
+    marcher.march(1, &audit);
+    const double t = marcher.time(), rebound = comes ? -e : 1;
+    const double place = rests ? 0 : exact.after(t, rebound);
+    errors.displacement = std::max(errors.displacement, std::abs(marcher.position(0)[0] - place));
+  }
+  if (!marcher.status(0).running)
+    throw std::runtime_error(std::string(start.what) + ": the march stopped: " + text(marcher.status(0).end));
+  errors.lost = std::nullopt;
+  if (audit.balances()) errors.lost = std::abs(audit.lost_at_stops(0) - (comes ? 0.5 * (1 - e * e) : 0));
   return errors;
 }
 
@@ -159,6 +205,40 @@ Verdict restitution_as_declared(const Scheme& scheme) {
                     "rebounds with {}",
                     word(declared), e, errors.front(), steps.front(), errors.back(), steps.back(), range_text(*range)));
   return fine(fmt::format("{}, e = {:g}: a free mass rebounds with {}", word(declared), e, range_text(*range)));
+}
+
+// As h → 0 the start that leans on contact does what the motion does: e v, and the stops' loss of ½ m v² (1 − e²).
+Verdict start_at_a_stop(const Scheme& scheme) {
+  const StepPlan plan = contact_plan(scheme, 0.01);
+  if (!measures(plan)) return no_measure();
+  if (plan.facts.restitution == Restitution::ignored) return not_declared("restitution ignored");
+  const double e = declared_restitution(scheme);
+  const std::vector<double> steps = contact_steps(plan);
+  double least = HUGE_VAL;
+  for (const StopStart& start : stop_starts) {
+    std::vector<double> errors;
+    double first_lost = 0, last_lost = 0;
+    for (const double h : steps) {
+      const StopStartErrors of = errors_after_start(scheme, start, h, e);
+      errors.push_back(of.displacement);
+      last_lost = of.lost.value_or(0);
+      if (h == steps.front()) first_lost = last_lost;
+    }
+    constexpr double round_off = 1e-10;  // of some hundred steps
+    if (!(errors.back() <= std::max(round_off, 0.5 * errors.front()) && errors.back() <= 0.02))
+      return fails(fmt::format(
+          "a start {}: the error is {:.2g} m at h = {:g} s and {:.2g} m at {:g} s, where it should vanish (e = {:g})",
+          start.what, errors.front(), steps.front(), errors.back(), steps.back(), e));
+    if (!(last_lost <= std::max(round_off, 0.5 * first_lost) && last_lost <= 0.02))
+      return fails(
+          fmt::format("a start {}: what the stops take is wrong by {:.2g} J at h = {:g} s and {:.2g} J at {:g} "
+                      "s, where it should tend to m v² (1 − e²)/2 (e = {:g})",
+                      start.what, first_lost, steps.front(), last_lost, steps.back(), e));
+    const MeasuredOrder measured = measured_order(steps, errors, 0.5);
+    if (!measured.exact) least = std::min(least, measured.order);
+  }
+  return fine(std::isfinite(least) ? fmt::format("order {:.2f} at least, over {} starts", least, stop_starts.size())
+                                   : fmt::format("exact, over {} starts", stop_starts.size()));
 }
 
 Verdict contact_order_as_declared(const Scheme& scheme) {

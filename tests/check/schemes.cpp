@@ -132,6 +132,14 @@ TEST_CASE("check: facts about contact that are wrong are caught") {
          "e = 0.5");
   caught(newmark_entry(0.25, 0.5, [](StepPlan& plan, double) { plan.facts.contact_never_gains = true; }),
          "energy at contact", "declares that its energy never grows");
+  // q₋₁ tied to a q₁ that contact moves, and a first step that contact leaves alone.
+  caught(three_level_entry(0.5,
+                           [](StepPlan& plan, double) {
+                             plan.start[0].impact = ImpactMeasure{.value = {.slots = {1, 1.0 / 3}, .z = 0.5}};
+                           }),
+         "start at a stop", "moving in: the error is");
+  caught(three_level_entry(0, [](StepPlan& plan, double) { plan.start[0].impact.reset(); }), "start at a stop",
+         "moving in: the error is");
   caught(three_level_entry(0, [](StepPlan& plan, double) { plan.facts.contact_order = 3; }), "order at contact",
          "declares order 3 at rigid stops");
   caught(newmark_entry(0.25, 0.5,

@@ -74,9 +74,15 @@ inline StepPlan three_level_plan(double h, double e) {
   start.matrix = {1 / (h * h), 0, beta};
   start.history = {{0, 0, -1}, {0, -1 / h, 0}};
   start.load = stage.load;
-  start.impact = ImpactMeasure{.value = {.slots = {1, (1 - e) / (1 + e)}, .z = 0.5}};
-  start.at(Evaluation::averaged) = {{.slots = {1, 1}, .z = 0.5}, {}, {.slots = {0, 1 / h}}, {}, {1}};
-  start.update = {{.slots = {1, 1}, .z = 0.5}, {.slots = {0, 1}, .z = 0.5}};
+  const Combination first{.slots = {1, 1}, .z = 0.5}, begins{.slots = {0, 1 / h}};
+  // There is no position before the first that contact could lean on.
+  start.impact = ImpactMeasure{.value = first};
+  if (e > 0) {
+    start.impact->value = {.slots = {0, 1 / h}, .z = 0.5 / h};
+    start.impact->gate = VelocityGate{.predictor = first, .approach = begins, .restitution = e};
+  }
+  start.at(Evaluation::averaged) = {first, {}, begins, {}, {1}};
+  start.update = {first, {.slots = {0, 1}, .z = 0.5}};
   plan.start = {start};
   plan.start_advances = true;
   plan.energy = {{EnergyMatrix::M, 0.5 / (h * h), {0, 1}},

@@ -133,11 +133,13 @@ void EnergyAudit::follow_position(const StageView& view, int lane, bool moves) {
   for (std::size_t i = 0; i < scratch_.size(); ++i) increment.data()[i] += moved[i];
 }
 
-// The balance begins before the first stage that has a work form.
+// The balance begins before the first stage that has a work form, with what contact took until then.
 void EnergyAudit::start_balance(const StageView& view, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
-  state.energy.scheme_start = energies_.scheme(view.slots, lane);
-  state.now.scheme = state.energy.first.scheme = state.energy.scheme_start;
+  EnergyTotals& totals = state.energy;
+  state.now.scheme = energies_.scheme(view.slots, lane);
+  totals.scheme_start = state.now.scheme - totals.work_of_contact - totals.work_of_loads;
+  for (const Works* works : {&state.since, &state.step}) totals.scheme_start -= works->contact + works->loads;
   state.has_scheme = true;
 }
 

@@ -31,7 +31,7 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   first_ = CombinedForm(first, shape);
   const StepPlan& plan = marcher.program().plan;
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;
-  for (const Stage& stage : plan.start) start_.push_back(describe(stage, pulsation, h));
+  for (const Stage& stage : plan.start) start_.push_back(describe_start(plan, stage, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
   if (T_ > 1 || marcher.program().load) return;
   squares_alone_ = stages_.size() == 1 && stages_.front().losses.empty();
@@ -83,6 +83,27 @@ StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation,
   return stage;
 }
 
+// The mean of the plan's velocities before and after the stage, as a combination of what is before it and z.
+StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, const Stage& stage, double pulsation,
+                                                  double h) const {
+  StageTerms terms = describe(stage, pulsation, h);
+  if (stage.work) return terms;
+  Combination mean;
+  mean.slots.assign(plan.slots.size(), 0.0);
+  for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) {
+    const double half = 0.5 * plan.velocity.slots[j];
+    mean.slots[j] += half;
+    const Combination& update = stage.update[j];
+    for (std::size_t i = 0; i < update.slots.size(); ++i) mean.slots[i] += half * update.slots[i];
+    mean.z += half * update.z;
+    mean.w += half * update.w;
+  }
+  terms.displacement = WeighedTerms(mean);
+  terms.support = PhaseWeights({{1, 1 / h}, {0, -1 / h}}, pulsation, h);
+  terms.impulsive = true;
+  return terms;
+}
+
 void StageWorks::add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                          bool contact, Works& works) {
   const auto sum = [&](const WeighedTerms& terms) { return LaneSum(terms, view.slots, view.z, view.w, T_, lane); };
@@ -91,6 +112,8 @@ void StageWorks::add_all(const Marcher& marcher, const StageView& view, const St
       const CombinedForm& form = loss.matrix == EnergyMatrix::M ? mass_form_ : stiffness_form_;
       works.scheme += loss.coefficient * sum(loss.value).under(form, displacement_).form;
     }
+  if (stage.impulsive && contact)
+    add_contact(marcher, view, stage, lane, sum(stage.displacement).write(displacement_), works);
   if (!view.plan->work) return;
   const bool load = marcher.program().load, across = damped_ && stage.along == 0;
   if (!projected_ && !damped_ && !load && !contact) return;

@@ -24,6 +24,9 @@ struct Works {
 /// has added up for damping and the clamp, or one pass over the vectors that s weighs; one more per loss term, and the
 /// points that push. What a scene does not have is not computed. Keeps what damping and loads ask of each stage,
 /// allocates when constructed; one lane at a time, each stage in turn.
+///
+/// A start rule without work form is no step of the balance, which begins after it. What its contact works is added all
+/// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/h), v the plan's velocity before and after it, ω p the momentum given within it.
 class StageWorks {
  public:
   /// M and K in the coordinates of the march.
@@ -69,6 +72,7 @@ class StageWorks {
     PhaseWeights load;    // times ω²: −φ'' = ω² φ for the harmonic support
     PhaseWeights support;
     std::vector<Loss> losses;
+    bool impulsive = false;  // a start rule whose contact alone works: `displacement` is the mean velocity
     // Where damping and clamp are all there is without contact, of an operator that adds up their squares: of s over
     // the weight of z, and what these are worth. Else no fours.
     Block fours;
@@ -78,6 +82,7 @@ class StageWorks {
   };
   void ask_for_squares(const QuadraticForm& form, const double* shape, int width, StageTerms& stage) const;
   StageTerms describe(const Stage& plan, double pulsation, double h) const;
+  StageTerms describe_start(const StepPlan& plan, const Stage& stage, double pulsation, double h) const;
   void add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                bool contact, Works& works);
   void add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,

@@ -51,8 +51,8 @@ class BouncingMass {
   double push(const ImpactMeasure& impact, double z) const {
     double lower = 0;
     if (const auto& gate = impact.gate) {
-      if (combined(gate->predictor, mass_.slots) > 0) return 0;
-      const double approach = combined(gate->approach, mass_.slots);
+      if (combined(gate->predictor, mass_.slots, z) > 0) return 0;
+      const double approach = combined(gate->approach, mass_.slots, z);
       lower = approach > 0 ? -approach : -gate->restitution * approach;
     }
     return std::max(0.0, lower - combined(impact.value, mass_.slots, z));

@@ -80,8 +80,14 @@ class Scheme final : public TimeScheme {
   Stage start(double h) const {
     Stage stage = step(h);
     stage.matrix = {.M = 1 / (h * h)};
-    stage.impact->value.z = 0.5;
     const Combination end{.slots = {1, 1}, .z = 0.5}, rate{.slots = {0, 1 / h}};
+    // No q₋₁ was marched that a stop could lean on. e = 0 holds q₁; e > 0 closes the sides that the free q₁ passes, and
+    // lets (q₁ − q₀)/h rebound with −e v₀.
+    stage.impact = ImpactMeasure{.value = end};
+    if (e_ > 0) {
+      stage.impact->value = {.slots = {0, 1 / h}, .z = 0.5 / h};
+      stage.impact->gate = VelocityGate{.predictor = end, .approach = rate, .restitution = e_};
+    }
     // Times of the stops may also be given: v₀ stands where the step begins.
     const Levels now{{.at = 0, .weight = 1}};
     stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = end, .rate = rate, .rate_bound = now};
