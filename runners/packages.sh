@@ -5,7 +5,7 @@ say() { printf '%s\n' "$*"; }
 give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev
-libvalijson-dev libmuparser-dev libsqlite3-dev libsqlitecpp-dev libtbb-dev libfmt-dev libkainjow-mustache-dev
+libmuparser-dev libsqlite3-dev libsqlitecpp-dev libtbb-dev libfmt-dev libkainjow-mustache-dev
 libcereal-dev"
 # command=package: the command may come from elsewhere than Debian.
 build_commands="g++=g++ cmake=cmake ninja=ninja-build git=git"
@@ -41,14 +41,16 @@ install_missing() {
     give_up "apt-get could not install:$missing"
 }
 
+# npm_packages FOLDER PACKAGE: what the folder's lock file pins, into it; fails where that cannot be had.
+npm_packages() {
+  [ -d "$1/node_modules/$2" ] && return 0
+  command -v npm >/dev/null 2>&1 || (install_missing npm=nodejs npm=npm) || return 1
+  say "Fetching $2 (once)"
+  (cd "$1" && npm ci --no-audit --no-fund)
+}
+
 # The chart library; without it reports have tables only, so failing here stops nothing.
 fetch_charts() {
-  [ -s "$root/runners/report/node_modules/echarts/dist/echarts.min.js" ] && return 0
-  if ! command -v npm >/dev/null 2>&1; then
-    # In a subshell: a machine where npm cannot be installed still gets its tables.
-    (install_missing npm=nodejs npm=npm) || { say "npm could not be installed: reports will have tables only" >&2; return 0; }
-  fi
-  say "Fetching the chart library of the report (once)"
-  (cd "$root/runners/report" && npm ci --no-audit --no-fund) ||
+  npm_packages "$root/runners/report" echarts ||
     say "npm could not fetch the chart library: reports will have tables only; run this again with a network for charts" >&2
 }

@@ -18,6 +18,9 @@ else
   install_missing openmpi-bin libopenmpi-dev slurmctld slurmd slurm-client munge
 fi
 fetch_charts
+# Editors read the schema by ajv, and so does the suite.
+install_missing node=nodejs
+npm_packages "$root/tests/runners/study/validator" ajv || give_up "npm could not fetch ajv, which the tests of the schema need"
 
 cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi
 cmake --build --preset release --target tests
