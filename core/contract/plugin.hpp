@@ -3,6 +3,7 @@
 //
 #include <ricochet/contract/abi.hpp>
 #include <ricochet/contract/layout.hpp>
+#include <ricochet/contract/plan_algebra.hpp>
 #include <ricochet/contract/registry.hpp>
 
 /// \file

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/registry.hpp>
+#include <sstream>
 
 namespace ricochet {
 namespace {
@@ -44,6 +45,14 @@ std::optional<std::string> check_declaration(const PluginManual& manual, std::si
   return std::nullopt;
 }
 
+// A paragraph may be written over several lines of a source: each run of white space is one blank.
+std::string one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
 }  // namespace
 
 const char* role_name(Role role) {
@@ -76,6 +85,7 @@ template <class Interface>
 void Registry::add(std::map<std::string, Entry<Interface>>& entries, Role role, PluginManual manual,
                    Maker<Interface> make) {
   check(role, manual);
+  manual.text = one_line(manual.text);
   const std::string name = manual.name;
   if (!make) throw PluginError("the " + std::string(role_name(role)) + " plugin '" + name + "' registers no factory");
   entries.emplace(name,

@@ -22,7 +22,7 @@ const char* role_name(Role role);
 struct PluginManual {
   std::string name;     ///< [a-z0-9-]+
   std::string summary;  ///< one line
-  std::string text;     ///< one paragraph
+  std::string text;     ///< one paragraph; each run of white space counts as one blank
   std::string source;   ///< author, year, equation
   std::vector<ParameterSpec> parameters;
 };

@@ -80,11 +80,10 @@ void register_all(Registry& registry) {
   registry.add_contact(
       {.name = "augmented-lagrangian",
        .summary = "hybrid: penalty steps that update a multiplier",
-       .text = "Repeats a penalty solve of stiffness r around a multiplier that each solve replaces by its effort. One "
-               "iteration from zero is the penalty of the same stiffness, many are Signorini; in between, the "
-               "penetration that "
-               "is left is the complementarity residual that the run reports. The measure is the scheme's impact "
-               "measure, restitution included.",
+       .text = R"(Repeats a penalty solve of stiffness r around a multiplier that each solve replaces by its effort.
+          One iteration from zero is the penalty of the same stiffness, many are Signorini; in between, the
+          penetration that is left is the complementarity residual that the run reports. The measure is the scheme's
+          impact measure, restitution included.)",
        .source = "Hestenes (1969), Powell (1969); for unilateral contact Alart and Curnier (1991)",
        .parameters = {augmentation,
                       integer_parameter("iterations", 50, {.low = 1, .high = 100000}, "most augmentations in one step"),

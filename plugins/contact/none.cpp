@@ -16,8 +16,8 @@ void register_all(Registry& registry) {
   registry.add_contact(
       {.name = "none",
        .summary = "no contact: the stops are ignored",
-       .text = "The structure moves through its stops. What remains is the linear problem, which shows "
-               "the mesh and the time scheme alone.",
+       .text = R"(The structure moves through its stops. What remains is the linear problem, which shows the mesh
+          and the time scheme alone.)",
        .source = "—",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<None>(); });

@@ -43,10 +43,10 @@ void register_all(Registry& registry) {
   registry.add_contact(
       {.name = "perturbed-lagrangian",
        .summary = "a multiplier that gives way in proportion to its size, on the scheme's impact measure",
-       .text = "Signorini's conditions with y + p/κ in place of the impact measure y: the multiplier of the rigid law, "
-               "softened. It is one iteration of augmented-lagrangian from zero. Other than the penalty it acts on "
-               "what the scheme constrains, restitution included; where that is the position at the end of the step it "
-               "is the implicit penalty. What the measure passes its bound by is reported as complementarity residual.",
+       .text = R"(Signorini's conditions with y + p/κ in place of the impact measure y: the multiplier of the rigid
+          law, softened. It is one iteration of augmented-lagrangian from zero. Other than the penalty it acts on
+          what the scheme constrains, restitution included; where that is the position at the end of the step it is
+          the implicit penalty. What the measure passes its bound by is reported as complementarity residual.)",
        .source = "Simo, Wriggers and Taylor (1985), A perturbed Lagrangian formulation for the finite element solution "
                  "of contact problems",
        .parameters = {stiffness_parameter("N/m", "κ, effort per unit of the scheme's impact measure")}},

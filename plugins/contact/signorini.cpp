@@ -27,9 +27,9 @@ void register_all(Registry& registry) {
   registry.add_contact(
       {.name = "signorini",
        .summary = "rigid stops, Lagrange multipliers (Signorini conditions on both sides)",
-       .text = "Finds the contact efforts p such that the scheme's impact measure stays between the stops and p acts "
-               "only where it touches one: lower ≤ y ⊥ p ≤ upper. What y is (a position, an average of positions, a "
-               "velocity) and what restitution is folded into it is the time scheme's choice.",
+       .text = R"(Finds the contact efforts p such that the scheme's impact measure stays between the stops and p
+          acts only where it touches one: lower ≤ y ⊥ p ≤ upper. What y is (a position, an average of positions, a
+          velocity) and what restitution is folded into it is the time scheme's choice.)",
        .source =
            "Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller, "
            "Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback",

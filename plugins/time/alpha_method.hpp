@@ -31,50 +31,60 @@ struct AlphaMethod {
   }
 
   double now() const { return 1 - force; }
-  double lag(double h) const { return (1 - gamma) * h; }
-  double curve(double h) const { return (0.5 - beta) * h * h; }
-  Combination end(double h) const { return {.slots = {1, h, curve(h)}, .z = beta * h * h}; }
-  Combination end_rate(double h) const { return {.slots = {0, 1, lag(h)}, .z = gamma * h}; }
-  Combination increment(double h) const { return {.slots = {0, h, curve(h)}, .z = beta * h * h}; }
+  /// q_{n+1} and v_{n+1} without a_{n+1}, and with it.
+  Combination ahead(double h) const {
+    const auto [q, v, a] = plan_algebra::slots<3>();
+    return q + h * v + (0.5 - beta) * h * h * a;
+  }
+  Combination ahead_rate(double h) const {
+    const auto [q, v, a] = plan_algebra::slots<3>();
+    return v + (1 - gamma) * h * a;
+  }
+  Combination end(double h) const { return ahead(h) + beta * h * h * plan_algebra::z; }
+  Combination end_rate(double h) const { return ahead_rate(h) + gamma * h * plan_algebra::z; }
+  Combination increment(double h) const { return end(h) - plan_algebra::slots<1>()[0]; }
   std::vector<double> both_ends() const { return force == 0 ? std::vector{1.0} : std::vector{now(), force}; }
 
   /// Slots q, v, a and the stages; energy, work and facts are the method's own.
   StepPlan plan(double h, const ProblemFacts& facts) const {
+    const auto [q, v] = plan_algebra::slots<2>();
     StepPlan plan;
     plan.slots = {"q", "v", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = v;
     plan.start = {initial_acceleration(h, 1, facts.mass_kernel_dimension > 0 ? beta * h * h : 0)};
     plan.stages = {step(h)};
-    plan.energy = {{EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}};
+    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
     plan.facts.order = 2;
     return plan;
   }
 
   Stage step(double h) const {
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
     const double f = now();
     Stage stage;
-    stage.matrix = {1 - mass, f * gamma * h, f * beta * h * h};
-    stage.history = {{0, 0, -1}, {0, -1, -f * h}, {0 - mass, -f * lag(h), -f * curve(h)}};
-    stage.load = {{1, f}};
-    if (force != 0) stage.load.push_back({0, force});
-    stage.impact = {.value = end(h), .bound = {{1, 1}}, .effort = weighted_contact ? both_ends() : std::vector{1.0}};
-    stage.at(Evaluation::implicit_end) = {end(h), {{1, 1}}, end_rate(h), {{1, 1}}, {1}};
+    stage.matrix = (1 - mass) * M + f * gamma * h * C + f * beta * h * h * K;
+    stage.history = -(mass * M * a) - C * (v + f * (ahead_rate(h) - v)) - K * (q + f * (ahead(h) - q));
+    stage.load = f * at(1);
+    if (force != 0) stage.load = stage.load + force * at(0);
+    stage.impact = {.value = end(h), .bound = at(1), .effort = weighted_contact ? both_ends() : std::vector{1.0}};
+    stage.at(Evaluation::implicit_end) = {end(h), at(1), end_rate(h), at(1), {1}};
     // The elastic force enters as K q of both ends, and so does the spring.
-    stage.at(Evaluation::averaged) = {end(h), {{1, 1}}, end_rate(h), {{1, 1}}, both_ends()};
-    stage.at(Evaluation::explicit_start) = {
-        {.slots = {1, h, curve(h)}}, {{1, 1}}, {.slots = {0, 1, lag(h)}}, {{1, 1}}, {1}};
-    stage.update = {end(h), end_rate(h), {.slots = {}, .z = 1}};
+    stage.at(Evaluation::averaged) = {end(h), at(1), end_rate(h), at(1), both_ends()};
+    stage.at(Evaluation::explicit_start) = {ahead(h), at(1), ahead_rate(h), at(1), {1}};
+    stage.update = {end(h), end_rate(h), z};
     return stage;
   }
 
   /// The same with velocities that jump by w and positions by (h/2)w, R w = Hᵀp; q_{n+1} and v_{n+1} in the equation of
   /// z are those after the jump.
   Stage jumping_step(double h, const OperatorWeights& R) const {
+    using namespace plan_algebra;
     Stage stage = step(h);
-    stage.impulse = {.R = R, .feed = {0, -now(), -now() * h / 2}};
-    stage.update[0].w = h / 2;
-    stage.update[1].w = 1;
+    stage.impulse = {.R = R, .feed = -now() * C - now() * h / 2 * K};
+    stage.update[0] = stage.update[0] + h / 2 * w;
+    stage.update[1] = stage.update[1] + w;
     return stage;
   }
 
@@ -99,19 +109,14 @@ struct AlphaMethod {
   void add_filtered_energy(StepPlan& plan, double h) const {
     const double shift = force - mass;
     if (shift == 0) return;
-    const std::size_t slots = plan.slots.size();
-    Combination filtered = plan.stages[0].update[0];
-    filtered.slots.resize(slots);
-    filtered.slots[0] -= 1;
-    for (double& slot : filtered.slots) slot *= shift / (1 - mass);
-    filtered.z *= shift / (1 - mass);
-    filtered.w *= shift / (1 - mass);
-    filtered.slots.push_back(0 - mass / (1 - mass));
-    add_slot(plan, "s", {0, 0}, filtered);
-    std::vector<double> a(slots, 0.0), sigma(slots + 1, 0.0);
-    a.back() = sigma.back() = 1;
-    plan.energy.push_back({EnergyMatrix::M, 0.125 * shift * shift * h * h, a});
-    if (force != 0.5) plan.energy.push_back({EnergyMatrix::K, (0.5 - force) / (2 * shift), sigma});
+    Combination a, sigma;
+    a.slots.assign(plan.slots.size(), 0.0);
+    sigma.slots.assign(plan.slots.size() + 1, 0.0);
+    a.slots.back() = sigma.slots.back() = 1;
+    const Combination increment = plan.stages[0].update[0] - plan_algebra::slots<1>()[0];
+    add_slot(plan, "s", {0, 0}, shift / (1 - mass) * increment - mass / (1 - mass) * sigma);
+    plan.energy.push_back(square(EnergyMatrix::M, 0.125 * shift * shift * h * h, a));
+    if (force != 0.5) plan.energy.push_back(square(EnergyMatrix::K, (0.5 - force) / (2 * shift), sigma));
   }
 };
 

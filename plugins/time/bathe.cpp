@@ -28,13 +28,15 @@ class Bathe final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    using namespace plan_algebra;
+    const auto [q, v, a, b] = slots<4>();
     StepPlan plan;
     plan.slots = {"q", "v", "a", "b"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = v;
     const double d = split_ * h;
     plan.start = {initial_acceleration(d, split_, facts.mass_kernel_dimension > 0 ? d * d / 4 : 0)};
-    plan.start.front().update.push_back({.slots = {0, 0, 0, 1}});
+    plan.start.front().update.push_back(b);
     plan.stages = {trapezium(d), quadrature(h)};
     plan.facts.order = 2;
     return plan;
@@ -42,40 +44,39 @@ class Bathe final : public TimeScheme {
 
  private:
   Stage trapezium(double d) const {
-    Stage stage;
-    const double half = d / 2, curve = d * d / 4;
-    stage.matrix = {1, half, curve};
-    stage.history = {{0, 0, -1}, {0, -1, -d}, {0, -half, -curve}};
-    const Combination end{.slots = {1, d, curve}, .z = curve}, rate{.slots = {0, 1, half}, .z = half};
-    stage.update = {end, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 1}}};
-    ask_at(stage, split_, end, rate);
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
+    Stage stage = end_of(split_, q + d * v + d * d / 4 * (a + z), v + d / 2 * (a + z));
+    stage.matrix = M + d / 2 * C + d * d / 4 * K;
+    stage.update.push_back(a);
     return stage;
   }
 
   // Before it q, v, a are those of t + γh, b the acceleration of t.
   Stage quadrature(double h) const {
-    Stage stage;
+    using namespace plan_algebra;
+    const auto [q, v, a, b] = slots<4>();
     const double d = split_ * h, e = q2_ * h, later = q1_ * h - d / 2, earlier = q0_ * h - d / 2;
     const double shared = d * d / 4 - 0.5 * q0_ * h * d;
-    const Combination end{.slots = {1, h - d, shared + e * later, shared + e * earlier}, .z = e * e};
-    const Combination rate{.slots = {0, 1, later, earlier}, .z = e};
-    stage.matrix = {1, e, e * e};
-    for (std::size_t j = 0; j < 4; ++j) stage.history.push_back({0, -rate.slots[j], -end.slots[j]});
-    stage.update = {end, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 0, 1}}};
-    ask_at(stage, 1, end, rate);
+    Stage stage = end_of(1, q + (h - d) * v + (shared + e * later) * a + (shared + e * earlier) * b + e * e * z,
+                         v + later * a + earlier * b + e * z);
+    stage.matrix = M + e * C + e * e * K;
+    stage.update.push_back(b);
     return stage;
   }
 
-  // Everything is asked at the end of the sub-step. The elastic force enters as K q of that instant alone, and so does
-  // a spring: averaging is done by the scheme's own recurrence.
-  static void ask_at(Stage& stage, double at, const Combination& end, const Combination& rate) {
-    stage.load = {{at, 1}};
-    stage.impact = {.value = end, .bound = {{at, 1}}};
-    stage.at(Evaluation::implicit_end) = {end, {{at, 1}}, rate, {{at, 1}}, {1}};
-    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
-    Combination known = end, known_rate = rate;
-    known.z = known_rate.z = 0;
-    stage.at(Evaluation::explicit_start) = {known, {{at, 1}}, known_rate, {{at, 1}}, {1}};
+  // A sub-step that ends at t + c h with q and v, everything asked there. The elastic force enters as K q of that
+  // instant alone, and so does a spring: averaging is done by the scheme's own recurrence.
+  static Stage end_of(double c, const Combination& q, const Combination& v) {
+    using namespace plan_algebra;
+    Stage stage;
+    stage.history = -(C * v) - K * q;
+    stage.load = at(c);
+    stage.impact = {.value = q, .bound = at(c)};
+    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {q, at(c), v, at(c), {1}};
+    stage.at(Evaluation::explicit_start) = {known(q), at(c), known(v), at(c), {1}};
+    stage.update = {q, v, z};
+    return stage;
   }
 
   double split_, q0_ = 0, q1_ = 0, q2_ = 0;
@@ -85,12 +86,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "bathe",
        .summary = "ρ∞-Bathe: two sub-steps, second order, as much damping of high frequencies as asked",
-       .text =
-           "A trapezoidal sub-step, then one over three points: with ρ∞ = 0 frequencies far above 1/h are gone in one "
-           "step, low ones hardly feel it. Two solves per step. Stops are at position level at the end of each "
-           "sub-step; a massed point is thrown back up to 2 (ρ∞ = 0) to 2.9 (ρ∞ = 0.8) times as fast as it came, so "
-           "that energy may grow at impacts. On a singular mass it is of second order through contact, with a clean "
-           "force. Implicit and averaged penalties coincide.",
+       .text = R"(A trapezoidal sub-step, then one over three points: with ρ∞ = 0 frequencies far above 1/h are gone
+          in one step, low ones hardly feel it. Two solves per step. Stops are at position level at the end of each
+          sub-step; a massed point is thrown back up to 2 (ρ∞ = 0) to 2.9 (ρ∞ = 0.8) times as fast as it came, so
+          that energy may grow at impacts. On a singular mass it is of second order through contact, with a clean
+          force. Implicit and averaged penalties coincide.)",
        .source = "Bathe and Baig (2005), On a composite implicit time integration procedure for nonlinear dynamics; "
                  "Noh and Bathe (2019), The Bathe time integration method with controllable spectral radius",
        .parameters = {real_parameter("rho_inf", "1", 0.0, {.low = 0, .high = 1},

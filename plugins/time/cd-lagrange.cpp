@@ -20,14 +20,16 @@ class CdLagrange final : public TimeScheme {
       return Refusal{
           "the velocity of the next half step needs the inverse of the mass, which is singular here: use a "
           "lumped mass, or an implicit scheme"};
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     StepPlan plan;
     plan.slots = {"q", "w"};
     plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = v;
     plan.start = {start(h)};
     plan.stages = {step(h)};
-    plan.energy = {
-        {EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1, h / 2}}, {EnergyMatrix::K, -0.125 * h * h, {0, 1}}};
+    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q + h / 2 * v),
+                   square(EnergyMatrix::K, -0.125 * h * h, v)};
     plan.facts.order = facts.damped ? 1 : 2;
     plan.facts.contact_order = 1;
     plan.facts.restitution = Restitution::exact;
@@ -39,43 +41,38 @@ class CdLagrange final : public TimeScheme {
 
  private:
   Stage step(double h) const {
-    const Combination ahead{.slots = {1, h}}, rate{.slots = {0, 1}}, next{.slots = {0, 1}, .z = 1};
-    const Combination middle{.slots = {0, 1}, .z = 0.5};
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    const Combination ahead = q + h * v, next = v + z, mean = v + 0.5 * z;
     Stage stage;
-    stage.matrix = {1 / h, 0, 0};
-    stage.history = {{0, 0, -1}, {0, -1, -h}};
-    stage.load = {{1, 1}};
-    stage.impact = {next, {{1.5, 1}}, VelocityGate{ahead, {{1, 1}}, rate, {{0.5, 1}}, e_}};
+    stage.matrix = M / h;
+    stage.history = -(C * v) - K * ahead;
+    stage.load = at(1);
+    stage.impact = {next, at(1.5), VelocityGate{ahead, at(1), v, at(0.5), e_}};
     // The position that the force is asked at is known before the solve; the rate it may wait for.
-    stage.at(Evaluation::implicit_end) = {ahead, {{1, 1}}, middle, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
-    stage.at(Evaluation::explicit_start) = {ahead, {{1, 1}}, rate, {{0.5, 1}}, {1}};
-    stage.at(Evaluation::conserving) = {.displacement = {.slots = {1, 1.5 * h}, .z = h / 2},
-                                        .bound = {{1, 0.5}, {2, 0.5}},
-                                        .rate = middle,
-                                        .rate_bound = {{1, 1}},
-                                        .before = Combination{.slots = {1, 0.5 * h}},
-                                        .before_bound = {{0, 0.5}, {1, 0.5}}};
+    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {ahead, at(1), mean, at(1), {1}};
+    stage.at(Evaluation::explicit_start) = {ahead, at(1), v, at(0.5), {1}};
+    stage.at(Evaluation::conserving) = {
+        q + 1.5 * h * v + h / 2 * z, 0.5 * at(1) + 0.5 * at(2), mean, at(1), {1}, q + 0.5 * h * v,
+        0.5 * at(0) + 0.5 * at(1)};
     stage.update = {ahead, next};
-    stage.work = {.displacement = {.slots = {0, h}, .z = h / 2},
-                  .rate = rate,
-                  .load = {{1, 1}},
-                  .support = {{2, 0.5}, {0, -0.5}}};
+    stage.work = {.displacement = h * v + h / 2 * z, .rate = v, .load = at(1), .support = 0.5 * at(2) - 0.5 * at(0)};
     return stage;
   }
 
   // 2/h M z = F(0) − C v₀ − K q₀ (+ Hᵀp where the state rests on a stop): w = v₀ + z.
   Stage start(double h) const {
-    const Combination position{.slots = {1}}, rate{.slots = {0, 1}}, next{.slots = {0, 1}, .z = 1};
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     Stage stage;
-    stage.matrix = {2 / h, 0, 0};
-    stage.history = {{0, 0, -1}, {0, -1, 0}};
-    stage.load = {{0, 1}};
-    stage.impact = {next, {{0.5, 1}}, VelocityGate{position, {{0, 1}}, rate, {{0, 1}}, e_}};
-    for (auto& compliance : stage.compliance) compliance = {position, {{0, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::conserving)->before = position;
-    stage.at(Evaluation::conserving)->before_bound = {{0, 1}};
-    stage.update = {position, next};
+    stage.matrix = 2 / h * M;
+    stage.history = -(K * q) - C * v;
+    stage.load = at(0);
+    stage.impact = {v + z, at(0.5), VelocityGate{q, at(0), v, at(0), e_}};
+    for (auto& compliance : stage.compliance) compliance = {q, at(0), v, at(0), {1}};
+    stage.at(Evaluation::conserving)->before = q;
+    stage.at(Evaluation::conserving)->before_bound = at(0);
+    stage.update = {q, v + z};
     return stage;
   }
 
@@ -86,11 +83,10 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "cd-lagrange",
        .summary = "explicit central differences with Newton's impact law on the mid-step velocities",
-       .text = "Leap-frog: positions at the steps, velocities between them, one solve with the mass matrix alone, so "
-               "that a lumped mass makes it explicit. Points whose known next position has reached a stop get "
-               "v⁺ = −e v⁻ on the mid-step velocities: contact never gives energy. Stable up to hω = 2. A damping "
-               "force is taken half a step late: of first order where the structure is damped, of second where it is "
-               "not.",
+       .text = R"(Leap-frog: positions at the steps, velocities between them, one solve with the mass matrix alone,
+          so that a lumped mass makes it explicit. Points whose known next position has reached a stop get v⁺ = −e
+          v⁻ on the mid-step velocities: contact never gives energy. Stable up to hω = 2. A damping force is taken
+          half a step late: of first order where the structure is damped, of second where it is not.)",
        .source = "Fekak, Brun, Gravouil and Depale (2017), A new heterogeneous asynchronous explicit–implicit time "
                  "integrator for nonsmooth dynamics",
        .parameters = {with_role(

@@ -18,35 +18,33 @@ class CentralDifference final : public TimeScheme {
       return Refusal{
           "an acceleration needs the inverse of the mass, which is singular here: use a lumped mass, or an "
           "implicit scheme"};
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
     StepPlan plan;
     plan.slots = {"q", "v", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
-    const Combination position{.slots = {1}}, rate{.slots = {0, 1}};
+    plan.velocity = v;
+    const Combination end = q + h * v + h * h / 2 * a, end_rate = v + h / 2 * (a + z);
     Stage start;
-    start.matrix = {1, 0, 0};
-    start.history = {{0, 0, -1}, {0, -1, 0}};
-    start.load = {{0, 1}};
-    Stage step;
-    step.matrix = {1, h / 2, 0};
-    step.history = {{0, 0, -1}, {0, -1, -h}, {0, -h / 2, -h * h / 2}};
-    step.load = {{1, 1}};
-    const Combination end{.slots = {1, h, h * h / 2}}, end_rate{.slots = {0, 1, h / 2}, .z = h / 2};
-    step.at(Evaluation::implicit_end) = {end, {{1, 1}}, end_rate, {{1, 1}}, {1}};
-    step.at(Evaluation::averaged) = step.at(Evaluation::implicit_end);
-    step.at(Evaluation::explicit_start) = {end, {{1, 1}}, {.slots = {0, 1, h / 2}}, {{1, 1}}, {1}};
+    start.matrix = M;
+    start.history = -(K * q) - C * v;
+    start.load = at(0);
     for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-      start.at(evaluation) = {position, {{0, 1}}, rate, {{0, 1}}, {1}};
-    start.update = {position, rate, {.slots = {}, .z = 1}};
-    step.update = {end, end_rate, {.slots = {}, .z = 1}};
-    step.work = {.displacement = {.slots = {0, h, h * h / 2}},
-                 .rate = {.slots = {0, 1, h / 4}, .z = h / 4},
-                 .load = {{0, 0.5}, {1, 0.5}},
-                 .effort = {0.5, 0.5}};
+      start.at(evaluation) = {q, at(0), v, at(0), {1}};
+    start.update = {q, v, z};
+    Stage step;
+    step.matrix = M + h / 2 * C;
+    step.history = -(C * known(end_rate)) - K * end;
+    step.load = at(1);
+    step.at(Evaluation::implicit_end) = step.at(Evaluation::averaged) = {end, at(1), end_rate, at(1), {1}};
+    step.at(Evaluation::explicit_start) = {end, at(1), known(end_rate), at(1), {1}};
+    step.update = {end, end_rate, z};
+    step.work = {
+        .displacement = end - q, .rate = v + h / 4 * (a + z), .load = 0.5 * at(0) + 0.5 * at(1), .effort = {0.5, 0.5}};
     plan.start = {start};
     plan.stages = {step};
-    plan.energy = {
-        {EnergyMatrix::M, 0.5, {0, 1}}, {EnergyMatrix::K, 0.5, {1}}, {EnergyMatrix::M, -0.125 * h * h, {0, 0, 1}}};
+    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q),
+                   square(EnergyMatrix::M, -0.125 * h * h, a)};
     plan.facts.order = 2;
     plan.facts.needs_regular_mass = true;
     plan.facts.stability_limit = 2;
@@ -58,10 +56,10 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "central-difference",
        .summary = "explicit central differences, for springs and free motion",
-       .text = "Newmark with β = 0, γ = ½: one solve with M + h/2 C per step, with the mass alone where nothing is "
-               "damped. Stable up to hω = 2, the springs behind the stops included. An effort does not move the "
-               "position of its own instant: with a rigid law use carpenter-taylor-katona (position) or cd-lagrange "
-               "(velocity), which are the same scheme with a multiplier.",
+       .text = R"(Newmark with β = 0, γ = ½: one solve with M + h/2 C per step, with the mass alone where nothing is
+          damped. Stable up to hω = 2, the springs behind the stops included. An effort does not move the position
+          of its own instant: with a rigid law use carpenter-taylor-katona (position) or cd-lagrange (velocity),
+          which are the same scheme with a multiplier.)",
        .source = "Belytschko, Liu and Moran (2000), Nonlinear Finite Elements for Continua and Structures, ch. 6; "
                  "Hughes (1987), The Finite Element Method, section 9.1",
        .parameters = {}},

@@ -36,23 +36,27 @@ class ContactStabilisedNewmark final : public TimeScheme {
 
  private:
   static Stage projection(double h) {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     Stage stage;
-    stage.matrix = {1 / (h * h), 0, 0};
-    stage.impact = {.value = {.slots = {1, h}, .z = 1}, .bound = {{1, 1}}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+    stage.matrix = M / (h * h);
+    stage.impact = {.value = q + h * v + z, .bound = at(1)};
+    stage.update = {q, v, z};
     return stage;
   }
 
   Stage step(double h) const {
+    using namespace plan_algebra;
+    const auto [q, v, d] = slots<3>();
     const double pushed = corrected_ ? 1 / h : 0;
+    const Combination end = q + h * v + d + h / 2 * z, end_rate = v + pushed * d + z;
+    const Combination mean_rate = halfway(v, end_rate);
     Stage stage;
-    stage.matrix = {1 / h, 0.5, h / 4};
-    stage.history = {{0, 0, -1}, {0, -1, -h / 2}, {0, -0.5 * pushed, -0.5}};
+    stage.matrix = M / h + 0.5 * C + h / 4 * K;
+    stage.history = -(C * (v + 0.5 * pushed * d)) - K * (q + h / 2 * v + 0.5 * d);
     stage.load = both_ends();
-    const Combination end{.slots = {1, h, 1}, .z = h / 2}, end_rate{.slots = {0, 1, pushed}, .z = 1};
-    const Combination mean_rate = halfway(end_rate, 1);
-    stage.impact = {.value = end, .bound = {{1, 1}}};
-    read_mean_force(stage, end, end_rate, mean_rate, {.slots = {1, h / 2}}, middle());
+    stage.impact = {.value = end, .bound = at(1)};
+    read_mean_force(stage, end, end_rate, mean_rate, q + h / 2 * v, middle());
     conserve_mean_force(stage, end, mean_rate, middle());
     stage.update = {end, end_rate, {}};
     return stage;
@@ -65,12 +69,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "contact-stabilised-newmark",
        .summary = "Newmark (¼, ½) from a predictor that is first brought between the stops",
-       .text =
-           "The predictor q + h v is brought between the stops before the step is made: forces at contact are clean "
-           "and contact never gives energy. The original leaves velocities alone, so that a node that rests on a stop "
-           "keeps the velocity of its arrival for as long as it stays: a single mass never leaves its stop, and on a "
-           "mesh the motion as the step shrinks is not that of the mesh but O(element length) away. `corrected` takes "
-           "the projection into the velocity and has no such defect.",
+       .text = R"(The predictor q + h v is brought between the stops before the step is made: forces at contact are
+          clean and contact never gives energy. The original leaves velocities alone, so that a node that rests on a
+          stop keeps the velocity of its arrival for as long as it stays: a single mass never leaves its stop, and
+          on a mesh the motion as the step shrinks is not that of the mesh but O(element length) away. `corrected`
+          takes the projection into the velocity and has no such defect.)",
        .source = "Deuflhard, Krause and Ertel (2008), A contact-stabilized Newmark method for dynamical contact "
                  "problems; corrected: this program",
        .parameters = {word_parameter("velocity", {"original", "corrected"}, "original",

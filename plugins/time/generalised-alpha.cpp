@@ -18,26 +18,22 @@ class GeneralisedAlpha final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
     StepPlan plan = method_.plan(h, facts);
     method_.add_filtered_energy(plan, h);
     Stage& step = plan.stages[0];
     // Asked where the weighted forces stand, without the acceleration: that of the end would be fed back undamped.
-    const double at = method_.now();
-    step.at(Evaluation::explicit_start) = {{.slots = {1, at * h}}, {{at, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    const double now = method_.now();
+    step.at(Evaluation::explicit_start) = {q + now * h * v, at(now), v, at(0), {1}};
     if (method_.force != method_.mass) return plan;
-    const Combination position{.slots = {1}}, rate{.slots = {0, 1}};
-    plan.start[0].at(Evaluation::conserving) = {position, {{0, 1}}, rate, {{0, 1}}, {1}, position, {{0, 1}}};
-    const Combination mean_rate{.slots = {0, 1, h / 4}, .z = h / 4};
-    step.at(Evaluation::conserving) = {.displacement = method_.end(h),
-                                       .bound = {{1, 1}},
-                                       .rate = mean_rate,
-                                       .rate_bound = {{0.5, 1}},
-                                       .before = Combination{.slots = {1}},
-                                       .before_bound = {{0, 1}}};
+    plan.start[0].at(Evaluation::conserving) = {q, at(0), v, at(0), {1}, q, at(0)};
+    const Combination mean_rate = v + h / 4 * a + h / 4 * z;
+    step.at(Evaluation::conserving) = {method_.end(h), at(1), mean_rate, at(0.5), {1}, q, at(0)};
     step.work = {.displacement = method_.increment(h),
                  .rate = mean_rate,
-                 .load = {{0, 0.5}, {1, 0.5}},
-                 .support = {{1, 1}, {0, -1}}};
+                 .load = 0.5 * at(0) + 0.5 * at(1),
+                 .support = at(1) - at(0)};
     plan.facts.contact_never_gains = !method_.weighted_contact;
     return plan;
   }
@@ -50,12 +46,12 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "generalised-alpha",
        .summary = "Chung–Hulbert α: second order, damping of high frequencies as asked, least of low ones",
-       .text =
-           "Newmark's updates, inertia and forces weighted over both ends of the step so that the highest frequencies "
-           "keep ρ∞ of their amplitude per step: of second order, unconditionally stable. Stops are at position level. "
-           "A massed point keeps none to 1 + ρ∞(1 − ρ∞) of its speed, at ρ∞ = 1 one half on average and never more "
-           "than all of it; with contact among the weighted forces (contact weighted) up to 2.9 times. On a singular "
-           "mass it is of second order through contact, with a clean force; ρ∞ = 1 leaves the root −1 on its kernel.",
+       .text = R"(Newmark's updates, inertia and forces weighted over both ends of the step so that the highest
+          frequencies keep ρ∞ of their amplitude per step: of second order, unconditionally stable. Stops are at
+          position level. A massed point keeps none to 1 + ρ∞(1 − ρ∞) of its speed, at ρ∞ = 1 one half on average
+          and never more than all of it; with contact among the weighted forces (contact weighted) up to 2.9 times.
+          On a singular mass it is of second order through contact, with a clean force; ρ∞ = 1 leaves the root −1 on
+          its kernel.)",
        .source = "Chung and Hulbert (1993), A time integration algorithm for structural dynamics with improved "
                  "numerical dissipation: the generalized-α method",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},

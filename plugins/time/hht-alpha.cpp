@@ -23,39 +23,39 @@ class HilberHughesTaylor final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
+    using namespace plan_algebra;
+    const auto [q, v, a, d, u] = slots<5>();
     StepPlan plan = method_.plan(h, facts);
     Stage& step = plan.stages[0];
     balance(step, h);
     if (a_ == 0) return plan;
-    plan.start[0].load = {{0, method_.now()}, {-1, a_}};
-    plan.energy.push_back({EnergyMatrix::M, 0.125 * a_ * a_ * h * h, {0, 0, 1}});
-    plan.energy.push_back({EnergyMatrix::K, 0.5 * a_ * (0.5 - a_), {0, 0, 0, 1}});
+    plan.start[0].load = method_.now() * at(0) + a_ * at(-1);
+    plan.energy.push_back(square(EnergyMatrix::M, 0.125 * a_ * a_ * h * h, a));
+    plan.energy.push_back(square(EnergyMatrix::K, 0.5 * a_ * (0.5 - a_), d));
     AlphaMethod::add_slot(plan, "d", {0, 0}, method_.increment(h));
     if (facts.damped) {
-      AlphaMethod::add_slot(plan, "u", {0, 1}, {.slots = {0, 1}});
+      AlphaMethod::add_slot(plan, "u", {0, 1}, v);
       // Without the slot the share of the step before is counted at v_n: only damping sees it.
-      std::vector<double>& r = step.work->rate.slots;
-      const double before = (0.5 - a_) * a_;
-      r[1] -= before;
-      r.resize(5, 0);
-      r[4] = before;
+      step.work->rate = step.work->rate + (0.5 - a_) * a_ * (u - v);
     }
     return plan;
   }
 
  private:
   void balance(Stage& stage, double h) const {
+    using namespace plan_algebra;
+    const auto [q, v, a, d] = slots<4>();
     const double now = 0.5 + a_, before = 0.5 - a_, f = method_.now();
+    const Combination rate =
+        (now + before) * v + now * f * (method_.ahead_rate(h) - v) + now * f * method_.gamma * h * z;
     stage.work = {.displacement = method_.increment(h),
-                  .rate = {.slots = {0, now + before, now * f * method_.lag(h)}, .z = now * f * method_.gamma * h},
-                  .load = {{0, now * a_ + before * f}, {1, now * f}},
+                  .rate = rate,
+                  .load = (now * a_ + before * f) * at(0) + now * f * at(1),
                   .effort = {now, before}};
     if (a_ == 0) return;
-    stage.work->load.push_back({-1, before * a_});
-    Combination change = method_.increment(h);
-    change.slots.push_back(-1);
-    stage.loss = {{EnergyMatrix::M, 0.25 * a_ * a_ * a_ * h * h, {.slots = {0, 0, -1}, .z = 1}},
-                  {EnergyMatrix::K, 0.5 * a_ * (0.5 - a_), change}};
+    stage.work->load = stage.work->load + before * a_ * at(-1);
+    stage.loss = {{EnergyMatrix::M, 0.25 * a_ * a_ * a_ * h * h, z - a},
+                  {EnergyMatrix::K, 0.5 * a_ * (0.5 - a_), method_.increment(h) - d}};
   }
 
   double a_;
@@ -66,12 +66,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "hht-alpha",
        .summary = "Hilber–Hughes–Taylor α: Newmark that damps high frequencies at second order",
-       .text =
-           "Newmark's updates with γ = ½ − α, β = (1−α)²/4, and elastic, viscous and applied forces weighted 1+α and "
-           "−α over both ends of the step: of second order, unconditionally stable, the highest frequencies shrink by "
-           "(1+α)/(1−α) per step. α = 0 is Newmark (¼, ½). Stops are at position level, and a massed point is thrown "
-           "back faster than it came (up to 2.3 times at α = −0.1): energy grows at impacts. On a singular mass the "
-           "force is clean, and the damping takes the sawtooth that Newmark leaves there.",
+       .text = R"(Newmark's updates with γ = ½ − α, β = (1−α)²/4, and elastic, viscous and applied forces weighted
+          1+α and −α over both ends of the step: of second order, unconditionally stable, the highest frequencies
+          shrink by (1+α)/(1−α) per step. α = 0 is Newmark (¼, ½). Stops are at position level, and a massed point
+          is thrown back faster than it came (up to 2.3 times at α = −0.1): energy grows at impacts. On a singular
+          mass the force is clean, and the damping takes the sawtooth that Newmark leaves there.)",
        .source = "Hilber, Hughes and Taylor (1977), Improved numerical dissipation for time integration algorithms in "
                  "structural dynamics; Hughes (1987), The Finite Element Method, section 9.3",
        .parameters = {real_parameter("alpha", "1", -0.1, {.low = -1.0 / 3, .high = 0}, "α; 0 does not damp"),

@@ -10,14 +10,16 @@ namespace ricochet {
 /// On the kernel of a singular mass a₀ is not defined: `stiffening` K is added to M there, an O(h²) change of a₀ on the
 /// regular modes.
 inline Stage initial_acceleration(double d, double bound, double stiffening) {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
   Stage stage;
-  stage.matrix = {1, 0, stiffening};
-  stage.history = {{0, 0, -1}, {0, -1, 0}};
-  stage.load = {{0, 1}};
-  stage.impact = {.value = {.slots = {1, d}, .z = 0.5 * d * d}, .bound = {{bound, 1}}};
+  stage.matrix = M + stiffening * K;
+  stage.history = -(K * q) - C * v;
+  stage.load = at(0);
+  stage.impact = {.value = q + d * v + 0.5 * d * d * z, .bound = at(bound)};
   for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-    stage.at(evaluation) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-  stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+    stage.at(evaluation) = {q, at(0), v, at(0), {1}};
+  stage.update = {q, v, z};
   return stage;
 }
 

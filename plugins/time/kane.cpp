@@ -45,16 +45,17 @@ class Kane final : public TimeScheme {
       plan.stages = {mean_step(h, both_ends())};
       return plan;
     }
+    using namespace plan_algebra;
     plan.slots.emplace_back("a");
     plan.initial.push_back({0, 0});
-    plan.start = {structure_acceleration(0, 3)};
+    plan.start = {structure_acceleration<3>(0)};
     plan.facts.needs_regular_mass = true;
     if (!jumps) {
-      plan.stages = {step(h), structure_acceleration(1, 3)};
+      plan.stages = {step(h), structure_acceleration<3>(1)};
       return plan;
     }
     plan.stages = {jumping_step(h)};
-    plan.energy.push_back({EnergyMatrix::M, 0.5 * shift() * h * h, {0, 0, 1}});
+    plan.energy.push_back(square(EnergyMatrix::M, 0.5 * shift() * h * h, slots<3>()[2]));
     plan.facts.contact_never_gains = energy_ && known_balance() && !facts.damped;
     if (shift() < 0) plan.facts.stability_limit = 1 / std::sqrt(-shift());
     return plan;
@@ -66,31 +67,36 @@ class Kane final : public TimeScheme {
   bool known_balance() const { return newmark_.gamma == 0.5 || shift() >= 0; }
 
   Stage step(double h) const {
-    const double gamma = newmark_.gamma, lag = newmark_.lag(h), curve = newmark_.curve(h);
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
+    const double gamma = newmark_.gamma;
+    const Combination ahead = newmark_.ahead(h), ahead_rate = newmark_.ahead_rate(h);
+    const Combination end = ahead + z, end_rate = ahead_rate + 2 / h * z, mean_rate = halfway(v, end_rate);
     Stage stage;
-    stage.matrix = {2 / (h * h), 2 * gamma / h, gamma};
-    stage.history = {{0, 0, -gamma}, {0, -gamma, -gamma * h}, {0, -gamma * lag, -gamma * curve}};
-    stage.load = {{1, gamma}};
-    const Combination end{.slots = {1, h, curve}, .z = 1}, end_rate{.slots = {0, 1, lag}, .z = 2 / h};
-    stage.impact = {.value = end, .bound = {{1, 1}}};
-    read_mean_force(stage, end, end_rate, halfway(end_rate, 1), {.slots = {1, h / 2}});
-    conserve_mean_force(stage, end, halfway(end_rate, 1));
-    balance_mean_force(stage, end, halfway(end_rate, 1));
-    stage.work->rate = {.slots = {0, 1, gamma * lag}, .z = 2 * gamma / h};
-    stage.work->load = {{0, 1 - gamma}, {1, gamma}};
+    stage.matrix = 2 / (h * h) * M + 2 * gamma / h * C + gamma * K;
+    stage.history = -(gamma * C * ahead_rate) - gamma * K * ahead;
+    stage.load = gamma * at(1);
+    stage.impact = {.value = end, .bound = at(1)};
+    read_mean_force(stage, end, end_rate, mean_rate, q + h / 2 * v);
+    conserve_mean_force(stage, end, mean_rate);
+    balance_mean_force(stage, end, mean_rate);
+    stage.work->rate = v + gamma * (ahead_rate - v) + 2 * gamma / h * z;
+    stage.work->load = (1 - gamma) * at(0) + gamma * at(1);
     stage.loss = {{EnergyMatrix::K, gamma - 0.5, stage.work->displacement}};
-    stage.update = {end, end_rate, {.slots = {0, 0, 1}}};
+    stage.update = {end, end_rate, a};
     return stage;
   }
 
   Stage jumping_step(double h) const {
-    Stage stage = newmark_.jumping_step(h, {1 / h, 0, energy_ ? shift() * h : 0.0});
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    Stage stage = newmark_.jumping_step(h, M / h + (energy_ ? shift() * h : 0.0) * K);
     const Combination end = stage.update[0];
     // Laws that damp read Δq/h, which an effort moves as it moves Δq.
-    const Combination rate{.slots = {0, 1, newmark_.curve(h) / h}, .z = newmark_.beta * h, .w = 0.5};
-    stage.impact = {.value = end, .bound = {{1, 1}}, .effort = {0}};
-    read_mean_force(stage, end, rate, rate, {.slots = {1, h / 2}});
-    stage.at(Evaluation::implicit_end)->rate_bound = {{0, 0.5}, {1, 0.5}};
+    const Combination rate = (newmark_.ahead(h) - q) / h + newmark_.beta * h * z + 0.5 * w;
+    stage.impact = {.value = end, .bound = at(1), .effort = {0}};
+    read_mean_force(stage, end, rate, rate, q + h / 2 * v);
+    stage.at(Evaluation::implicit_end)->rate_bound = both_ends();
     if (known_balance()) conserve_mean_force(stage, end, rate);
     for (auto& compliance : stage.compliance)
       if (compliance) compliance->effort = {0};
@@ -105,12 +111,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "kane",
        .summary = "Newmark whose contact is implicit in position and left out of the acceleration",
-       .text =
-           "Newmark's updates; the contact force is a mean over the step that keeps q_{n+1} between the stops, and the "
-           "acceleration that the next step starts from is that of the structure alone. A massed point keeps between "
-           "none and all of its speed, one half on average. Contact never gives energy for β = γ/2, nor, undamped and "
-           "with impulse energy, for γ = ½ or β > γ/2. With (¼, ½) it is the mid-point rule with loads of both ends; "
-           "γ = ½ is of second order whatever β, above it damps, at first order; β < γ/2 limits the step.",
+       .text = R"(Newmark's updates; the contact force is a mean over the step that keeps q_{n+1} between the stops,
+          and the acceleration that the next step starts from is that of the structure alone. A massed point keeps
+          between none and all of its speed, one half on average. Contact never gives energy for β = γ/2, nor,
+          undamped and with impulse energy, for γ = ½ or β > γ/2. With (¼, ½) it is the mid-point rule with loads of
+          both ends; γ = ½ is of second order whatever β, above it damps, at first order; β < γ/2 limits the step.)",
        .source = "Kane, Repetto, Ortiz and Marsden (1999), Finite element analysis of nonsmooth contact; Kane, "
                  "Marsden, Ortiz and West (2000), Variational integrators and the Newmark algorithm",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),

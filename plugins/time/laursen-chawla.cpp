@@ -21,9 +21,11 @@ class LaursenChawla final : public TimeScheme {
       return Refusal{
           "a contact point without mass (singular mass) has no velocity that persistency could act on, and the "
           "mid-point rule leaves the root −1 there: use a regular mass, or midpoint"};
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     StepPlan plan = mean_step_plan();
     Stage step = mean_step(h, middle());
-    step.impact = {step.update[1], {{1, 1}}, VelocityGate{{.slots = {1}}, {{0, 1}}, {.slots = {0, 1}}, {{0, 1}}, 1}};
+    step.impact = {v + z, at(1), VelocityGate{q, at(0), v, at(0), 1}};
     plan.stages = {step};
     plan.facts.needs_regular_mass = true;
     plan.facts.contact_never_gains = true;
@@ -35,10 +37,10 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "laursen-chawla",
        .summary = "mid-point rule with contact that conserves energy: no work over a step",
-       .text = "The mid-point rule; a point that has passed its stop may be pushed only where it does not move against "
-               "the stop over the step, p (g_{n+1} − g_n) = 0. So rigid contact does no work and the energy of an "
-               "undamped structure is kept to round-off; the penetration with which a contact begins stays until it "
-               "is over. It is Newton's law with e = 1 asked at the beginning of the step.",
+       .text = R"(The mid-point rule; a point that has passed its stop may be pushed only where it does not move
+          against the stop over the step, p (g_{n+1} − g_n) = 0. So rigid contact does no work and the energy of an
+          undamped structure is kept to round-off; the penetration with which a contact begins stays until it is
+          over. It is Newton's law with e = 1 asked at the beginning of the step.)",
        .source = "Laursen and Chawla (1997), Design of energy conserving algorithms for frictionless dynamic contact "
                  "problems",
        .parameters = {}},

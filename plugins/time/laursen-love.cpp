@@ -33,12 +33,15 @@ class LaursenLove final : public TimeScheme {
 
  private:
   static Stage velocity_update(double h) {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    const Combination way = h * v + h / 2 * z;
+    const Levels moved = at(1.5) - at(0.5);
     Stage stage;
-    stage.matrix = {1 / h, 0, 0};
-    stage.work = {
-        .displacement = {.slots = {0, h}, .z = h / 2}, .rate = {}, .load = {}, .support = {{1.5, 1}, {0.5, -1}}};
-    stage.impact = {.value = stage.work->displacement, .bound = stage.work->support, .restores = 1};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}, .z = 1}};
+    stage.matrix = M / h;
+    stage.work = {.displacement = way, .rate = {}, .load = {}, .support = moved};
+    stage.impact = {.value = way, .bound = moved, .restores = 1};
+    stage.update = {q, v + z};
     return stage;
   }
 };
@@ -47,13 +50,12 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "laursen-love",
        .summary = "mid-point rule, stops at position level, then an impulse that gives contact's work back",
-       .text =
-           "The mid-point rule with the positions of its end between the stops; then the velocity alone is changed at "
-           "the points that were pushed, until the stops have done no work over the step. So rigid contact conserves "
-           "the energy of an undamped structure to round-off and nothing penetrates at the end of a step; a massed "
-           "point leaves as fast as it came. Nothing is dissipated, hence contact forces chatter: read impulses. A "
-           "step that begins beyond a stop (a law that lets points pass, a stop that was set anew) has no such "
-           "impulse and ends the march. Compliant laws are those of midpoint: nothing is then given back.",
+       .text = R"(The mid-point rule with the positions of its end between the stops; then the velocity alone is
+          changed at the points that were pushed, until the stops have done no work over the step. So rigid contact
+          conserves the energy of an undamped structure to round-off and nothing penetrates at the end of a step; a
+          massed point leaves as fast as it came. Nothing is dissipated, hence contact forces chatter: read
+          impulses. A step that begins beyond a stop (a law that lets points pass, a stop that was set anew) has no
+          such impulse and ends the march. Compliant laws are those of midpoint: nothing is then given back.)",
        .source = "Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric "
                  "admissibility within the conserving framework",
        .parameters = {}},

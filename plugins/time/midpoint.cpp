@@ -20,7 +20,7 @@ class Midpoint final : public TimeScheme {
   PlanOrRefusal plan(double h, const ProblemFacts&) const override {
     StepPlan plan = mean_step_plan();
     Stage step = mean_step(h, middle());
-    if (middle_) step.impact = {.value = halfway(step.update[0], 0), .bound = both_ends()};
+    if (middle_) step.impact = {.value = halfway(plan_algebra::slots<1>()[0], step.update[0]), .bound = both_ends()};
     plan.stages = {step};
     plan.facts.contact_never_gains = !middle_;
     return plan;
@@ -34,12 +34,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "midpoint",
        .summary = "mid-point rule, stops at position level",
-       .text =
-           "Forces at mid-step, positions between the stops at its end: of second order, unconditionally stable, and "
-           "contact never gives energy; a massed point keeps between none and all of its speed, one half on average. "
-           "With a law that takes the discrete gradient of its potential (evaluation conserving) the sum of the "
-           "energies is kept to round-off. With the constraint at the middle the rebound is up to three times too "
-           "fast: it is here to show that. On the kernel of a singular undamped mass the root −1 stays.",
+       .text = R"(Forces at mid-step, positions between the stops at its end: of second order, unconditionally
+          stable, and contact never gives energy; a massed point keeps between none and all of its speed, one half
+          on average. With a law that takes the discrete gradient of its potential (evaluation conserving) the sum
+          of the energies is kept to round-off. With the constraint at the middle the rebound is up to three times
+          too fast: it is here to show that. On the kernel of a singular undamped mass the root −1 stays.)",
        .source = "Simo and Tarnow (1992), The discrete energy–momentum method; Armero and Petocz (1998) for contact "
                  "that conserves; Kane, Repetto, Ortiz and Marsden (1999) for the constraint at the end",
        .parameters = {word_parameter("constraint", {"end", "middle"}, "end",

@@ -30,30 +30,27 @@ class MoreauJean final : public TimeScheme {
           "theta = 0.5 leaves the root −1 on the kernel of a singular mass, with or without damping: the velocity of a "
           "contact point changes sign at every step and the approach test never holds; use theta > 0.5 or a regular "
           "mass"};
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    const Combination next_v = v + z, next = q + h * v + h * theta_ * z;
+    const Levels mean = (1 - theta_) * at(0) + theta_ * at(1);
     StepPlan plan;
     plan.slots = {"q", "v"};
     plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = v;
     Stage stage;
-    const Levels load{{0, 1 - theta_}, {1, theta_}};
-    stage.matrix = {1 / h, theta_, h * theta_ * theta_};
-    stage.history = {{0, 0, -1}, {0, -1, -theta_ * h}};
-    stage.load = load;
-    stage.impact = {{.slots = {0, 1}, .z = 1},
-                    {{1, 1}},
-                    VelocityGate{{.slots = {1, h / 2}}, {{0.5, 1}}, {.slots = {0, 1}}, {{0, 1}}, e_}};
-    const Combination end{.slots = {1, h}, .z = h * theta_};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {end, {{1, 1}}, {.slots = {0, 1}, .z = 1}, {{1, 1}}, {theta_, 1 - theta_}};
-    stage.at(Evaluation::explicit_start) = {
-        {.slots = {1, theta_ * h}}, {{theta_, 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
-    stage.update = {end, {.slots = {0, 1}, .z = 1}};
-    const Combination increment{.slots = {0, h}, .z = h * theta_};
-    stage.work = {increment, {.slots = {0, 1}, .z = theta_}, load, {1}, {{1, 1}, {0, -1}}};
-    if (theta_ != 0.5)
-      stage.loss = {{EnergyMatrix::M, theta_ - 0.5, {.slots = {}, .z = 1}}, {EnergyMatrix::K, theta_ - 0.5, increment}};
+    stage.matrix = M / h + theta_ * C + h * theta_ * theta_ * K;
+    stage.history = -(C * v) - K * (q + theta_ * h * v);
+    stage.load = mean;
+    stage.impact = {next_v, at(1), VelocityGate{q + h / 2 * v, at(0.5), v, at(0), e_}};
+    stage.at(Evaluation::implicit_end) = {next, at(1), next_v, at(1), {1}};
+    stage.at(Evaluation::averaged) = {next, at(1), next_v, at(1), {theta_, 1 - theta_}};
+    stage.at(Evaluation::explicit_start) = {q + theta_ * h * v, at(theta_), v, at(0), {1}};
+    stage.update = {next, next_v};
+    stage.work = {next - q, v + theta_ * z, mean, {1}, at(1) - at(0)};
+    if (theta_ != 0.5) stage.loss = {{EnergyMatrix::M, theta_ - 0.5, z}, {EnergyMatrix::K, theta_ - 0.5, next - q}};
     plan.stages = {stage};
-    plan.energy = {{QuadraticTerm::Matrix::M, 0.5, {0, 1}}, {QuadraticTerm::Matrix::K, 0.5, {1}}};
+    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
     plan.facts.order = theta_ == 0.5 ? 2 : 1;
     // Above θ = ½ a step that rests on its stop keeps less: not known.
     if (theta_ == 0.5) plan.facts.contact_order = 1;
@@ -71,14 +68,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "moreau-jean",
        .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
-       .text =
-           "The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and Newton's "
-           "restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and that "
-           "does not leave its stop; one that leaves is not thrown back faster than it went. So contact never gives "
-           "energy (θ = ½, any e "
-           "in "
-           "[0, 1]). Positions may pass the stop by O(h). Contact points without mass have no velocity to restitute: "
-           "refused for e > 0, and for θ = ½.",
+       .text = R"(The time-stepping of nonsmooth contact dynamics: velocities jump, impulses act over the step, and
+          Newton's restitution v⁺ = −e v⁻ holds exactly for each point that the gap test q + (h/2)v finds closed and
+          that does not leave its stop; one that leaves is not thrown back faster than it went. So contact never
+          gives energy (θ = ½, any e in [0, 1]). Positions may pass the stop by O(h). Contact points without mass
+          have no velocity to restitute: refused for e > 0, and for θ = ½.)",
        .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and "
                  "Brogliato (2008), ch. 10",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),

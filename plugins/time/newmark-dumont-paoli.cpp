@@ -8,16 +8,13 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "newmark-dumont-paoli",
        .summary = "three-level β scheme with the constraint on (q_{n+1} + e q_{n−1})/(1+e)",
-       .text =
-           "The β-Newmark scheme (γ = ½) written on three levels, its contact effort at the middle level. With e = 0 "
-           "the "
-           "scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the combination "
-           "(q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the kernel of a "
-           "singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α > 0). No "
-           "q₋₁ exists that contact could "
-           "lean on: in the first step e = 0 holds q₁ between the stops, and with e > 0 a point whose free q₁ passes "
-           "its "
-           "stop rebounds with (q₁ − q₀)/h = −e v₀. A start at a stop so keeps order 1, as an impact on the way does.",
+       .text = R"(The β-Newmark scheme (γ = ½) written on three levels, its contact effort at the middle level. With
+          e = 0 the scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the
+          combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the
+          kernel of a singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α
+          > 0). No q₋₁ exists that contact could lean on: in the first step e = 0 holds q₁ between the stops, and
+          with e > 0 a point whose free q₁ passes its stop rebounds with (q₁ − q₀)/h = −e v₀. A start at a stop so
+          keeps order 1, as an impact on the way does.)",
        .source = "Dumont and Paoli (2006), Vibrations of a beam between obstacles: convergence of a fully discretized "
                  "approximation; Paoli and Schatzman (2002) for the combination that carries the restitution",
        .parameters =

@@ -27,8 +27,9 @@ class Newmark final : public TimeScheme {
           fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
                       "use beta ≥ gamma/2",
                       method_.beta, method_.gamma / 2)};
+    using namespace plan_algebra;
     StepPlan plan = method_.plan(h, facts);
-    plan.energy.push_back({EnergyMatrix::M, 0.5 * shift() * h * h, {0, 0, 1}});
+    plan.energy.push_back(square(EnergyMatrix::M, 0.5 * shift() * h * h, slots<3>()[2]));
     // Explicit: no effort moves q_{n+1}, which then is no measure of impact.
     if (method_.beta == 0) plan.stages[0].impact.reset();
     // With β < γ/2 what γ > ½ takes is no sum of squares: the balance is not known, the energy falls all the same.
@@ -43,14 +44,16 @@ class Newmark final : public TimeScheme {
   double shift() const { return method_.beta - method_.gamma / 2; }
 
   void balance(Stage& stage, double h) const {
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
     const double gamma = method_.gamma;
     stage.work = {method_.increment(h),
-                  {.slots = {0, 1, gamma * method_.lag(h)}, .z = gamma * gamma * h},
-                  {{0, 1 - gamma}, {1, gamma}},
+                  v + gamma * (method_.ahead_rate(h) - v) + gamma * gamma * h * z,
+                  (1 - gamma) * at(0) + gamma * at(1),
                   {gamma, 1 - gamma}};
     if (gamma == 0.5) return;
     stage.loss = {{EnergyMatrix::K, gamma - 0.5, method_.increment(h)},
-                  {EnergyMatrix::M, (gamma - 0.5) * shift() * h * h, {.slots = {0, 0, -1}, .z = 1}}};
+                  {EnergyMatrix::M, (gamma - 0.5) * shift() * h * h, z - a}};
   }
 
   AlphaMethod method_;
@@ -60,13 +63,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "newmark",
        .summary = "Newmark (β, γ) with the multiplier inside the acceleration, stops at position level",
-       .text =
-           "The method of structural dynamics: equilibrium and non-penetration at the end of the step, q_{n+1} between "
-           "the stops. The effort acts through the acceleration, hence on three levels with weights (β, ½+γ−2β, "
-           "½−γ+β): a "
-           "rigid impact leaves oscillating accelerations, and with β = ¼, γ = ½ the energy grows, the more the finer "
-           "the "
-           "step. It knows no restitution coefficient. Implicit and averaged penalties coincide.",
+       .text = R"(The method of structural dynamics: equilibrium and non-penetration at the end of the step, q_{n+1}
+          between the stops. The effort acts through the acceleration, hence on three levels with weights (β,
+          ½+γ−2β, ½−γ+β): a rigid impact leaves oscillating accelerations, and with β = ¼, γ = ½ the energy grows,
+          the more the finer the step. It knows no restitution coefficient. Implicit and averaged penalties
+          coincide.)",
        .source = "Newmark (1959); Hughes (1987), The Finite Element Method, section 9.1; energy growth at contact: "
                  "Laursen and Chawla (1997)",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),

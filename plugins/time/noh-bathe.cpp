@@ -31,16 +31,17 @@ class NohBathe final : public TimeScheme {
       return Refusal{
           "an acceleration needs the inverse of the mass, which is singular here: use a lumped mass, or an "
           "implicit scheme"};
+    using namespace plan_algebra;
+    const auto [q, v, a, b] = slots<4>();
     const double c = p_ * h, d = (1 - p_) * h;
-    const Combination first_rate{.slots = {0, 1, c / 2}, .z = c / 2};
-    const Combination second_rate{.slots = {0, 1, d * (0.5 + q1_), d * q0_}, .z = d * q2_};
     StepPlan plan;
     plan.slots = {"q", "v", "a", "b"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = v;
     plan.start = {initial_acceleration(c, p_, 0)};
-    plan.start.front().update.push_back({.slots = {0, 0, 0, 1}});
-    plan.stages = {substep(c, d, p_, 1, first_rate), substep(d, c, 1, 1 + p_, second_rate)};
+    plan.start.front().update.push_back(b);
+    plan.stages = {substep(c, d, p_, 1, v + c / 2 * (a + z)),
+                   substep(d, c, 1, 1 + p_, v + d * (0.5 + q1_) * a + d * q0_ * b + d * q2_ * z)};
     plan.facts.order = 2;
     plan.facts.needs_regular_mass = true;
     plan.facts.stability_limit = limit();
@@ -50,23 +51,19 @@ class NohBathe final : public TimeScheme {
  private:
   // To the instant `at`, `step` later; what the effort moves is the position of the instant `next`, `ahead` later
   // still.
-  static Stage substep(double step, double ahead, double at, double next, const Combination& rate) {
-    const Combination position{.slots = {1, step, step * step / 2}};
-    const Combination known_rate{.slots = {0, 1, step}};
-    Combination measure = position;
-    measure.slots.resize(4, 0);
-    for (std::size_t j = 0; j < rate.slots.size(); ++j) measure.slots[j] += ahead * rate.slots[j];
-    measure.z = ahead * rate.z + ahead * ahead / 2;
+  static Stage substep(double step, double ahead, double now, double next, const Combination& rate) {
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
+    const Combination position = q + step * v + step * step / 2 * a, known_rate = v + step * a;
     Stage stage;
-    stage.matrix = {1, 0, 0};
-    stage.history = {{0, 0, -1}, {0, -1, -step}, {0, -step, -step * step / 2}};
-    stage.load = {{at, 1}};
-    stage.impact = {.value = measure, .bound = {{next, 1}}};
+    stage.matrix = M;
+    stage.history = -(C * known_rate) - K * position;
+    stage.load = at(now);
+    stage.impact = {.value = position + ahead * rate + ahead * ahead / 2 * z, .bound = at(next)};
     // The position that a spring is asked at is known before the solve, as that of the elastic force.
-    stage.at(Evaluation::implicit_end) = {position, {{at, 1}}, rate, {{at, 1}}, {1}};
-    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
-    stage.at(Evaluation::explicit_start) = {position, {{at, 1}}, known_rate, {{at, 1}}, {1}};
-    stage.update = {position, rate, {.slots = {}, .z = 1}, {.slots = {0, 0, 1}}};
+    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {position, at(now), rate, at(now), {1}};
+    stage.at(Evaluation::explicit_start) = {position, at(now), known_rate, at(now), {1}};
+    stage.update = {position, rate, z, a};
     return stage;
   }
 
@@ -101,11 +98,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "noh-bathe",
        .summary = "explicit, two sub-steps: second order, stable to about hω = 3.7, damps what is near the limit",
-       .text = "Two explicit sub-steps, each one solve with the mass matrix alone, so that a lumped mass makes it "
-               "explicit. Frequencies near the limit are damped, low ones hardly. The limit of a step is nearly twice "
-               "that of central differences, at two solves. Each effort keeps the next position that is known without "
-               "another solve between the stops: a massed point keeps a few hundredths of its speed. That contact rule "
-               "is this program's; the authors give none.",
+       .text = R"(Two explicit sub-steps, each one solve with the mass matrix alone, so that a lumped mass makes it
+          explicit. Frequencies near the limit are damped, low ones hardly. The limit of a step is nearly twice that
+          of central differences, at two solves. Each effort keeps the next position that is known without another
+          solve between the stops: a massed point keeps a few hundredths of its speed. That contact rule is this
+          program's; the authors give none.)",
        .source = "Noh and Bathe (2013), An explicit time integration scheme for the analysis of wave propagations",
        .parameters = {real_parameter("split", "1", 0.54, {.low = 0.5, .high = 1, .low_open = true, .high_open = true},
                                      "p, where the first sub-step ends, in steps")}},

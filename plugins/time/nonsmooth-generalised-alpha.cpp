@@ -54,60 +54,68 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
   }
 
  private:
-  ImpactMeasure impact(const Combination& velocity, double h, double effort) const {
-    Combination ahead{.slots = {1, h, 0.5 * h * h}};
-    if (!half_) ahead.slots = {1, h, 0, 0.5 * h * h};
-    return {velocity, {{1, 1}}, VelocityGate{ahead, {{1, 1}}, {.slots = {0, 1}}, {{0, 1}}, e_}, {effort}};
+  ImpactMeasure impact(const Combination& next_v, double h, double effort) const {
+    using namespace plan_algebra;
+    const auto [q, v, a, b] = slots<4>();
+    const Combination ahead = q + h * v + 0.5 * h * h * (half_ ? a : b);
+    return {next_v, at(1), VelocityGate{ahead, at(1), v, at(0), e_}, {effort}};
   }
 
   void jump_by_impulse(StepPlan& plan, double h) const {
-    Stage step = method_.jumping_step(h, {1 / h, 0, 0});
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    Stage step = method_.jumping_step(h, M / h);
     step.impact = impact(step.update[1], h, 0);
     // A spring is one of the forces, as in generalised-alpha: no w.
-    const Combination ahead{.slots = {1, method_.now() * h}};
-    step.at(Evaluation::explicit_start) = {ahead, {{method_.now(), 1}}, {.slots = {0, 1}}, {{0, 1}}, {1}};
+    step.at(Evaluation::explicit_start) = {q + method_.now() * h * v, at(method_.now()), v, at(0), {1}};
     for (auto& compliance : step.compliance)
       if (compliance) compliance->impulse = 0;
     plan.stages = {step};
   }
 
+  // Slots q, v, b the true acceleration, a its filter.
   void jump_coupled(StepPlan& plan, double h) const {
+    using namespace plan_algebra;
+    const auto [q, v, b, a] = slots<4>();
     const double m = 1 - method_.mass, f = method_.now(), beta = method_.beta, gamma = method_.gamma;
     const double kept = method_.mass / m, past = method_.force / m, mu = gamma * f / m, r = beta * h / gamma;
-    const Combination v{.slots = {0, 1, h * gamma * past, h * (1 - gamma - gamma * kept)}, .z = 1};
-    const Combination q{.slots = {1, h, h * h * beta * past, h * h * (0.5 - beta - beta * kept)}, .z = r};
+    const Combination ahead_v = v + h * gamma * past * b + h * (1 - gamma - gamma * kept) * a;
+    const Combination ahead = q + h * v + h * h * beta * past * b + h * h * (0.5 - beta - beta * kept) * a;
+    const Combination next_v = ahead_v + z, next = ahead + r * z;
     plan.slots = {"q", "v", "b", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.start = {structure_acceleration(0, 4)};
-    plan.start[0].update[3] = {.slots = {}, .z = 1};
+    plan.start = {structure_acceleration<4>(0)};
+    plan.start[0].update[3] = z;
     Stage stage;
-    stage.matrix = {1 / h, mu, mu * r};
-    for (std::size_t j = 0; j < 4; ++j) stage.history.push_back({0, -mu * (j ? v.slots[j] : 0), -mu * q.slots[j]});
-    stage.load = {{1, mu}};
-    stage.update = {q, v, {.slots = {0, 0, 1}}, {.slots = {0, 0, 0, 1}}};
-    stage.impact = impact(v, h, 1);
+    stage.matrix = M / h + mu * C + mu * r * K;
+    stage.history = -(mu * C * ahead_v) - mu * K * ahead;
+    stage.load = mu * at(1);
+    stage.update = {next, next_v, b, a};
+    stage.impact = impact(next_v, h, 1);
     // A spring too is a mean force of the step.
-    read_mean_force(stage, q, v, halfway(v, 1), {.slots = {1, h / 2}});
+    read_mean_force(stage, next, next_v, halfway(v, next_v), q + h / 2 * v);
     plan.stages = {stage};
     if (projected_) {
       Stage projection;
-      projection.matrix = {1 / (h * h), 0, 0};
-      projection.impact = {.value = {.slots = {1}, .z = 1}, .bound = {{1, 1}}};
-      projection.update = {{.slots = {1}, .z = 1}, {.slots = {0, 1}}, stage.update[2], stage.update[3]};
+      projection.matrix = M / (h * h);
+      projection.impact = {.value = q + z, .bound = at(1)};
+      projection.update = {q + z, v, b, a};
       plan.stages.push_back(projection);
     }
-    plan.stages.push_back(structure_acceleration(1, 4));
-    plan.stages.back().update[3] = {.slots = {0, 0, past, -kept}, .z = f / m};
+    plan.stages.push_back(structure_acceleration<4>(1));
+    plan.stages.back().update[3] = past * b - kept * a + f / m * z;
   }
 
   void balance(StepPlan& plan) const {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     Stage& step = plan.stages.front();
-    const Combination rate = halfway(step.update[1], 1);
+    const Combination rate = halfway(v, step.update[1]);
     conserve_mean_force(step, step.update[0], rate);
     balance_mean_force(step, step.update[0], rate);
     step.at(Evaluation::conserving)->effort = {half_ ? 0.0 : 1.0};
     step.work->impulse = half_ ? 1 : 0;
-    if (!half_) plan.stages.back().work = {{}, {.slots = {0, 1}}, {{1, 1}}};  // moves nothing
+    if (!half_) plan.stages.back().work = {{}, v, at(1)};  // moves nothing
   }
 
   AlphaMethod method_;
@@ -119,15 +127,13 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "nonsmooth-generalised-alpha",
        .summary = "generalised α whose velocities jump by Newton's impact law",
-       .text =
-           "The smooth motion is that of generalised-alpha, of second order with ρ∞ at the highest frequencies; "
-           "contact "
-           "is an impulse of the step that jumps velocities, on which that damping does not act, and the restitution "
-           "holds exactly for each point that the gap test q + h v + ½h² a finds closed and that does not leave. With "
-           "`half` positions move by half of the jump, as the authors have it; with `beta` by β/γ of it, the same at "
-           "ρ∞ = 1; `projected` adds a projection of positions, so that no step ends beyond a stop. Contact never "
-           "gives "
-           "energy with `half`, in the energy of the scheme, nor with `beta` at ρ∞ = 1; elsewhere it may.",
+       .text = R"(The smooth motion is that of generalised-alpha, of second order with ρ∞ at the highest
+          frequencies; contact is an impulse of the step that jumps velocities, on which that damping does not act,
+          and the restitution holds exactly for each point that the gap test q + h v + ½h² a finds closed and that
+          does not leave. With `half` positions move by half of the jump, as the authors have it; with `beta` by β/γ
+          of it, the same at ρ∞ = 1; `projected` adds a projection of positions, so that no step ends beyond a stop.
+          Contact never gives energy with `half`, in the energy of the scheme, nor with `beta` at ρ∞ = 1; elsewhere
+          it may.)",
        .source = "Chen, Acary, Virlez and Brüls (2013), A nonsmooth generalized-α scheme for flexible multibody "
                  "systems with unilateral constraints; projected: after Brüls, Acary and Cardona (2014)",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},

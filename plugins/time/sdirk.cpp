@@ -26,10 +26,11 @@ class Sdirk final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts&) const override {
+    using namespace plan_algebra;
     StepPlan plan;
     plan.slots = {"q", "v", "a"};
     plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = {.slots = {0, 1}};
+    plan.velocity = slots<2>()[1];
     plan.stages = {inner(h), outer(h)};
     plan.facts.order = third_ ? 3 : 2;
     return plan;
@@ -37,40 +38,40 @@ class Sdirk final : public TimeScheme {
 
  private:
   Stage inner(double h) const {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
     const double reach = gamma_ * h;
-    const Combination position{.slots = {1, reach}, .z = reach * reach}, rate{.slots = {0, 1}, .z = reach};
+    const Combination position = q + reach * v + reach * reach * z, rate = v + reach * z;
     Stage stage = asked(h, gamma_, 0, position, rate);
-    stage.impact = {.value = position, .bound = {{gamma_, 1}}};
-    stage.update = {{.slots = {1}}, {.slots = {0, 1}}, {.slots = {}, .z = 1}};
+    stage.impact = {.value = position, .bound = at(gamma_)};
+    stage.update = {q, v, z};
     return stage;
   }
 
   // Before it a is that of stage 1; V₁ = v + γh a.
   Stage outer(double h) const {
-    const double reach = gamma_ * h, at = third_ ? shared_ + gamma_ : 1;
-    const Combination position{.slots = {1, at * h, 2 * shared_ * gamma_ * h * h}, .z = reach * reach};
-    const Combination rate{.slots = {0, 1, shared_ * h}, .z = reach};
-    Stage stage = asked(h, at, shared_, position, rate);
-    const double earlier = (first_ * gamma_ + second_ * shared_) * h * h;
-    const Combination end{.slots = {1, h, earlier}, .z = second_ * gamma_ * h * h};
-    stage.impact = {.value = end, .bound = {{1, 1}}};
-    stage.update = {end, {.slots = {0, 1, first_ * h}, .z = second_ * h}, {}};
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
+    const double reach = gamma_ * h, now = third_ ? shared_ + gamma_ : 1;
+    const Combination position = q + now * h * v + 2 * shared_ * gamma_ * h * h * a + reach * reach * z;
+    Stage stage = asked(h, now, shared_, position, v + shared_ * h * a + reach * z);
+    const Combination end =
+        q + h * v + (first_ * gamma_ + second_ * shared_) * h * h * a + second_ * gamma_ * h * h * z;
+    stage.impact = {.value = end, .bound = at(1)};
+    stage.update = {end, v + first_ * h * a + second_ * h * z, {}};
     return stage;
   }
 
   // The equation of a stage that stands at position, rate; a spring is asked where the elastic force is. What is known
   // of the rate before the solve is that of the instant `behind`.
-  Stage asked(double h, double at, double behind, const Combination& position, const Combination& rate) const {
+  Stage asked(double h, double now, double behind, const Combination& position, const Combination& rate) const {
+    using namespace plan_algebra;
     Stage stage;
-    stage.matrix = {1, gamma_ * h, gamma_ * gamma_ * h * h};
-    for (std::size_t j = 0; j < position.slots.size(); ++j)
-      stage.history.push_back({0, j < rate.slots.size() ? 0 - rate.slots[j] : 0.0, 0 - position.slots[j]});
-    stage.load = {{at, 1}};
-    stage.at(Evaluation::implicit_end) = {position, {{at, 1}}, rate, {{at, 1}}, {1}};
-    stage.at(Evaluation::averaged) = stage.at(Evaluation::implicit_end);
-    Combination known = position, known_rate = rate;
-    known.z = known_rate.z = 0;
-    stage.at(Evaluation::explicit_start) = {known, {{at, 1}}, known_rate, {{behind, 1}}, {1}};
+    stage.matrix = M + gamma_ * h * C + gamma_ * gamma_ * h * h * K;
+    stage.history = -(C * rate) - K * position;
+    stage.load = at(now);
+    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {position, at(now), rate, at(now), {1}};
+    stage.at(Evaluation::explicit_start) = {known(position), at(now), known(rate), at(behind), {1}};
     return stage;
   }
 
@@ -82,10 +83,10 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "sdirk",
        .summary = "two implicit Runge–Kutta stages with one matrix, of order 2 (L-stable) or 3",
-       .text = "Two solves per step with the same factorisation. Order 2 forgets the highest frequencies in one step, "
-               "as backward Euler does, at second order; order 3 is A-stable and keeps 0.73 of them, with the sign "
-               "changed. Stops are at position level, at the first stage and at the end of the step. Implicit and "
-               "averaged penalties coincide.",
+       .text = R"(Two solves per step with the same factorisation. Order 2 forgets the highest frequencies in one
+          step, as backward Euler does, at second order; order 3 is A-stable and keeps 0.73 of them, with the sign
+          changed. Stops are at position level, at the first stage and at the end of the step. Implicit and averaged
+          penalties coincide.)",
        .source =
            "Alexander (1977), Diagonally implicit Runge–Kutta methods for stiff O.D.E.'s; order 3: Nørsett (1974)",
        .parameters = {integer_parameter("order", 2, {.low = 2, .high = 3}, "2: L-stable; 3: A-stable")}},

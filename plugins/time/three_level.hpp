@@ -28,16 +28,17 @@ class ThreeLevel final : public TimeScheme {
           fmt::format("beta = {:g} < 0.25 makes the kernel of a singular mass diverge at any step "
                       "(roots of βr² + (1−2β)r + β outside the unit circle): use beta ≥ 0.25 of newmark-dumont-paoli",
                       beta_)};
+    using namespace plan_algebra;
+    const auto [q, d] = slots<2>();
     StepPlan plan;
     plan.slots = {"q", "d"};
     plan.initial = {{1, 0}, {0, h}};
-    plan.velocity = {.slots = {0, 1 / h}};
+    plan.velocity = d / h;
     plan.stages = {step(h)};
     plan.start = {start(h)};
     plan.start_advances = true;
-    plan.energy = {{QuadraticTerm::Matrix::M, 0.5 / (h * h), {0, 1}},
-                   {QuadraticTerm::Matrix::K, 0.5, {1, -0.5}},
-                   {QuadraticTerm::Matrix::K, 0.5 * (beta_ - 0.25), {0, 1}}};
+    plan.energy = {square(EnergyMatrix::M, 0.5 / (h * h), d), square(EnergyMatrix::K, 0.5, q - 0.5 * d),
+                   square(EnergyMatrix::K, 0.5 * (beta_ - 0.25), d)};
     plan.facts.order = second_order_ ? 2 : 1;
     plan.facts.contact_order = 1;
     plan.facts.restitution = Restitution::asymptotic;
@@ -48,58 +49,53 @@ class ThreeLevel final : public TimeScheme {
   }
 
  private:
-  Levels averaged_levels() const { return {{1, beta_}, {0, 1 - 2 * beta_}, {-1, beta_}}; }
-  Levels constrained_levels() const { return {{1, 1 / (1 + e_)}, {-1, e_ / (1 + e_)}}; }
+  Levels mean_levels() const {
+    using namespace plan_algebra;
+    return beta_ * at(1) + (1 - 2 * beta_) * at(0) + beta_ * at(-1);
+  }
 
   Stage step(double h) const {
+    using namespace plan_algebra;
+    const auto [q, d] = slots<2>();
+    const Combination next = q + d + z, before = q - d, rate = d / h + 0.5 / h * z;
     Stage stage;
-    stage.matrix = {1 / (h * h), 0.5 / h, beta_};
-    stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
-    stage.load = averaged_levels();
-    stage.impact = {{.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}, constrained_levels(), std::nullopt};
-    const Combination end{.slots = {1, 1}, .z = 1};
-    const Combination central_rate{.slots = {0, 1 / h}, .z = 0.5 / h};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, central_rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {end, {{1, 1}}, central_rate, {{0, 1}}, {beta_, 1 - 2 * beta_, beta_}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, {.slots = {0, 1 / h}}, {{-0.5, 1}}, {1}};
+    stage.matrix = M / (h * h) + 0.5 / h * C + beta_ * K;
+    stage.history = -(K * q) - C * (d / h);
+    stage.load = mean_levels();
+    stage.impact = {(next + e_ * before) / (1 + e_), 1 / (1 + e_) * at(1) + e_ / (1 + e_) * at(-1), std::nullopt};
+    stage.at(Evaluation::implicit_end) = {next, at(1), rate, at(0), {1}};
+    stage.at(Evaluation::averaged) = {next, at(1), rate, at(0), {beta_, 1 - 2 * beta_, beta_}};
+    stage.at(Evaluation::explicit_start) = {q, at(0), d / h, at(-0.5), {1}};
     // Mid-step displacements: their difference is the test displacement, and E + U(g) is kept.
-    stage.at(Evaluation::conserving) = {
-        {.slots = {1, 0.5}, .z = 0.5},   {{0, 0.5}, {1, 0.5}}, central_rate, {{0, 1}}, {1},
-        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
-    stage.update = {{.slots = {1, 1}, .z = 1}, {.slots = {0, 1}, .z = 1}};
-    stage.work = {{.slots = {0, 1}, .z = 0.5}, central_rate, averaged_levels(), {1}, {{1, 0.5}, {-1, -0.5}}};
+    stage.at(Evaluation::conserving) = {q + 0.5 * d + 0.5 * z, 0.5 * at(0) + 0.5 * at(1), rate, at(0), {1},
+                                        q - 0.5 * d,           0.5 * at(0) + 0.5 * at(-1)};
+    stage.update = {next, d + z};
+    stage.work = {d + 0.5 * z, rate, mean_levels(), {1}, 0.5 * at(1) - 0.5 * at(-1)};
     return stage;
   }
 
   // z = 2(q₁ − q₀ − h v₀), d holds h v₀. Second order: q₋₁ = q₁ − 2h v₀ inside the scheme's own equation, C acting on
   // v₀ alone. First order: no force acts, z is what rigid stops make it.
   Stage start(double h) const {
+    using namespace plan_algebra;
+    const auto [q, d] = slots<2>();
+    const Combination first = q + d + 0.5 * z, rate = d / h;
     Stage stage;
-    stage.matrix = {1 / (h * h), 0, beta_};
-    const Combination end{.slots = {1, 1}, .z = 0.5}, way{.slots = {0, 1}, .z = 0.5};
-    stage.impact = start_measure(h);
-    stage.update = {end, way};
+    stage.matrix = M / (h * h) + beta_ * K;
+    // There is no q₋₁ that contact may lean on: e = 0 holds q₁, e > 0 lets (q₁ − q₀)/h rebound with −e v₀ where the
+    // free q₁ passes the stop.
+    stage.impact = ImpactMeasure{first, at(1)};
+    if (e_ > 0) stage.impact = {rate + 0.5 / h * z, at(0.5), VelocityGate{first, at(1), rate, at(0), e_}};
+    stage.update = {first, d + 0.5 * z};
     if (!second_order_) return stage;
-    stage.history = {{0, 0, -1}, {0, -1 / h, 0}};
-    stage.load = averaged_levels();
-    const Combination rate{.slots = {0, 1 / h}};
-    stage.at(Evaluation::implicit_end) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::averaged) = {end, {{1, 1}}, rate, {{0, 1}}, {1}};
-    stage.at(Evaluation::explicit_start) = {{.slots = {1}}, {{0, 1}}, rate, {{0, 1}}, {1}};
+    stage.history = -(K * q) - C * rate;
+    stage.load = mean_levels();
+    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {first, at(1), rate, at(0), {1}};
+    stage.at(Evaluation::explicit_start) = {q, at(0), rate, at(0), {1}};
     // q₋₁ is taken as q₀ − h v₀: the difference is the first order's, and a start beyond a stop has no past anyway.
-    stage.at(Evaluation::conserving) = {{.slots = {1, 0.5}, .z = 0.25},  {{0, 0.5}, {1, 0.5}}, rate, {{0, 1}}, {1},
-                                        Combination{.slots = {1, -0.5}}, {{0, 0.5}, {-1, 0.5}}};
+    stage.at(Evaluation::conserving) = {
+        q + 0.5 * d + 0.25 * z, 0.5 * at(0) + 0.5 * at(1), rate, at(0), {1}, q - 0.5 * d, 0.5 * at(0) + 0.5 * at(-1)};
     return stage;
-  }
-
-  // There is no q₋₁ that contact may lean on: e = 0 holds q₁, e > 0 lets (q₁ − q₀)/h rebound with −e v₀ where the free
-  // q₁ passes the stop.
-  ImpactMeasure start_measure(double h) const {
-    const Combination end{.slots = {1, 1}, .z = 0.5};
-    if (e_ == 0) return {end, {{1, 1}}, std::nullopt};
-    return {{.slots = {0, 1 / h}, .z = 0.5 / h},
-            {{0.5, 1}},
-            VelocityGate{end, {{1, 1}}, {.slots = {0, 1 / h}}, {{0, 1}}, e_}};
   }
 
   double beta_, e_;

@@ -20,9 +20,11 @@ class WoodBossakZienkiewicz final : public TimeScheme {
     StepPlan plan = method_.plan(h, facts);
     method_.add_filtered_energy(plan, h);
     if (method_.mass != 0) return plan;
+    using namespace plan_algebra;
+    const auto [q, v, a] = slots<3>();
     plan.stages[0].work = {.displacement = method_.increment(h),
-                           .rate = {.slots = {0, 1, h / 4}, .z = h / 4},
-                           .load = {{0, 0.5}, {1, 0.5}},
+                           .rate = v + h / 4 * a + h / 4 * z,
+                           .load = 0.5 * at(0) + 0.5 * at(1),
                            .effort = {0.5, 0.5}};
     return plan;
   }
@@ -35,11 +37,11 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "wbz-alpha",
        .summary = "Wood–Bossak–Zienkiewicz α: Newmark with inertia weighted over both ends of the step",
-       .text = "Newmark's updates, the inertia force weighted 1−α_m and α_m with α_m = (ρ∞−1)/(ρ∞+1) ≤ 0, equilibrium "
-               "of all other forces at the end of the step: of second order, unconditionally stable, the highest "
-               "frequencies keep ρ∞ per step. Stops are at position level: a massed point is thrown back up to 2.6 "
-               "times as fast as it came (ρ∞ = 0.8), so that energy may grow at impacts. Implicit and averaged "
-               "penalties coincide.",
+       .text = R"(Newmark's updates, the inertia force weighted 1−α_m and α_m with α_m = (ρ∞−1)/(ρ∞+1) ≤ 0,
+          equilibrium of all other forces at the end of the step: of second order, unconditionally stable, the
+          highest frequencies keep ρ∞ per step. Stops are at position level: a massed point is thrown back up to 2.6
+          times as fast as it came (ρ∞ = 0.8), so that energy may grow at impacts. Implicit and averaged penalties
+          coincide.)",
        .source = "Wood, Bossak and Zienkiewicz (1980), An alpha modification of Newmark's method",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 is Newmark (¼, ½)")}},

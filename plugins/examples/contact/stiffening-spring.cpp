@@ -130,9 +130,8 @@ void register_all(Registry& registry) {
   stiffness.per_lane = depth.per_lane = true;
   registry.add_contact({.name = "stiffening-spring",
                         .summary = "springs behind the stops that stiffen as they are pressed",
-                        .text = "A point that passes a stop by δ is pushed back with κ δ (1 + δ/s), found at the end "
-                                "of the step. For s → ∞ it is the penalty of stiffness κ. The stiffness is per "
-                                "contact point.",
+                        .text = R"(A point that passes a stop by δ is pushed back with κ δ (1 + δ/s), found at the
+          end of the step. For s → ∞ it is the penalty of stiffness κ. The stiffness is per contact point.)",
                         .source = "—",
                         .parameters = {stiffness, depth}},
                        [](const Parameters&) { return std::make_unique<Law>(); });

@@ -45,10 +45,9 @@ void register_all(Registry& registry) {
   registry.add_mass(
       {.name = "blended-mass",
        .summary = "a blend of the consistent and the diagonal mass",
-       .text =
-           "M = (1 − r) M_consistent + r M_lumped. r = 0 and r = 1 are the methods consistent and lumped; with "
-           "r = ½ the frequencies of a bar of linear elements converge with order 4 in the element length, those of "
-           "either with order 2.",
+       .text = R"(M = (1 − r) M_consistent + r M_lumped. r = 0 and r = 1 are the methods consistent and lumped; with
+          r = ½ the frequencies of a bar of linear elements converge with order 4 in the element length, those of
+          either with order 2.)",
        .source = "Goudreau and Taylor (1973), Evaluation of numerical integration methods in elastodynamics",
        // Key, unit, default (std::nullopt: the study must give it), range, meaning.
        .parameters = {real_parameter("share", "1", 0.5, {.low = 0, .high = 1}, "r, share of the diagonal mass")}},

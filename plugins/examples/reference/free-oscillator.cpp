@@ -78,8 +78,8 @@ class Reference final : public ReferenceSolver {
 void register_all(Registry& registry) {
   registry.add_reference({.name = "free-oscillator",
                           .summary = "closed form of the oscillator that nothing drives and that touches nothing",
-                          .text = "The linear oscillator in every regime of damping, without load, force, moving "
-                                  "support or contact. Everything else is refused.",
+                          .text = R"(The linear oscillator in every regime of damping, without load, force, moving
+          support or contact. Everything else is refused.)",
                           .source = "—",
                           .parameters = {}},
                          [](const Parameters&) { return std::make_unique<Reference>(); });

@@ -5,6 +5,7 @@
 namespace {
 
 using namespace ricochet;
+using namespace ricochet::plan_algebra;
 
 /// The step S z = b + Hᵀp, with d_n = q_n − q_{n−1} and the unknown z = q_{n+1} − 2q_n + q_{n−1} (kept, not q_{n−1}:
 /// differences of positions would lose 1/h² in round-off):
@@ -24,6 +25,7 @@ class Scheme final : public TimeScheme {
       return Refusal{
           "central differences need a regular mass matrix: without inertia nothing holds the kernel of this "
           "one; take a consistent or a lumped mass, or an implicit scheme"};
+    const auto [q, d] = slots<2>();
     StepPlan plan;
     // The vectors that are kept from step to step; the first is always the position.
     plan.slots = {"q", "d"};
@@ -35,10 +37,10 @@ class Scheme final : public TimeScheme {
     // The solves of a step, one after the other. A scheme of two solves has two.
     plan.stages = {step(h)};
     // The velocity, over the slots after a step; where in the step it stands is found from the plan.
-    plan.velocity = {.slots = {0, 1 / h}};
-    // The scheme's own invariant, Σ coefficient·|Σ weight·slot|²_A after a step. Empty: it has none.
-    plan.energy = {
-        {EnergyMatrix::M, 0.5 / (h * h), {0, 1}}, {EnergyMatrix::K, 0.5, {1, -0.5}}, {EnergyMatrix::K, -0.125, {0, 1}}};
+    plan.velocity = d / h;
+    // The scheme's own invariant, Σ coefficient·|combination of slots|²_A after a step. Empty: it has none.
+    plan.energy = {square(EnergyMatrix::M, 0.5 / (h * h), d), square(EnergyMatrix::K, 0.5, q - 0.5 * d),
+                   square(EnergyMatrix::K, -0.125, d)};
     // What the scheme claims; `ricochet check` measures each.
     plan.facts.order = 2;                              // in h, without contact, with this start
     plan.facts.contact_order = std::nullopt;           // in h, at rigid stops: not known
@@ -51,49 +53,47 @@ class Scheme final : public TimeScheme {
 
  private:
   Stage step(double h) const {
+    const auto [q, d] = slots<2>();
+    const Combination next = q + d + z, before = q - d, rate = d / h + 0.5 / h * z;
     Stage stage;
-    // S = M/h² + C/(2h).
-    stage.matrix = {.M = 1 / (h * h), .C = 0.5 / h, .K = 0};
-    // b = Σ over the slots of (… M + … C + … K) x_j: −K q − C d/h …
-    stage.history = {{.K = -1}, {.C = -1 / h}};
-    // … + Σ weight·F(t + at·h): F(t).
-    stage.load = {{.at = 0, .weight = 1}};
+    // S, and b without its load.
+    stage.matrix = M / (h * h) + 0.5 / h * C;
+    stage.history = -(K * q) - C * (d / h);
+    // F(t), the load at the beginning of the step; at(0.5) is its middle, at(1) its end.
+    stage.load = at(0);
     // y, what a rigid law holds between the stops. Left out: `bound`, the times at which it reads the stops (found from
     // y: 1/(1+e) at t + h, e/(1+e) at t − h); `gate`, for laws at velocity level; `effort`, the weights of p, p₋₁, … in
     // the equation ({1}).
-    stage.impact = ImpactMeasure{.value = {.slots = {1, (1 - e_) / (1 + e_)}, .z = 1 / (1 + e_)}};
+    stage.impact = ImpactMeasure{.value = (next + e_ * before) / (1 + e_)};
     // g and u, what a compliant law reads: displacement and rate at the end of the step, or where the step begins. The
     // ways `averaged` and `conserving` are not offered: a law that asks for them is refused with a sentence.
-    const Combination end{.slots = {1, 1}, .z = 1}, central_rate{.slots = {0, 1 / h}, .z = 0.5 / h};
-    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = end, .rate = central_rate};
-    stage.at(Evaluation::explicit_start) =
-        ComplianceMeasure{.displacement = {.slots = {1}}, .rate = {.slots = {0, 1 / h}}};
+    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = next, .rate = rate};
+    stage.at(Evaluation::explicit_start) = ComplianceMeasure{.displacement = q, .rate = d / h};
     // Each slot after the stage, over the slots before it and z.
-    stage.update = {end, {.slots = {0, 1}, .z = 1}};
+    stage.update = {next, d + z};
     // The balance of plan.energy: its change is s·F − s·C r + s·Hᵀp, with s and r these. None: the balance is unknown.
-    stage.work = WorkForm{.displacement = {.slots = {0, 1}, .z = 0.5}, .rate = central_rate, .load = stage.load};
+    stage.work = WorkForm{.displacement = d + 0.5 * z, .rate = rate, .load = stage.load};
     // stage.loss: what the scheme itself dissipates, as squares. Central differences dissipate nothing.
     return stage;
   }
 
   // The same equation with q₋₁ = q₁ − 2h v₀: z = 2(q₁ − q₀ − h v₀), while d holds h v₀.
   Stage start(double h) const {
+    const auto [q, d] = slots<2>();
+    const Combination first = q + d + 0.5 * z, rate = d / h;
     Stage stage = step(h);
-    stage.matrix = {.M = 1 / (h * h)};
-    const Combination end{.slots = {1, 1}, .z = 0.5}, rate{.slots = {0, 1 / h}};
+    stage.matrix = M / (h * h);
     // No q₋₁ was marched that a stop could lean on. e = 0 holds q₁; e > 0 closes the sides that the free q₁ passes, and
     // lets (q₁ − q₀)/h rebound with −e v₀.
-    stage.impact = ImpactMeasure{.value = end};
+    stage.impact = ImpactMeasure{.value = first};
     if (e_ > 0) {
-      stage.impact->value = {.slots = {0, 1 / h}, .z = 0.5 / h};
-      stage.impact->gate = VelocityGate{.predictor = end, .approach = rate, .restitution = e_};
+      stage.impact->value = rate + 0.5 / h * z;
+      stage.impact->gate = VelocityGate{.predictor = first, .approach = rate, .restitution = e_};
     }
     // Times of the stops may also be given: v₀ stands where the step begins.
-    const Levels now{{.at = 0, .weight = 1}};
-    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = end, .rate = rate, .rate_bound = now};
-    stage.at(Evaluation::explicit_start) =
-        ComplianceMeasure{.displacement = {.slots = {1}}, .rate = rate, .rate_bound = now};
-    stage.update = {end, {.slots = {0, 1}, .z = 0.5}};
+    stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = first, .rate = rate, .rate_bound = at(0)};
+    stage.at(Evaluation::explicit_start) = ComplianceMeasure{.displacement = q, .rate = rate, .rate_bound = at(0)};
+    stage.update = {first, d + 0.5 * z};
     stage.work.reset();
     return stage;
   }
@@ -105,10 +105,9 @@ void register_all(Registry& registry) {
   registry.add_time(
       {.name = "leap-frog",
        .summary = "explicit three-level scheme, stable up to hω = 2",
-       .text =
-           "Central differences: one solve with M (and C), none with K. Of second order, conditionally stable, for a "
-           "regular mass only. At a rigid stop the combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: for e > 0 "
-           "q_{n+1} itself may pass the stop by O(h).",
+       .text = R"(Central differences: one solve with M (and C), none with K. Of second order, conditionally stable,
+          for a regular mass only. At a rigid stop the combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: for e
+          > 0 q_{n+1} itself may pass the stop by O(h).)",
        .source = "Courant, Friedrichs and Lewy (1928); Paoli and Schatzman (2002) for the constrained combination",
        // Key, unit, default (std::nullopt: the study must give it), range, meaning; references find e by its role.
        .parameters = {with_role(

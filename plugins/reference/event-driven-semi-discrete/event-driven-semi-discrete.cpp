@@ -53,19 +53,17 @@ void register_all(Registry& registry) {
   registry.add_reference(
       {.name = "event-driven-semi-discrete",
        .summary = "the motion of the case's own mesh, exact in time between changes of the contact set",
-       .text =
-           "While the set of closed contact points stays as it is, M w'' + C w' + K w = F + Hᵀp is linear with "
-           "constant "
-           "coefficients, and its modes are known: closed points are bilateral constraints (rigid law) or springs "
-           "(linear compliant law, κ per point), forces are constant or harmonic, and the modes solve it exactly, "
-           "under-"
-           ", critically and over-damped ones alike. The massless modes of a singular mass follow at once (α = 0) or "
-           "relax with rate 1/α; where they carry all contact points, contact opens and closes without any impact and "
-           "restitution has no part in it. A single point with inertia rebounds by Newton's law, v⁺ = −e v⁻, and a "
-           "bounce below 1e-14 of the highest ends a chattering; several such points under a rigid law are refused. "
-           "Events (a gap, a contact force or a penetration that falls below zero) are watched at a step that resolves "
-           "the fastest mode that still matters, with a bound of the curvature between, and polished to round-off. "
-           "Initial data off the constraint of a singular mass jump to it at t = 0⁺ when α = 0. At most 60 dofs.",
+       .text = R"(While the set of closed contact points stays as it is, M w'' + C w' + K w = F + Hᵀp is linear with
+          constant coefficients, and its modes are known: closed points are bilateral constraints (rigid law) or
+          springs (linear compliant law, κ per point), forces are constant or harmonic, and the modes solve it
+          exactly, under-, critically and over-damped ones alike. The massless modes of a singular mass follow at
+          once (α = 0) or relax with rate 1/α; where they carry all contact points, contact opens and closes without
+          any impact and restitution has no part in it. A single point with inertia rebounds by Newton's law, v⁺ =
+          −e v⁻, and a bounce below 1e-14 of the highest ends a chattering; several such points under a rigid law
+          are refused. Events (a gap, a contact force or a penetration that falls below zero) are watched at a step
+          that resolves the fastest mode that still matters, with a bound of the curvature between, and polished to
+          round-off. Initial data off the constraint of a singular mass jump to it at t = 0⁺ when α = 0. At most 60
+          dofs.)",
        .source = "Acary and Brogliato (2008), ch. 8 (event-driven schemes); Renard (2010) for contact without inertia; "
                  "modes as M x = μ K x, so that slow ones keep their digits",
        .parameters = {}},

@@ -127,16 +127,15 @@ void register_all(Registry& registry) {
   registry.add_reference(
       {.name = "event-driven",
        .summary = "the continuous beam between stops at its tip, exact between impacts and releases",
-       .text =
-           "No mesh and no step. In flight the beam is a sum of clamped–free modes, in contact a cubic lift plus "
-           "clamped–pinned modes; each mode is a damped oscillator in closed form (C = αK + ηM, below, at and above "
-           "critical damping), forced by the support A sin(ωt + ψ) and by a load that is constant in time. "
-           "Displacement and velocity are continuous (L²) at switches. Impacts are roots of the gap, releases are "
-           "changes of sign of the stop's force; both are isolated by looks between which the quantity is its cubic "
-           "interpolant within a bound that the modes give, so that no touch is stepped over. Just after a switch the "
-           "truncated sum leaves the tip a hair beyond the stop: a new touch counts once the gap has opened beyond "
-           "that hair. The restitution of schemes has no counterpart. With α > 0 many digits are known; with α = 0 "
-           "convergence is slow.",
+       .text = R"(No mesh and no step. In flight the beam is a sum of clamped–free modes, in contact a cubic lift
+          plus clamped–pinned modes; each mode is a damped oscillator in closed form (C = αK + ηM, below, at and
+          above critical damping), forced by the support A sin(ωt + ψ) and by a load that is constant in time.
+          Displacement and velocity are continuous (L²) at switches. Impacts are roots of the gap, releases are
+          changes of sign of the stop's force; both are isolated by looks between which the quantity is its cubic
+          interpolant within a bound that the modes give, so that no touch is stepped over. Just after a switch the
+          truncated sum leaves the tip a hair beyond the stop: a new touch counts once the gap has opened beyond
+          that hair. The restitution of schemes has no counterpart. With α > 0 many digits are known; with α = 0
+          convergence is slow.)",
        .source = "modes: Young and Felgar (1949); the contact problem: Dumont and Paoli (2006); the switch between two "
                  "modal bases is elementary L² projection",
        .parameters = {integer_parameter("modes", 80, {.low = 4, .high = 320},

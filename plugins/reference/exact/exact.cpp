@@ -169,14 +169,13 @@ void register_all(Registry& registry) {
   registry.add_reference(
       {.name = "exact",
        .summary = "closed forms: the oscillator between stops, the bar that bounces or touches nothing",
-       .text =
-           "Oscillator: flights under constant and harmonic force, on a moving support, in every regime of damping and "
-           "in resonance; impacts v⁺ = −e v⁻ at rigid stops, rests on them while the force pushes, or phases on linear "
-           "springs. Each arc is a closed form, counted from where it begins, and arcs join at zeros of gap and force "
-           "that are bracketed by a bound of the curvature, so that none is missed, and polished to round-off; a "
-           "bounce below 1e-15 of the highest ends a chattering. Bar, undamped and unloaded: at rest and stretched "
-           "linearly from a rigid stop at 0 at its tip, it bounces with period 3L/c; touching nothing, it is "
-           "d'Alembert's two waves. Everything else is refused.",
+       .text = R"(Oscillator: flights under constant and harmonic force, on a moving support, in every regime of
+          damping and in resonance; impacts v⁺ = −e v⁻ at rigid stops, rests on them while the force pushes, or
+          phases on linear springs. Each arc is a closed form, counted from where it begins, and arcs join at zeros
+          of gap and force that are bracketed by a bound of the curvature, so that none is missed, and polished to
+          round-off; a bounce below 1e-15 of the highest ends a chattering. Bar, undamped and unloaded: at rest and
+          stretched linearly from a rigid stop at 0 at its tip, it bounces with period 3L/c; touching nothing, it is
+          d'Alembert's two waves. Everything else is refused.)",
        .source = "Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, J. Sound Vib. 90 (the "
                  "oscillator); characteristics (the bar), as in Doyen, Ern and Piperno (2011), Time-integration "
                  "schemes for the finite element dynamic Signorini problem",
