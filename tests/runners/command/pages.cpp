@@ -1,10 +1,13 @@
 // What the pages tell a reader to type is typed, and what they say that it prints is compared.
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <set>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "runners/command/describe_words.hpp"
+#include "tests/runners/command/page_figures.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;
@@ -163,4 +166,81 @@ TEST_CASE("pages: the README is short, its study is one, and what it points at i
                              (folder.path() / "study.json").string() + "' >/dev/null 2>&1";
     CHECK(std::system(line.c_str()) == 0);
   }
+}
+
+TEST_CASE("pages: a figure is that of the rows and columns that it names") {
+  const tests::CsvTable table = tests::read_csv(
+      "mass,step,status,\"end, J\",class\n"
+      "full,1e-3,done,0.5,\"no "
+      "contact\"\nfull,0.0001,done,0.25,chaotic\nlumped,1e-4,done,2e-7,\nlumped,1e-3,failed,,\n");
+  REQUIRE(table.rows.size() == 4);
+  const tests::TablesOf tables = [&](const std::string& study, const std::string& name) -> const tests::CsvTable& {
+    if (study != "swing" || name != "cases") throw std::runtime_error("there is no table " + name);
+    return table;
+  };
+  const auto now = [&](const std::string& text) { return tests::compare_page(text, tables).text; };
+  const auto said = [&](const std::string& text) {
+    const tests::PageFigures found = tests::compare_page(text, tables);
+    CAPTURE(text);
+    REQUIRE(found.wrong.size() == 1);
+    return found.wrong.front();
+  };
+  const auto marked = [](const std::string& old, const std::string& mark) { return old + "<!--= " + mark + " -->"; };
+  for (const auto& [value, mark] : std::vector<std::pair<std::string, std::string>>{
+           {"50.0", "swing cases mass=full step=1e-3; 100 * \"end, J\"; %.1f"},
+           {"2e-7", "swing cases mass=lumped step=1e-4; \"end, J\"; %.0e"},
+           {"3", "swing cases status=done; count; %.0f"},
+           {"1", "swing cases status=failed,refused; count; %.0f"},
+           {"1", "swing cases \"class=no contact\"; count; %.0f"},
+           {"2", "swing cases step<5e-4; count; %.0f"},
+           {"0.25", "swing cases mass=full; spread \"end, J\"; %.2f"},
+           {"0.38", "swing cases mass=full; mean \"end, J\"; %.2f"},
+           {"2", "swing cases mass=full step=1e-3; \"end, J\" / [step=1e-4] \"end, J\"; %.0f"},
+           {"0.50", "swing cases mass=full step=1e-4; sqrt \"end, J\"; %.2f"}}) {
+    CAPTURE(mark);
+    CHECK(now("it is (" + marked("7.5e-3", mark) + " m)") == "it is (" + marked(value, mark) + " m)");
+    CHECK(tests::compare_page(marked(value, mark), tables).wrong.empty());
+  }
+  CHECK(said(marked("0.4", "swing cases mass=full; 100 * spread \"end, J\"; %.2f")) ==
+        "line 1: swing cases mass=full; 100 * spread \"end, J\"; %.2f: written 0.4, computed 25.00");
+  CHECK_THAT(said(marked("1", "swing cases mass=full; \"end, J\"; %.2f")), Catch::Contains("2 rows; expected one"));
+  CHECK_THAT(said(marked("1", "swing cases mass=fall; max \"end, J\"; %.2f")), Catch::Contains("no row"));
+  CHECK_THAT(said(marked("1", "swing cases mas=full; count; %.0f")), Catch::Contains("no column mas"));
+  CHECK_THAT(said(marked("1", "swing orders; count; %.0f")), Catch::Contains("there is no table orders"));
+  CHECK_THAT(said(marked("1", "swing cases mass=full; count")), Catch::Contains("expected rows; expression; format"));
+  // Those of studies that are not asked for stay.
+  const std::string other = marked("1", "swing cases; count; %.0f");
+  CHECK(tests::compare_page(other, tables, {"roll"}).figures == 0);
+
+  const std::string one =
+      "| scheme<!--| swing cases mass --> | J<!--| step=1e-3; {\"end, J\" %.2f}; {status} --> |\n|---|---|\n";
+  CHECK(now(one + "| full | 0.5 |\n| lumped | |\n") == one + "| full | 0.50 |\n| lumped | failed |\n");
+}
+
+TEST_CASE("pages: what studies found is what they find") {
+  const std::string page = read_text(root / "studies/README.md");
+  const tests::PageStudies named = tests::studies_of(page);
+  // A row of a study says where its figures are from, or when it ran.
+  for (const std::string& line : lines_of(page)) {
+    if (!line.starts_with("| `") || line.starts_with("| `published-")) continue;
+    CAPTURE(line);
+    CHECK((line.find("<!--= ") != std::string::npos || line.find("<!-- run ") != std::string::npos));
+  }
+  for (const std::string& study : named.figures) {
+    CAPTURE(study);
+    CHECK(fs::exists(root / "studies" / (study + ".json")));
+  }
+  // Studies of a few seconds, none of them chaotic.
+  const std::set<std::string> quick = {"quick",       "restitution",      "energy-damped",    "family-free",
+                                       "family-laws", "extreme-sections", "published-sdnd101"};
+  const ScratchFolder folder;
+  const tests::TablesOf tables = tests::tables_in(folder.path(), [&](const std::string& study) {
+    const std::string line = "RICOCHET_PLUGIN_PATH= '" RICOCHET_COMMAND "' run '" +
+                             (root / "studies" / (study + ".json")).string() + "' --out '" +
+                             (folder.path() / study).string() + "' >/dev/null 2>&1";
+    CHECK(std::system(line.c_str()) == 0);
+  });
+  const tests::PageFigures found = tests::compare_page(page, tables, quick);
+  CHECK(found.figures >= 25);
+  for (const std::string& wrong : found.wrong) FAIL_CHECK(wrong << " (`sh tests/pages.sh fill` mends the page)");
 }
