@@ -9,6 +9,7 @@
 #include <mutex>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <ricochet/scene/formula_errors.hpp>
 #include <vector>
@@ -120,14 +121,14 @@ Formula::Formula(const std::string& text, const std::string& pointer, const std:
     parser.Eval();
     if (parser.GetNumResults() != 1)
       throw InputError(pointer, fmt::format("the formula \"{}\" gives {} values; expected one (decimals take a point)",
-                                            text, parser.GetNumResults()));
+                                            shortened(text), parser.GetNumResults()));
   } catch (const mu::ParserError& error) {
     explain_formula(parser, error, text, pointer, letters(variables), variables_in_words(variables));
   }
   if (source_->varies())
     own_ = std::move(compiled);
   else if (!std::isfinite(source_->constant))
-    throw InputError(pointer, fmt::format("the formula \"{}\" gives {}; expected a finite number", text,
+    throw InputError(pointer, fmt::format("the formula \"{}\" gives {}; expected a finite number", shortened(text),
                                           std::isnan(source_->constant) ? "no number (NaN)" : "an infinite value"));
 }
 
@@ -166,8 +167,8 @@ double Formula::operator()(double x, double t) const {
   const double value = evaluated(x, t);
   if (std::isfinite(value)) return value;
   throw InputError(source_->pointer,
-                   fmt::format("the formula \"{}\" gives {} at x = {:.6g} m{}; expected a finite number", source_->text,
-                               std::isnan(value) ? "no number (NaN)" : "an infinite value", x,
+                   fmt::format("the formula \"{}\" gives {} at x = {:.6g} m{}; expected a finite number",
+                               shortened(source_->text), std::isnan(value) ? "no number (NaN)" : "an infinite value", x,
                                source_->uses_t ? fmt::format(", t = {:.6g} s", t) : ""));
 }
 

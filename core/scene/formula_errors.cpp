@@ -2,6 +2,7 @@
 #include <muParser.h>
 
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula_errors.hpp>
 
 namespace ricochet {
@@ -24,10 +25,16 @@ bool has_assignment(const std::string& text) {
 void require_expression(const std::string& text, const std::string& pointer) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw InputError(pointer, "the formula is empty; expected a number or a formula such as \"0.04*x^2\"");
+  constexpr std::size_t longest = mu::MaxLenExpression - 1;
+  if (text.size() > longest)
+    throw InputError(
+        pointer, fmt::format("the formula \"{}\" has {} characters; expected at most {}: shorten it{}", shortened(text),
+                             text.size(), longest,
+                             pointer.starts_with("/scene/load") ? ", or give a list of several loads" : ""));
   if (has_assignment(text))
     throw InputError(
-        pointer,
-        fmt::format("the formula \"{}\" assigns with =; expected an expression, comparisons are written ==", text));
+        pointer, fmt::format("the formula \"{}\" assigns with =; expected an expression, comparisons are written ==",
+                             shortened(text)));
 }
 
 void explain_formula(const mu::Parser& parser, const mu::ParserError& error, const std::string& text,
@@ -38,14 +45,18 @@ void explain_formula(const mu::Parser& parser, const mu::ParserError& error, con
     // A single letter is near every other one: no guess.
     const std::string nearest = error.GetToken().size() > 1 ? nearest_name(error.GetToken(), names) : "";
     throw InputError(pointer, fmt::format("unknown name \"{}\" in the formula \"{}\"; {}, the constants are pi and e{}",
-                                          error.GetToken(), text, names_in_words,
+                                          shortened(error.GetToken()), shortened(text), names_in_words,
                                           nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
   }
   std::string message = error.GetMsg();
+  // It quotes what it met.
+  const std::string token = error.GetToken();
+  if (const auto at = message.find(token); !token.empty() && at != std::string::npos)
+    message.replace(at, token.size(), shortened(token));
   while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
   const bool product = error.GetCode() == mu::ecUNEXPECTED_VAR || error.GetCode() == mu::ecUNEXPECTED_FUN ||
                        error.GetCode() == mu::ecUNEXPECTED_VAL || error.GetCode() == mu::ecUNEXPECTED_PARENS;
-  throw InputError(pointer, fmt::format("the formula \"{}\" does not parse: {}{}", text, message,
+  throw InputError(pointer, fmt::format("the formula \"{}\" does not parse: {}{}", shortened(text), message,
                                         product ? "; a product is written with *" : ""));
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula_errors.hpp>
 #include <ricochet/scene/named_formulas.hpp>
 #include <set>
@@ -53,7 +54,7 @@ void NamedFormulas::read(const std::string& text, const std::string& pointer) {
     for (const auto& [name, ignored] : state_->parser.GetUsedVar()) state_->used.insert(name);
     if (results != 1)
       throw InputError(pointer, fmt::format("the formula \"{}\" gives {} values; expected one (decimals take a point)",
-                                            text, results));
+                                            shortened(text), results));
   } catch (const mu::ParserError& error) {
     const std::vector<std::string> known = names();
     explain_formula(state_->parser, error, text, pointer, known,

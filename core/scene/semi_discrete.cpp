@@ -40,9 +40,12 @@ LoadSpec whole_load(const SceneSpec& scene) {
   if (force.pulsation == 0 && !load.formula.uses_t())
     load.formula = Formula(load.formula(0) + force.amplitude * std::cos(force.phase));
   else
-    load.formula = Formula(fmt::format("({}) + ({})*cos(({})*t + ({}))", load.formula.text(), force.amplitude,
-                                       force.pulsation, force.phase),
-                           "/scene/structure/force", "xt");
+    load.terms.push_back(
+        {.force = true,
+         .at = std::nullopt,
+         .shape = Formula(),
+         .history = Formula(fmt::format("({})*cos(({})*t + ({}))", force.amplitude, force.pulsation, force.phase),
+                            "/scene/structure/force", "t")});
   return load;
 }
 

@@ -123,7 +123,7 @@ Json check_numbers(const Field& field, const Json& value, const std::string& poi
   for (std::size_t i = 0; i < result.size(); ++i)
     if (const auto [first, fresh] = seen.emplace(result[i].get<double>(), i); !fresh)
       throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
-                                                   pointer_to(pointer, first->second) +
+                                                   shortened(pointer_to(pointer, first->second)) +
                                                    ": the same point would run twice");
   return result;
 }
@@ -184,7 +184,7 @@ Json check_value(const Field& field, const Json& value, const std::string& point
       const auto [first, fresh] = seen.emplace(list.back().dump(), i);
       if (!fresh)
         throw InputError(pointer_to(pointer, i), "repeats the value " + quote(value[i]) + " of " +
-                                                     pointer_to(pointer, first->second) +
+                                                     shortened(pointer_to(pointer, first->second)) +
                                                      ": the same case would run twice");
     }
     axes.push_back(std::move(axis));
@@ -239,7 +239,7 @@ const ObjectForm& find_way(const ObjectForm& form, const Json& object, const std
   }
   for (const auto& [key, ignored] : object.items())
     if (std::find(all.begin(), all.end(), key) == all.end())
-      throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"" + did_you_mean(key, all) +
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, all) +
                                                      " (keys here: " + quoted_list(all) + ")");
   for (const ObjectForm& way : form.ways)
     for (const Field& field : way.fields) {
@@ -270,7 +270,8 @@ const Json& discriminate(const std::vector<const Field*>& declared, const Json& 
         const bool known =
             std::any_of(declared.begin(), declared.end(), [&](const Field* field) { return field->key() == other; });
         if (!known && nearest_name(other, {key}) == key)
-          throw InputError(pointer_to(where, other), "unknown key \"" + other + "\"; did you mean \"" + key + "\"?");
+          throw InputError(pointer_to(where, other),
+                           "unknown key \"" + shortened(other) + "\"; did you mean \"" + key + "\"?");
       }
       throw InputError(pointer_to(where, key), end < discriminator.size()
                                                    ? "missing; this key is required"
@@ -287,12 +288,12 @@ const Json& discriminate(const std::vector<const Field*>& declared, const Json& 
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string nearest = nearest_name(word, candidates);
-  return nearest.empty() ? std::string() : "; did you mean \"" + nearest + "\"?";
+  return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
 }
 
 std::string quoted_list(const std::vector<std::string>& words) {
   std::string result;
-  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + word + "\"";
+  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + shortened(word) + "\"";
   return result;
 }
 
@@ -323,8 +324,8 @@ std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, c
       return std::find(candidate.words.begin(), candidate.words.end(), word) != candidate.words.end();
     });
     if (variant == level->variants.end())
-      throw InputError(
-          where, "unknown " + key + " \"" + word + "\"; there is: " + quoted_list(words) + did_you_mean(word, words));
+      throw InputError(where, "unknown " + key + " \"" + shortened(word) + "\"; there is: " + quoted_list(words) +
+                                  did_you_mean(word, words));
     level = &variant->keys;
   }
 }
@@ -335,7 +336,7 @@ Json check_object(const ObjectForm& form, const Json& value, const std::string& 
   for (const Field* field : fields) keys.push_back(field->key());
   for (const auto& [key, ignored] : value.items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"" + did_you_mean(key, keys) +
+      throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, keys) +
                                                      " (keys here: " + quoted_list(keys) + ")");
   Json result = Json::object();
   for (const Field* field : fields) {

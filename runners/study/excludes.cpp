@@ -54,7 +54,7 @@ void check_entry(const Study& study, const Json& entry, const std::string& point
   for (const auto& [key, wanted] : entry.items()) {
     const std::string here = pointer_to(pointer, key);
     if (std::find(names.begin(), names.end(), key) == names.end())
-      throw InputError(here, "\"" + key + "\" is no axis of this study" + did_you_mean(key, names) +
+      throw InputError(here, "\"" + shortened(key) + "\" is no axis of this study" + did_you_mean(key, names) +
                                  " (axes: " + quoted_list(study.columns) + ")");
     if (key != "why") check_value(study, key, wanted, here);
   }

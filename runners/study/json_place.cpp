@@ -15,7 +15,7 @@ void JsonPlace::close(const std::vector<std::string>& keys) const {
   if (!value_->is_object()) unexpected("an object with the keys " + quoted_list(keys));
   for (const auto& [key, ignored] : value_->items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      throw InputError(pointer_of(key), "unknown key \"" + key + "\"" + did_you_mean(key, keys) +
+      throw InputError(pointer_of(key), "unknown key \"" + shortened(key) + "\"" + did_you_mean(key, keys) +
                                             " (keys here: " + quoted_list(keys) + ")");
 }
 

@@ -165,12 +165,7 @@ std::string pointer_to(const std::string& parent, std::size_t index) {
 }
 
 std::string quote(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  constexpr std::size_t longest = 60;
-  if (text.size() <= longest) return text;
-  std::size_t cut = longest;
-  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;
-  return text.substr(0, cut) + "…";
+  return shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Json parse_json(const std::string& text) {
@@ -187,7 +182,7 @@ Json parse_json(const std::string& text) {
     const auto open = what.find('\''), close = what.rfind('\'');
     const std::string number = open < close ? what.substr(open + 1, close - open - 1) : "";
     throw SyntaxError(position_of(text, number.empty() ? 0 : text.find(number)),
-                      "the number " + number + " is too large for a double");
+                      "the number " + shortened(number) + " is too large for a double");
   }
   std::string twice;
   scan(text, [&](const std::string& pointer, std::size_t, bool repeated) {
@@ -235,7 +230,7 @@ std::string explained(const InputError& error, std::string place, const std::str
   if (error.pointer().empty()) return place + ": " + error.what();
   if (!text.empty())
     if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
-  return place + ": at " + error.pointer() + ": " + error.what();
+  return place + ": at " + shortened(error.pointer()) + ": " + error.what();
 }
 
 }  // namespace ricochet

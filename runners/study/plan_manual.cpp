@@ -80,7 +80,7 @@ ParameterSpec parameter(const std::string& key, const JsonPlace& place) {
   place.close({"default", "range", "unit", "text", "type", "role"});
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (key.empty() || key[0] < 'a' || key[0] > 'z' || !std::all_of(key.begin(), key.end(), allowed))
-    throw InputError(place.pointer(), "the parameter \"" + key +
+    throw InputError(place.pointer(), "the parameter \"" + shortened(key) +
                                           "\" cannot be written in a study; names of parameters begin with a letter "
                                           "and are made of a-z, 0-9 and '_'");
   // What the object of a method holds beside its parameters.

@@ -104,7 +104,7 @@ std::vector<double> LinearFormulas::weights(const std::string& text, const std::
     if (std::isfinite(size) && !(std::abs(found - expected) <= round_off * size))
       throw InputError(pointer, fmt::format("the formula \"{}\" is not linear in {}; expected a sum of terms, each a "
                                             "coefficient times one of them",
-                                            text, quoted_list(basis_)));
+                                            shortened(text), quoted_list(basis_)));
   }
   return weights;
 }
@@ -141,14 +141,14 @@ PlanValues::PlanValues(const JsonPlace& plan, double h, const ProblemFacts& fact
 
 void PlanValues::name(const std::string& name, const std::string& pointer, const char* what) {
   if (!is_formula_name(name))
-    throw InputError(pointer, "the name \"" + name +
+    throw InputError(pointer, "the name \"" + shortened(name) +
                                   "\" cannot stand in a formula; expected a letter, then letters, digits and '_'");
   if (std::find(reserved().begin(), reserved().end(), name) != reserved().end() || numbers_.is_taken(name))
-    throw InputError(pointer, "the name \"" + name + "\" is taken: formulas know " + quoted_list(reserved()) +
-                                  ", pi, e and the functions; choose another");
+    throw InputError(pointer, "the name \"" + shortened(name) + "\" is taken: formulas know " +
+                                  quoted_list(reserved()) + ", pi, e and the functions; choose another");
   for (const auto& [other, is] : taken_)
     if (other == name)
-      throw InputError(pointer, "the name \"" + name + "\" is that of " + is + " already; choose another");
+      throw InputError(pointer, "the name \"" + shortened(name) + "\" is that of " + is + " already; choose another");
   taken_.emplace_back(name, what);
 }
 
@@ -174,8 +174,8 @@ void PlanValues::read_let(const std::string& name, const JsonPlace& place) {
 double PlanValues::finite(double value, const std::string& text, const std::string& pointer) const {
   if (std::isfinite(value)) return value;
   if (finite_ == Finite::ignored) return 0;
-  throw InputError(pointer, fmt::format("the formula \"{}\" gives {} where {}; expected a finite number", text,
-                                        none_or(value), where_));
+  throw InputError(pointer, fmt::format("the formula \"{}\" gives {} where {}; expected a finite number",
+                                        shortened(text), none_or(value), where_));
 }
 
 double PlanValues::number(const JsonPlace& place) {

@@ -30,8 +30,8 @@ const PluginManual& require_method(Role role, const std::string& name, const std
   std::vector<std::string> names = catalogue.names(role);
   for (const std::string& known : registry.names(role))
     if (std::find(names.begin(), names.end(), known) == names.end()) names.push_back(known);
-  std::string message =
-      std::string("no plugin provides the ") + role_phrase(role) + " \"" + name + "\"" + did_you_mean(name, names);
+  std::string message = std::string("no plugin provides the ") + role_phrase(role) + " \"" + shortened(name) + "\"" +
+                        did_you_mean(name, names);
   message += names.empty() ? " (no " + std::string(role_phrase(role)) +
                                  " was found at all; `ricochet doctor` shows the plugin folders)"
                            : " (found: " + quoted_list(names) + ")";
@@ -64,7 +64,7 @@ std::string name_of(const Json& entry, const std::string& pointer) {
   if (name == entry.end()) {
     for (const auto& [key, ignored] : entry.items())
       if (nearest_name(key, {"name"}) == "name")
-        throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"; did you mean \"name\"?");
+        throw InputError(pointer_to(pointer, key), "unknown key \"" + shortened(key) + "\"; did you mean \"name\"?");
     throw InputError(pointer_to(pointer, "name"), "missing; a method needs the name of its plugin");
   }
   if (!name->is_string())

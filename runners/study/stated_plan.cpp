@@ -33,7 +33,8 @@ PlanSource source_of(const Json& entry, const std::string& pointer, const fs::pa
   if (file == entry.end()) {
     for (const auto& [key, ignored] : entry.items())
       if (const std::string near = nearest_name(key, {file_key, plan_key}); !near.empty())
-        throw InputError(pointer_to(pointer, key), "unknown key \"" + key + "\"; did you mean \"" + near + "\"?");
+        throw InputError(pointer_to(pointer, key),
+                         "unknown key \"" + shortened(key) + "\"; did you mean \"" + near + "\"?");
     throw InputError(pointer_to(pointer, file_key),
                      "missing; the time scheme \"plan\" has the path of a plan here, or the plan itself as \"plan\"");
   }
@@ -53,12 +54,12 @@ bool is_new(const PlanSource& source, const std::string& name, const std::string
   for (const Json& other : before) {
     if (other.at("name") != name || !other.contains(plan_key)) continue;
     if (other.at(plan_key) == source.plan) return false;
-    throw InputError(where, "another plan of this study has the name \"" + name +
+    throw InputError(where, "another plan of this study has the name \"" + shortened(name) +
                                 "\" already: tables could not tell them apart; give it a name of its own");
   }
   const auto refuse = [&](const std::string& provider) {
-    throw InputError(where, "the plan states the name \"" + name + "\", which the time scheme of " + provider +
-                                " has: tables could not tell them apart; give it a name of its own");
+    throw InputError(where, "the plan states the name \"" + shortened(name) + "\", which the time scheme of " +
+                                provider + " has: tables could not tell them apart; give it a name of its own");
   };
   const auto& all = catalogue.provided();
   const auto provider = std::find_if(
@@ -125,8 +126,8 @@ std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& point
     throw InputError(where, source.explain(error));
   }
   if (const auto given = entry.find("name"); given != entry.end() && *given != stated_plan && *given != name)
-    throw InputError(pointer_to(pointer, "name"),
-                     "expected \"plan\" or \"" + name + "\", the name that the plan states, found " + quote(*given));
+    throw InputError(pointer_to(pointer, "name"), "expected \"plan\" or \"" + shortened(name) +
+                                                      "\", the name that the plan states, found " + quote(*given));
   if (is_new(source, name, where, before, catalogue, registry)) {
     register_plan(source, source.file.empty() ? registry : methods);
     if (!source.file.empty()) {

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/shortened.hpp>
 
 using namespace ricochet;
 
@@ -38,4 +39,15 @@ TEST_CASE("errors carry what a person needs to act") {
   CHECK(input.pointer() == "/scene/structure/lenght");
   CHECK(std::string(input.what()) == "unknown key");
   CHECK(std::string(PluginError("time-x.so: no").what()) == "time-x.so: no");
+}
+
+TEST_CASE("a text is quoted whole up to 80 characters, and by its first 80 beyond") {
+  CHECK(shortened("") == "");
+  CHECK(shortened(std::string(80, 'a')) == std::string(80, 'a'));
+  CHECK(shortened(std::string(81, 'a')) == std::string(80, 'a') + "…");
+  // Characters, not bytes, are counted, and none is cut.
+  std::string umlauts;
+  for (int i = 0; i < 80; ++i) umlauts += "ü";
+  CHECK(shortened(umlauts) == umlauts);
+  CHECK(shortened(umlauts + "ü") == umlauts + "…");
 }

@@ -141,3 +141,31 @@ TEST_CASE("a value that is no finite number is an error that says where") {
         "/here: the formula \"1/x\" gives an infinite value at x = 0 m; expected a finite number");
   CHECK_THROWS_AS(Formula(std::nan("")), InputError);
 }
+
+TEST_CASE("a formula that is too long is told by its beginning, the limit and the way out") {
+  const auto sum = [](std::size_t size) {
+    std::string text = "t";
+    while (text.size() + 2 <= size) text += "+1";
+    return text + std::string(size - text.size(), ' ');
+  };
+  // What the parser takes, to the character.
+  CHECK(Formula(sum(19999), "/here")(0, 1) == 10000);
+  const std::string said = refused(sum(20000));
+  CHECK(said == "/here: the formula \"" + sum(20000).substr(0, 80) +
+                    "…\" has 20000 characters; expected at most 19999: shorten it");
+  CHECK_THAT(input_error([&] { Formula(sum(82000), "/scene/load/0/force"); }),
+             Contains("82000 characters") && Contains("or give a list of several loads"));
+}
+
+TEST_CASE("no error echoes more than the beginning of a formula") {
+  const std::string tail = std::string(5000, ' ') + "+1";
+  for (const std::string& text : {"2*y" + tail, "sqr(x)" + tail, "2*(x" + tail, "2x" + tail, "x = 3" + tail,
+                                 "0,1" + tail, "1/0" + tail, "sqrt(-1)" + tail, "x+" + std::string(5000, 'y'),
+                                 "x+\"" + std::string(5000, 'y') + "\"", std::string(5000, '(')}) {
+    const std::string said = refused(text);
+    CAPTURE(said);
+    CHECK(said.size() > 20);
+    CHECK(said.size() < 400);
+  }
+  CHECK(input_error([&] { Formula("log(x - t)" + tail, "/here")(1, 2); }).size() < 400);
+}

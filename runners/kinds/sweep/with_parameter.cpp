@@ -174,8 +174,8 @@ void check_repeats(const Formula& load, const std::string& pointer, const std::s
     throw InputError(pointer, fmt::format("the load \"{}\" does not repeat with the forcing period of {:.6g} s: "
                                           "at x = {:.6g} m it differs by {:.3g}{} between t = {:.6g} s and {:g} "
                                           "period{} later; expected f(x, t + T) = f(x, t)",
-                                          load.text(), period, worst_x, worst, unit.empty() ? "" : " " + unit, worst_t,
-                                          worst_k, worst_k == 1 ? "" : "s"));
+                                          shortened(load.text()), period, worst_x, worst,
+                                          unit.empty() ? "" : " " + unit, worst_t, worst_k, worst_k == 1 ? "" : "s"));
 }
 
 }  // namespace
