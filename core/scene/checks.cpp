@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/require_positive.hpp>
@@ -61,7 +62,8 @@ void check_support(const SupportSpec& support) {
 void check_variables(const SceneSpec& scene) {
   const auto only_x = [](const Formula& formula, const std::string& pointer, const char* what) {
     require(!formula.uses_t(), pointer,
-            fmt::format("the formula \"{}\" depends on t; expected {} as a formula in x only", formula.text(), what));
+            fmt::format("the formula \"{}\" depends on t; expected {} as a formula in x only",
+                        shortened(formula.text()), what));
   };
   if (scene.stops.lower) only_x(*scene.stops.lower, "/scene/stops/lower", "a stop");
   if (scene.stops.upper) only_x(*scene.stops.upper, "/scene/stops/upper", "a stop");
@@ -214,7 +216,7 @@ void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u,
     const bool above = u[row] > upper[row] + 1e-12 * (std::abs(u[row]) + std::abs(upper[row]));
     const bool below = u[row] < lower[row] - 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
     if (!above && !below) continue;
-    throw InputError(
+    throw NoStart(
         pointer,
         fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state between the "
                     "stops",

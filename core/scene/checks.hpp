@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <vector>
@@ -17,7 +18,13 @@ double tip_position(const SceneSpec& scene);
 /// Positions of the contact points: free nodes, the tip, or the positions given; empty without stops.
 std::vector<double> contact_positions(const SceneSpec& scene, int elements);
 
-/// Throws InputError at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m); `what` names u
+/// The initial state lies beyond a stop: the scene is possible, but no motion of it begins there.
+class NoStart : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Throws NoStart at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m); `what` names u
 /// in the sentence. A passage smaller than 1e-12 of the values compared is rounding.
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
                          const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what);

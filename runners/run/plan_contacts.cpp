@@ -35,9 +35,15 @@ std::optional<ContactSpring> spring_of(const StudyCase& one, double stiffness, c
   if (const auto* oscillator = std::get_if<OscillatorSpec>(&one.scene.structure))
     return ContactSpring{stiffness, oscillator->mass,
                          std::sqrt((oscillator->stiffness + stiffness) / oscillator->mass)};
-  const auto built = discretise(one.scene, one.elements, *make_mass(one, registry));
-  const auto* problem = std::get_if<SemiDiscrete>(&built);
-  return problem && problem->dofs() <= most_dofs ? contact_spring(*problem, stiffness) : std::nullopt;
+  SceneSpec scene = one.scene;
+  scene.initial = {};
+  try {
+    const auto built = discretise(scene, one.elements, *make_mass(one, registry));
+    const auto* problem = std::get_if<SemiDiscrete>(&built);
+    return problem && problem->dofs() <= most_dofs ? contact_spring(*problem, stiffness) : std::nullopt;
+  } catch (const InputError&) {  // a value of the scene that none of its orbits has
+    return std::nullopt;
+  }
 }
 
 // A free mass that meets the law at one metre per second.

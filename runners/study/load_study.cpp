@@ -107,8 +107,10 @@ std::string column_of(const std::string& scene_pointer) {
   return column;
 }
 
-// Reads and checks every scene; an offending value that came from a list is named with its place in the list.
-std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest) {
+// Reads and checks every scene that is marched; an offending value that came from a list is named with its place in the
+// list.
+std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis>& axes, int finest,
+                                       const StudyKind& kind, const Json& settings) {
   std::vector<SceneOption> options;
   Product product;
   for (const Axis& axis : axes) product.add(axis.values.size());
@@ -125,6 +127,17 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
       option.scene = read_scene(option.json);
       check_scene(option.scene, finest);
     } catch (const InputError& error) {
+      if (kind.marches_another) {
+        StudyCase one;
+        one.scene = option.scene;
+        one.scene_json = option.json;
+        one.elements = finest;
+        one.settings = settings;
+        if (kind.marches_another(one)) {
+          options.push_back(std::move(option));
+          continue;
+        }
+      }
       std::string pointer = error.pointer();
       for (std::size_t a = 0; a < axes.size(); ++a)
         if (pointer == axes[a].pointer || pointer.starts_with(axes[a].pointer + "/"))
@@ -214,7 +227,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   everything.refuse_above(largest_study, "");
 
   const int finest = *std::max_element(meshes.begin(), meshes.end());
-  const std::vector<SceneOption> scenes = expand_scenes(resolved["scene"], axes, finest);
+  const std::vector<SceneOption> scenes = expand_scenes(resolved["scene"], axes, finest, kind, settings);
   if (kind.check_methods) {
     const int coarsest = *std::min_element(meshes.begin(), meshes.end());
     kind.check_methods(resolved, settings, registry, everything.count(),

@@ -24,6 +24,9 @@ struct StudyKind {
   /// The same once the methods are known. `cases`: number of combinations of the axes; `dofs`: of the coarsest mesh.
   std::function<void(const Json& resolved, const Json& settings, const Registry& registry, double cases, int dofs)>
       check_methods;
+  /// Whether some scene that the case marches in place of its own is possible, where its own is not: what is never
+  /// marched is not checked. Empty: cases march their own scene.
+  std::function<bool(const StudyCase& study_case)> marches_another;
   /// Completes a case before it gets its id.
   std::function<void(const Json& settings, const Registry& registry, StudyCase& study_case)> complete;
   /// Refuses a study none of whose cases could run, once all cases are there.

@@ -38,6 +38,13 @@ CellEnd refused_end(const std::string& sentence) {
   return end;
 }
 
+CellEnd no_start_end(const std::string& sentence) {
+  CellEnd end;
+  end.status = no_start;
+  end.reason = sentence;
+  return end;
+}
+
 std::string to_bytes(const std::vector<CellEnd>& ends) {
   return to_bytes(ends, ends_mark);
 }

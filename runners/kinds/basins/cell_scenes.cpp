@@ -42,17 +42,21 @@ int CellScenes::moving(double value) {
 CellScenes::Prepared CellScenes::prepare(std::size_t column, std::size_t row) {
   Prepared out;
   const double x = axes_[0].values[column], y = axes_[1].values[row];
+  const auto refused = [&](int scene) {
+    out.refusal = (*scenes_)[scene].refusal;
+    out.no_start = (*scenes_)[scene].no_start;
+    return !out.refusal.empty();
+  };
   if (!shared_) {
     out.task.scene = scenes_->add({{{axes_[0].pointer, x}, {axes_[1].pointer, y}}});
-    out.refusal = (*scenes_)[out.task.scene].refusal;
+    refused(out.task.scene);
     out.task.lane = (*scenes_)[out.task.scene].lane;
     return out;
   }
   out.task.scene = displaced(turned_ ? y : x);
-  out.refusal = (*scenes_)[out.task.scene].refusal;
-  if (!out.refusal.empty()) return out;
+  if (refused(out.task.scene)) return out;
   const int velocity = moving(turned_ ? x : y);
-  out.refusal = (*scenes_)[velocity].refusal;
+  refused(velocity);
   out.task.lane = (*scenes_)[out.task.scene].lane;
   out.task.lane.velocity = (*scenes_)[velocity].lane.velocity;
   return out;

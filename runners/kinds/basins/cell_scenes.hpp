@@ -19,6 +19,7 @@ class CellScenes {
   /// The orbit of a cell from the scene's own initial state, or why there is none.
   struct Prepared {
     std::string refusal;
+    bool no_start = false;  ///< the cell begins beyond a stop
     OrbitTask task;
   };
   Prepared prepare(std::size_t column, std::size_t row);

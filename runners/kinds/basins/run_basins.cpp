@@ -109,7 +109,7 @@ class BasinsRun {
           places.push_back(&batch.ends[i]);
           tasks.push_back(std::move(cell.task));
         } else {
-          batch.ends[i] = refused_end(cell.refusal);
+          batch.ends[i] = cell.no_start ? no_start_end(cell.refusal) : refused_end(cell.refusal);
         }
       }
     }
@@ -223,9 +223,9 @@ class BasinsRun {
       }
       const CellEnd& end = ends_[sources[cell]];
       const int told = end_of_[sources[cell]];
-      cells.rows.push_back({x, y, text(end.motion.regime), end.period > 0 ? Cell(end.period) : Cell(),
-                            told >= 0 ? Cell(told + 1) : Cell(), sources[cell] == cell, row_of[sources[cell]],
-                            end.status, end.reason});
+      cells.rows.push_back({x, y, end.status == no_start ? no_start : text(end.motion.regime),
+                            end.period > 0 ? Cell(end.period) : Cell(), told >= 0 ? Cell(told + 1) : Cell(),
+                            sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
       for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
         points.add({static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement, point.velocity,
@@ -250,11 +250,17 @@ class BasinsRun {
 
   void finish() {
     write_tables(record_, true);
-    std::size_t marched = 0, complete = 0, refused = 0, lost = 0;
-    const CellEnd* bad = nullptr;
+    std::size_t marched = 0, complete = 0, refused = 0, lost = 0, starts = ends_.size();
+    const CellEnd *bad = nullptr, *beyond = nullptr;
+    for (const std::size_t source : refinement_.sources())
+      if (source < ends_.size() && ends_[source].status == no_start) {
+        beyond = &ends_[source];
+        --starts;
+      }
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
       if (!refinement_.marched(cell)) continue;
       const CellEnd& end = ends_[cell];
+      if (end.status == no_start) continue;
       record_.steps += end.periods * section_.steps_per_period;
       refused += end.status == "refused";
       marched += end.status != "refused";
@@ -263,6 +269,7 @@ class BasinsRun {
       if (end.status != "done" && !bad) bad = &end;
     }
     put_measure(record_, "orbits", static_cast<double>(complete));
+    if (beyond) put_measure(record_, "starts", static_cast<double>(starts));
     if (lost > 0) put_measure(record_, "orbits_lost", static_cast<double>(lost));
     if (lane_periods_ > 0)
       put_measure(record_, "lane_steps_per_second",
@@ -270,14 +277,15 @@ class BasinsRun {
     if (refines(case_))
       record_.notes.push_back(fmt::format(
           "{} of {} cells were marched, {} filled from a marched one of their basin: only boundaries are refined",
-          marched + refused, ends_.size(), ends_.size() - marched - refused));
+          marched + refused, starts, starts - marched - refused));
     record_.status = complete > 0 ? "done" : (marched == 0 ? "refused" : "diverged");
     if (over_budget_) {
       record_.status = "failed";
       record_.reason = fmt::format("the budget of {:g} s was spent: {} of {} cells are known", budget_of(case_),
                                    complete, ends_.size());
     } else if (complete == 0) {
-      record_.reason = "no cell could be marched to its end" + (bad ? "; " + bad->reason : std::string());
+      const CellEnd* why = bad ? bad : beyond;
+      record_.reason = "no cell could be marched to its end" + (why ? "; " + why->reason : std::string());
     } else if (bad) {
       record_.notes.push_back(fmt::format("{} of {} marched cells were refused or stopped; their rows say why",
                                           marched + refused - complete, marched + refused));
@@ -310,9 +318,11 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   CellScenes scenes(study_case, registry);
   const std::size_t columns = scenes.axes()[0].values.size(), rows = scenes.axes()[1].values.size();
   bool possible = false;
+  std::pair<double, double> first_start;
   for (std::size_t cell = 0; cell < columns * rows && !possible; ++cell) {
     const CellScenes::Prepared prepared = scenes.prepare(cell % columns, cell / columns);
     possible = prepared.refusal.empty();
+    first_start = {scenes.axes()[0].values[cell % columns], scenes.axes()[1].values[cell / columns]};
     if (!possible && out.refusal.empty())
       out.refusal = fmt::format("at ({:g}, {:g}): {}", scenes.axes()[0].values[cell % columns],
                                 scenes.axes()[1].values[cell / columns], prepared.refusal);
@@ -321,7 +331,8 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   out.refusal.clear();
   describe_march(out, scenes.scenes(), study_case);
   const GridAxis &x = scenes.axes()[0], &y = scenes.axes()[1];
-  for (const auto& [at_x, at_y] : {std::pair(x.values.front(), y.values.front()), {x.values.back(), y.values.back()}}) {
+  for (const auto& [at_x, at_y] :
+       {first_start, std::pair(x.values.front(), y.values.front()), {x.values.back(), y.values.back()}}) {
     try {
       widen_steps(out, with_parameters(study_case, {{x.pointer, at_x}, {y.pointer, at_y}}));
     } catch (const InputError&) {  // not marched in this corner

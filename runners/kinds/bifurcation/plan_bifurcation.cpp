@@ -51,7 +51,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
   describe_march(out, scenes, study_case);
   for (const double value : {values.front(), values.back()}) {
     try {
-      widen_steps(out, with_parameter(study_case, pointer, value));
+      widen_steps(out, with_parameter(own_state ? study_case : at_rest(study_case), pointer, value));
     } catch (const InputError&) {  // not marched at this end
     }
   }

@@ -128,7 +128,10 @@ class BifurcationRun {
         section_.steps_per_period, recurrence_tolerance, section_.scale, section_.scale * section_.pulsation));
     // At a depth of a thousandth of the room: whoever compares cases orders them by it.
     const auto one = make_law(case_, registry_);
-    if (one->changes_problem()) discretise(case_.scene, case_.elements, *make_mass(case_, registry_), one.get());
+    if (one->changes_problem()) {
+      const StudyCase met = with_parameters(at_rest(case_), scenes_[scenes_.pioneer()].variant.values);
+      discretise(met.scene, case_.elements, *make_mass(case_, registry_), one.get());
+    }
     const auto compliance = contact_compliance(*one, case_.contact.parameters, 1e-3 * section_.scale);
     NumberTable law = contact_law_head();
     law.add({compliance.value_or(std::numeric_limits<double>::quiet_NaN())});

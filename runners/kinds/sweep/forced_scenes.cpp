@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <ricochet/scene/checks.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/explicit_limit.hpp"
@@ -29,8 +30,7 @@ int ForcedScenes::add(SceneVariant variant) {
   ForcedScene& scene = scenes_.back();
   scene.variant = std::move(variant);
   try {
-    StudyCase one = with_parameters(case_, scene.variant.values);
-    if (!scene.variant.own_state) one = at_rest(one);
+    const StudyCase one = with_parameters(scene.variant.own_state ? case_ : at_rest(case_), scene.variant.values);
     scene.pulsation = forcing_pulsation(one.scene);
     const auto* entry = registry_.contact(one.contact.name);
     LaneCandidate candidate;
@@ -65,6 +65,7 @@ int ForcedScenes::add(SceneVariant variant) {
     scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];
   } catch (const InputError& error) {
     scene.refusal = (error.pointer().empty() ? "" : error.pointer() + ": ") + error.what();
+    scene.no_start = dynamic_cast<const NoStart*>(&error) != nullptr;
   } catch (const Refusal& refusal) {
     scene.refusal = refusal.sentence;
   }

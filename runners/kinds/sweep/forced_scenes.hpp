@@ -22,9 +22,10 @@ struct SceneVariant {
 /// One scene of a sweep, made ready.
 struct ForcedScene {
   SceneVariant variant;
-  std::string refusal;  ///< why this one cannot be marched; "" when it can
-  int group = -1;       ///< of those that share one factorisation
-  LaneSpec lane;        ///< with the scene's own initial state
+  std::string refusal;    ///< why this one cannot be marched; "" when it can
+  bool no_start = false;  ///< because its initial state lies beyond a stop
+  int group = -1;         ///< of those that share one factorisation
+  LaneSpec lane;          ///< with the scene's own initial state
   double pulsation = 0;
 };
 

@@ -16,6 +16,7 @@ Kind sweep_kind(RunSweep run) {
   Kind kind;
   kind.format.settings = sweep_settings;
   kind.format.check_methods = check_sweep;
+  kind.format.marches_another = some_value_possible;
   kind.format.complete = mark_sweep;
   kind.format.check_cases = check_values;
   kind.start = [run](const RunContext& context) {
@@ -51,6 +52,7 @@ std::vector<MeasureInfo> orbit_measures() {
   using Of = MeasureInfo::Of;
   return {
       {"orbits", "1", "Orbits that were marched to the end of their kept periods.", Of::computation},
+      {"starts", "1", "Cells of a grid that are starts, where others begin beyond a stop.", Of::computation},
       {"orbits_lost", "1", "Orbits that ended the process which marched them, twice.", Of::computation},
       {"share_periodic", "1", "Share of these orbits that repeat, contact-free ones not counted."},
       {"share_chaotic", "1", "Share of these orbits that are chaotic."},

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <ricochet/scene/semi_discrete.hpp>
 #include <set>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -229,6 +230,53 @@ void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study
   }
 }
 
+namespace {
+
+// The axes of the grid, or the parameter.
+std::vector<GridAxis> swept_axes(const Json& settings) {
+  if (settings.contains("axes")) return grid_axes(settings);
+  return {{settings.at("parameter").at("pointer").get<std::string>(), parameter_values(settings)}};
+}
+
+// `visit` sees each place that the axes go through; true ends the walk, and is returned.
+bool any_place(const std::vector<GridAxis>& axes,
+               const std::function<bool(const std::vector<std::pair<std::string, double>>&)>& visit) {
+  if (axes.empty()) return visit({});
+  for (const double x : axes.front().values) {
+    if (axes.size() == 1) {
+      if (visit({{axes.front().pointer, x}})) return true;
+      continue;
+    }
+    for (const double y : axes.back().values)
+      if (visit({{axes.front().pointer, x}, {axes.back().pointer, y}})) return true;
+  }
+  return false;
+}
+
+// Where no orbit begins in the case's own initial state, that is not looked at.
+StudyCase as_it_starts(const StudyCase& study_case) {
+  const bool grid = study_case.settings.contains("axes");
+  return grid || any_start(starts_of(study_case.settings), true) ? study_case : at_rest(study_case);
+}
+
+}  // namespace
+
+bool some_value_possible(const StudyCase& study_case) {
+  std::vector<GridAxis> axes = swept_axes(study_case.settings);
+  std::erase_if(axes, [](const GridAxis& axis) { return !axis.pointer.starts_with("/scene/"); });
+  const StudyCase one = as_it_starts(study_case);
+  const auto possible = [&](const std::vector<std::pair<std::string, double>>& place) {
+    try {
+      if (place.empty()) check_scene(one.scene, one.elements);
+      with_parameters(one, place);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  return any_place(axes, possible);
+}
+
 void check_values(const Study& study) {
   std::set<std::string> seen;
   std::optional<InputError> first;
@@ -238,30 +286,25 @@ void check_values(const Study& study) {
     any = true;
     const Json& settings = one.settings;
     const bool strobe = settings.at("section") == "strobe";
-    std::vector<GridAxis> axes;
-    if (settings.contains("axes"))
-      axes = grid_axes(settings);
-    else
-      axes = {{settings.at("parameter").at("pointer").get<std::string>(), parameter_values(settings)}};
+    const std::vector<GridAxis> axes = swept_axes(settings);
     std::string key = one.scene_json.dump() + std::to_string(one.elements);
     for (const GridAxis& axis : axes)
       if (!role_of(axis.pointer).empty()) key += one.mass.name + " " + one.contact.name + " " + one.time.name;
     if (!seen.insert(key).second) continue;
-    for (const double x : axes.front().values)
-      for (const double y : axes.size() > 1 ? axes.back().values : std::vector<double>{0.0}) {
-        try {
-          std::vector<std::pair<std::string, double>> place = {{axes.front().pointer, x}};
-          if (axes.size() > 1) place.emplace_back(axes.back().pointer, y);
-          const StudyCase at = with_parameters(one, place);
-          possible = true;
-          if (!strobe || is_forced(at.scene)) return;
-          unforced = true;
-        } catch (const InputError& error) {
-          if (first && (first->pointer() != error.pointer() || std::string(first->what()) != error.what()))
-            same = false;
-          if (!first) first = error;
-        }
+    const StudyCase started = as_it_starts(one);
+    const bool runs = any_place(axes, [&](const std::vector<std::pair<std::string, double>>& place) {
+      try {
+        const StudyCase at = with_parameters(started, place);
+        possible = true;
+        if (!strobe || is_forced(at.scene)) return true;
+        unforced = true;
+      } catch (const InputError& error) {
+        if (first && (first->pointer() != error.pointer() || std::string(first->what()) != error.what())) same = false;
+        if (!first) first = error;
       }
+      return false;
+    });
+    if (runs) return;
   }
   if (!any) throw InputError("/exclude", "every case is excluded; nothing would run");
   if (unforced)

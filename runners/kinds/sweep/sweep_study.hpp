@@ -29,6 +29,10 @@ void check_sweep(const Json& resolved, const Json& settings, const Registry& reg
 /// of the methods, and notes its declaration in the others. To be called when the cases are there.
 void mark_sweep(const Json& settings, const Registry& registry, StudyCase& study_case);
 
+/// Whether the scene is possible at some value of what is swept in it: its own value is never marched, nor is its
+/// initial state where no orbit begins there.
+bool some_value_possible(const StudyCase& study_case);
+
 /// Refuses a study in which no value of any case is possible, or nothing is forced at any value while the section is a
 /// strobe.
 void check_values(const Study& study);

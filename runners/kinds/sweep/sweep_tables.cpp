@@ -279,7 +279,7 @@ Table shifts_head(const SweptColumns& swept) {
 
 Table basin_fractions_head() {
   return {"basin_fractions",
-          "One attractor in one case: its share of the grid.",
+          "One attractor in one case: its share of the grid. Cells that begin beyond a stop are no starts.",
           {{"attractor", "", "Number of the attractor, as in cells.csv."},
            class_column,
            period_column,

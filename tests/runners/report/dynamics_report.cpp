@@ -285,6 +285,42 @@ TEST_CASE("images of basins hold every cell, and their difference counts those t
   CHECK(basins_of(turned).labels[0].name == "period 1");
 }
 
+TEST_CASE("cells that begin beyond a stop have a colour of their own, and no share counts them", "[report]") {
+  StudyResults results = synthetic::basins(20);
+  Table& cells = results.derived[0];
+  const std::string all = basins_said(CaseView(results)).front();
+  const std::size_t of_a_case = cells.rows.size() / 2;
+  const auto set = [&](std::size_t row, const char* name, const Cell& value) {
+    cells.rows[row][*find_column(cells.columns, name)] = value;
+  };
+  // The last column of the grid, in which nothing failed.
+  for (std::size_t row = 0; row < cells.rows.size(); ++row)
+    if (row % of_a_case % 20 == 19)
+      for (const auto& [name, value] : {std::pair("class", Cell("no start")),
+                                        {"status", Cell("no start")},
+                                        {"attractor", Cell()},
+                                        {"period", Cell()}})
+        set(row, name, value);
+  const Basins basins = basins_of(results);
+  REQUIRE(basins.labels.size() == 5);
+  CHECK(basins.labels[4].name == "no start");
+  CHECK_FALSE(basins.labels[4].start);
+  for (std::size_t k = 0; k < 4; ++k) {
+    CHECK(basins.labels[k].start);
+    CHECK(basins.labels[k].colour != basins.labels[4].colour);
+  }
+  CHECK(basins.grids[0].no_starts == 19);
+  const Table counts = basin_counts(CaseView(results));
+  const auto in = [&](const char* name) { return counts.rows[1][*find_column(counts.columns, name)]; };
+  CHECK(in("no_starts") == 19);
+  CHECK(in("undecided").whole().value() + in("decided").whole().value() == static_cast<long long>(of_a_case) + 20 - 19);
+  CHECK(basin_failures(CaseView(results)).rows.size() == 2);  // as before
+  const std::vector<std::string> said = basins_said(CaseView(results));
+  CHECK_THAT(said[0], Contains("of the starts end in one of them"));
+  CHECK(said[1] == "19 of the 380 cells are no starts: they begin beyond a stop, and no share counts them.");
+  CHECK_THAT(all, Contains("of the cells end in one of them"));
+}
+
 TEST_CASE("cells that were not marched themselves are said", "[report]") {
   StudyResults results = synthetic::basins(20);
   Table& cells = results.derived[0];

@@ -12,24 +12,27 @@ Table basin_counts(const CaseView& view) {
              {"filled", "1", "Cells that take the end of a marched one."},
              {"differ", "1", "Cells decided in both grids that end elsewhere."},
              {"same", "1", "Cells decided in both grids that end alike."},
-             {"undecided", "1", "Cells that one of the two leaves undecided."},
+             {"undecided", "1", "Cells that are starts in one of the two, and undecided in one."},
              {"decided", "1", "Cells that both decide."},
-             {"share", "1", "Share of the cells decided in both that differ."}},
+             {"share", "1", "Share of the cells decided in both that differ."},
+             {"no_starts", "1", "Cells that begin beyond a stop: no motion begins there."}},
             {}};
   const Basins basins = basins_of(view.results());
   if (basins.grids.empty()) return out;
   const BasinGrid& first = basins.grids.front();
   const auto decided = [&](std::uint8_t cell) { return cell != BasinGrid::absent && basins.labels[cell].decided; };
+  const auto starts = [&](std::uint8_t cell) { return cell == BasinGrid::absent || basins.labels[cell].start; };
   for (const BasinGrid& grid : basins.grids) {
-    size_t differ = 0, same = 0;
+    size_t differ = 0, same = 0, neither = 0;
     for (size_t i = 0; i < grid.cells.size(); ++i) {
+      neither += !starts(grid.cells[i]) && !starts(first.cells[i]);
       if (!decided(grid.cells[i]) || !decided(first.cells[i])) continue;
       ++(grid.cells[i] == first.cells[i] ? same : differ);
     }
     const size_t both = differ + same;
     const Cell share = both > 0 ? Cell(static_cast<double>(differ) / static_cast<double>(both)) : Cell();
     out.rows.push_back({grid.record->id, first.record->id, grid.cells.size(), grid.filled, differ, same,
-                        grid.cells.size() - both, both, share});
+                        grid.cells.size() - both - neither, both, share, grid.no_starts});
   }
   return out;
 }

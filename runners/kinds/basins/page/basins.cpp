@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "runners/kinds/basins/cell_ends.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
 
 namespace ricochet::report {
@@ -16,7 +17,8 @@ constexpr std::array attractor_colours = {"#0072B2", "#E69F00", "#009E73", "#CC7
 
 /// How a label sorts: attractors by number before everything else.
 using Rank = std::pair<long long, std::string>;
-constexpr long long no_attractor = 1'000'000'000;
+constexpr long long no_attractor = 1'000'000'000, not_started = 2 * no_attractor;
+constexpr const char* not_started_colour = "#E4DFD2";
 
 struct PlacedCell {
   const CaseRecord* record;
@@ -30,6 +32,7 @@ Rank rank_of(const TableReader& rows, size_t row) {
   if (const auto attractor = rows.number(row, rows.column_if_any("attractor"))) return {std::llround(*attractor), ""};
   const std::string status = rows.text(row, rows.column_if_any("status")), regime = rows.text(row, "class");
   const auto period = rows.number(row, "period");
+  if (status == no_start) return {not_started, no_start};
   if (!status.empty() && (status == "failed" || status == "refused" || status == "diverged"))
     return {no_attractor + static_cast<long long>(failed_group), regime_groups[failed_group].name};
   const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
@@ -98,7 +101,9 @@ Basins basins_of(const StudyResults& results) {
   for (const Rank& rank : ranks) {
     index[rank] = static_cast<std::uint8_t>(std::min(out.labels.size(), most_labels - 1));
     if (out.labels.size() == most_labels) continue;
-    if (rank.first >= no_attractor) {
+    if (rank.first == not_started) {
+      out.labels.push_back({rank.second, not_started_colour, false, false});
+    } else if (rank.first >= no_attractor) {
       const size_t group = regime_group(rank.second, std::nullopt);
       out.labels.push_back({rank.second, regime_groups[group].colour, false});
       // Groups such as "period 3" are no words of a class: without attractors they tell the cells apart.
@@ -120,13 +125,15 @@ Basins basins_of(const StudyResults& results) {
   for (const CaseRecord& record : results.cases)
     if (with_cells.contains(&record)) {
       place[&record] = out.grids.size();
-      out.grids.push_back({&record, std::vector<std::uint8_t>(xs.size() * ys.size(), BasinGrid::absent), 0, {}});
+      out.grids.push_back({&record, std::vector<std::uint8_t>(xs.size() * ys.size(), BasinGrid::absent), 0, 0, {}});
     }
   for (const PlacedCell& cell : cells) {
     BasinGrid& grid = out.grids[place.at(cell.record)];
     const std::uint8_t label = index.at(cell.rank);
     grid.cells[at(out.ys, cell.y) * xs.size() + at(out.xs, cell.x)] = label;
-    grid.filled += cell.filled && cell.rank.second != regime_groups[failed_group].name;
+    grid.no_starts += cell.rank.first == not_started;
+    grid.filled +=
+        cell.filled && cell.rank.first != not_started && cell.rank.second != regime_groups[failed_group].name;
     if (cell.rank.second == regime_groups[failed_group].name) ++grid.reasons[cell.reason];
   }
   const auto axes = results.study.find("axes");

@@ -11,7 +11,8 @@ namespace ricochet::report {
 /// What a cell of a grid of basins may end in: an attractor, or a word for what is none.
 struct BasinLabel {
   std::string name, colour;
-  bool decided = true;  ///< an attractor; else undecided, failed …
+  bool decided = true;  ///< an attractor; else undecided, failed, no start …
+  bool start = true;    ///< whether a motion begins there
 };
 
 /// The cells of one case: columns × rows, row after row from the lowest y; `absent` where nothing is known yet.
@@ -20,6 +21,7 @@ struct BasinGrid {
   const CaseRecord* record = nullptr;
   std::vector<std::uint8_t> cells;
   size_t filled = 0;                      ///< cells that take the end of a marched one of their basin
+  size_t no_starts = 0;                   ///< cells that begin beyond a stop
   std::map<std::string, size_t> reasons;  ///< of cells that failed: how many
 };
 

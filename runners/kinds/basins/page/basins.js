@@ -25,6 +25,7 @@
     notes(id) {
       const { count, mark } = ricochet.format, out = [], [counts] = this.counts(id);
       if (counts && counts.filled > 0) out.push(counts.filled + " of " + counts.cells + " cells take the end of a marched one of their basin: only boundaries were marched cell by cell.");
+      if (counts && counts.no_starts > 0) out.push(counts.no_starts + " of " + counts.cells + " cells are no starts: they begin beyond a stop.");
       for (const row of this.failures(id)) out.push(mark("failed") + " " + count(row.cells, "cell failed", "cells failed") + (row.reason ? ": " + row.reason : ""));
       return out;
     }
@@ -71,8 +72,10 @@
     }
     difference(id) {
       const first = this.grids[0], out = this.frame(id, first), own = this.cells(id), other = this.cells(first), [counts] = this.counts(id);
-      const decided = (cell) => cell !== absent && this.labels[cell][2], outcome = (i) => (!decided(own[i]) || !decided(other[i]) ? 2 : own[i] === other[i] ? 1 : 0);
+      const decided = (cell) => cell !== absent && this.labels[cell][2], starts = (cell) => cell === absent || this.labels[cell][3], outcome = (i) => (!starts(own[i]) && !starts(other[i]) ? 3 : !decided(own[i]) || !decided(other[i]) ? 2 : own[i] === other[i] ? 1 : 0);
+      const neither = this.labels.find((label) => !label[3]);
       outcomes.forEach((one, k) => { if ([counts.differ, counts.same, counts.undecided][k] > 0) out.option.series.push(this.series(one, (i) => outcome(i) === k)); });
+      if (neither) out.option.series.push(this.series(neither, (i) => outcome(i) === 3));
       const share = counts.share === null ? "" : " (" + ricochet.format.share(counts.share) + ")";
       out.notes.push(id === first ? "This is what the others are compared with." : counts.differ + " of " + counts.decided + " cells that both decide differ" + share + ".");
       return out;

@@ -26,7 +26,8 @@ std::string fractions_html(const CaseView& view) {
     classes[rows.text(row, "attractor")] = regime_text(rows.text(row, "class"), period);
   }
   const std::vector<std::string> cases = rows.values("case");
-  HtmlTable table("Share of the grid that ends in each attractor, with its 95 % interval.", {{"ends in"}, {"class"}});
+  HtmlTable table("Share of the decided cells that ends in each attractor, with its 95 % interval.",
+                  {{"ends in"}, {"class"}});
   for (const std::string& one : cases) table.add({view.name_of(one)});
   for (const std::string& attractor : rows.values("attractor")) {
     table.row(attractor.empty() ? "none" : "attractor " + attractor).text(classes[attractor]);
@@ -85,17 +86,26 @@ std::string differences_html(const CaseView& view) {
 std::vector<std::string> basins_said(const CaseView& view) {
   const Basins basins = basins_of(view.results());
   if (basins.grids.empty()) return {};
-  size_t attractors = 0, known = 0, decided = 0;
+  size_t attractors = 0, known = 0, decided = 0, fewest = basins.xs.size() * basins.ys.size(), most_beyond = 0;
   for (const BasinLabel& label : basins.labels) attractors += label.decided;
-  for (const BasinGrid& grid : basins.grids)
+  for (const BasinGrid& grid : basins.grids) {
+    fewest = std::min(fewest, grid.no_starts);
+    most_beyond = std::max(most_beyond, grid.no_starts);
     for (const std::uint8_t cell : grid.cells) {
-      known += cell != BasinGrid::absent;
+      known += cell != BasinGrid::absent && basins.labels[cell].start;
       decided += cell != BasinGrid::absent && basins.labels[cell].decided;
     }
-  std::vector<std::string> out = {fmt::format(
-      "Over {} × {} cells in {}: {}; {} of the cells end in one of them.", basins.xs.size(), basins.ys.size(),
-      count_text(basins.grids.size(), "case", "cases"), count_text(attractors, "attractor", "attractors"),
-      known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none")};
+  }
+  std::vector<std::string> out = {
+      fmt::format("Over {} × {} cells in {}: {}; {} of the {} end in one of them.", basins.xs.size(), basins.ys.size(),
+                  count_text(basins.grids.size(), "case", "cases"), count_text(attractors, "attractor", "attractors"),
+                  known > 0 ? share_text(static_cast<double>(decided) / static_cast<double>(known)) : "none",
+                  most_beyond > 0 ? "starts" : "cells")};
+  if (most_beyond > 0)
+    out.push_back(
+        fmt::format("{} of the {} cells are no starts: they begin beyond a stop, and no share counts them.",
+                    fewest == most_beyond ? std::to_string(most_beyond) : fmt::format("{} to {}", fewest, most_beyond),
+                    basins.xs.size() * basins.ys.size()));
   double most = -1;
   std::string who;
   const AxisRows differences(view.results(), "basin_differences");

@@ -7,6 +7,7 @@
 #include <map>
 #include <ricochet/loader/catalogue.hpp>
 
+#include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
@@ -136,16 +137,47 @@ TEST_CASE("Scenes shared by columns and rows are those of each cell alone") {
   CHECK(first(run(turned), 2) == wanted);
 }
 
-TEST_CASE("Cells behind a stop are refused one by one") {
+TEST_CASE("Cells behind a stop are no starts, and are counted apart") {
   Json study = grid_study(4, 3, false);
   study["axes"][0]["to"] = 0.5;
   const CaseRecord record = run(study);
-  const auto status = cells(record, "status"), reason = cells(record, "reason");
+  const auto status = cells(record, "status"), reason = cells(record, "reason"), regime = cells(record, "class");
   CHECK(record.status == "done");
+  CHECK(measure(record, "orbits") == 9.0);
+  CHECK(measure(record, "starts") == 9.0);
   for (std::size_t cell = 0; cell < status.size(); ++cell) {
-    CHECK(status[cell] == (cell % 4 == 3 ? "refused" : "done"));
-    if (cell % 4 == 3) CHECK_THAT(reason[cell].text(), Contains("stop"));
+    CHECK(status[cell] == (cell % 4 == 3 ? "no start" : "done"));
+    CHECK((regime[cell] == "no start") == (cell % 4 == 3));
+    if (cell % 4 == 3) CHECK_THAT(reason[cell].text(), Contains("beyond the upper stop at 0.2 m"));
   }
+  // The same cells without the column behind the stop: the same ends, and nothing to count apart.
+  study["axes"][0]["to"] = -1;
+  study["axes"][0]["count"] = 3;
+  const CaseRecord inside = run(study);
+  CHECK_FALSE(measure(inside, "starts"));
+  const auto wanted = cells(inside, "class");
+  for (std::size_t cell = 0; cell < wanted.size(); ++cell) CHECK(regime[cell / 3 * 4 + cell % 3] == wanted[cell]);
+}
+
+TEST_CASE("Where no cell is a start the case is refused, with the stop") {
+  Json study = grid_study(2, 2, false);
+  study["axes"][0]["from"] = 0.3;
+  study["axes"][0]["to"] = 0.5;
+  CHECK_THROWS_WITH(Opened(study), Contains("beyond the upper stop"));
+}
+
+TEST_CASE("A value that every cell replaces is not looked at") {
+  Json study = grid_study(3, 2, false);
+  const CaseRecord wanted = run(study);
+  study["scene"]["initial"]["displacement"] = 5;  // behind the stop
+  const CaseRecord found = run(study);
+  CHECK(cells(found, "class") == cells(wanted, "class"));
+  CHECK(found.numbers.front().values[2].get() == wanted.numbers.front().values[2].get());
+  const Opened opened(study);
+  CHECK(plan_basins(opened.study.cases.front(), opened.registry).refusal.empty());
+  // What no cell replaces is.
+  study["scene"]["structure"]["damping"] = -1;
+  CHECK_THROWS_WITH(Opened(study), Contains("damping"));
 }
 
 TEST_CASE("Cells marched in batches of their own or many batches together have the same bits") {

@@ -277,6 +277,27 @@ TEST_CASE("What is possible at some value is no error of the study") {
   CHECK(refusal(pair).empty());
 }
 
+TEST_CASE("A value of the scene that no orbit takes is not looked at") {
+  // That of the parameter, beside values that are possible.
+  Json own = sweep_with("/parameter", range(0.05, 0.09, 3));
+  own["scene"]["stops"]["at"] = "nodes";
+  own["scene"]["support"]["amplitude"] = 5;
+  CHECK(refusal(own).empty());
+  own["parameter"] = {{"pointer", "/scene/structure/damping/stiffness"}, {"values", {1e-4, 2e-4}}};
+  CHECK_THAT(refusal(own), StartsWith("/scene/support/amplitude: "));
+  // The initial state, where orbits begin at rest.
+  Json rest = small_sweep();
+  rest["start"] = {"rest", "up"};
+  rest["scene"]["initial"]["displacement"] = "x";
+  CHECK(refusal(rest).empty());
+  rest["start"] = {"rest", "state"};
+  CHECK_THAT(refusal(rest), StartsWith("/scene/initial/displacement: "));
+  // Of several scenes the one that is impossible at every value is named.
+  Json listed = small_basins();
+  listed["scene"]["structure"]["stiffness"] = {1, -1};
+  CHECK_THAT(refusal(listed), StartsWith("/scene/structure/stiffness/1: "));
+}
+
 TEST_CASE("Steps per period are an axis that excludes may name") {
   const Study study =
       parse(sweep_with("/exclude", Json::array({{{"steps_per_period", 8000}, {"mass", "poor"}, {"why", "too long"}}})));
