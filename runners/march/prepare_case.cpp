@@ -147,6 +147,16 @@ void record_early_end(CaseRecord& record, const Marcher& marcher, long long step
   record.steps = status.step;
 }
 
+void add_doubts(CaseRecord& record, const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) {
+    if (sentence.empty()) continue;
+    if (record.status == "done")
+      record.reason += (record.reason.empty() ? "" : "; ") + sentence;
+    else
+      record.notes.push_back(sentence);
+  }
+}
+
 std::vector<std::pair<std::string, std::string>> left_out_pairs(const std::vector<LeftOut>& items) {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const LeftOut& item : items) pairs.emplace_back(item.item, item.reason);

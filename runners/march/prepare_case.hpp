@@ -35,6 +35,10 @@ CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared);
 /// running lane ran out of its budget.
 void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget);
 
+/// What makes the figures of a finished case doubtful, a sentence each ("" is none): its reason where it is done, else
+/// notes.
+void add_doubts(CaseRecord& record, const std::vector<std::string>& sentences);
+
 /// The case's "march".
 MarchWay march_way(const StudyCase& study_case);
 

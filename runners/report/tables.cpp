@@ -12,6 +12,7 @@
 #include "runners/report/template.hpp"
 #include "runners/store/curve_files.hpp"
 #include "runners/table/in_order_met.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -233,7 +234,22 @@ std::string notes_html(const CaseView& view) {
   Fill with, entries{Fill::type::list};
   const auto groups = grouped<std::string>(
       view, [](const CaseRecord& r) -> const auto& { return r.notes; });
-  if (groups.empty()) return "";
+  bool any = !groups.empty();
+  if (const Table* reasons = find_table(view.results().derived, "reasons")) {
+    const TableReader rows(*reasons);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (rows.text(row, "status") != "done") continue;
+      const auto cases = static_cast<std::size_t>(rows.number(row, "cases").value_or(0));
+      Fill one;
+      one.set("note", rows.text(row, "reason"));
+      one.set("cases", cases == 1 ? view.name_of(rows.text(row, "case"))
+                                  : fmt::format("{} cases, of this kind; this is {}", cases,
+                                                view.name_of(rows.text(row, "case"))));
+      entries << one;
+      any = true;
+    }
+  }
+  if (!any) return "";
   for (const auto& [note, cases] : groups) {
     Fill one;
     one.set("note", note);

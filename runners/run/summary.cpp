@@ -45,7 +45,9 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
   if (record.status == "done") {
     const Kind* known = find_kind(kind);
     const std::string own = known && known->outcome ? known->outcome(record) : "";
-    return own.empty() ? "done" : "done: " + own;
+    std::string text = own.empty() ? "done" : "done: " + own;
+    if (!record.reason.empty()) text += (own.empty() ? ": " : "; ") + record.reason;
+    return text;
   }
   return record.reason.empty() ? record.status : fmt::format("{}: {}", record.status, record.reason);
 }
@@ -80,11 +82,16 @@ std::string extremes_text(const StudyResults& results) {
   }
   const Table* table = find_table(results.derived, "reasons");
   if (!table) return out;
-  std::map<std::string, std::pair<int, std::string>> reasons;  // by status: cases of the most frequent one
+  // By status the reason of most cases; of done ones each.
+  std::map<std::string, std::pair<int, std::string>> reasons;
   const TableReader rows(*table);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    auto& [count, reason] = reasons[rows.text(row, "status")];
     const int cases = static_cast<int>(rows.number(row, "cases").value_or(0));
+    if (rows.text(row, "status") == "done") {
+      out += fmt::format("done, with a doubt ({}): {}\n", cases, rows.text(row, "reason"));
+      continue;
+    }
+    auto& [count, reason] = reasons[rows.text(row, "status")];
     if (cases > count) count = cases, reason = rows.text(row, "reason");
   }
   for (const auto& [status, most] : reasons) out += fmt::format("{} ({}): {}\n", status, most.first, most.second);

@@ -21,7 +21,8 @@ struct CaseRecord {
   std::string id;
   std::vector<std::pair<std::string, nlohmann::ordered_json>> axes;
   std::string status;  ///< done, refused, diverged, failed
-  std::string reason;  ///< "" when done
+  /// Why it is not done; of a done one what makes its figures doubtful, sentences joined by "; ": "" where nothing does
+  std::string reason;
   long long steps = 0;
   double setup_seconds = 0, run_seconds = 0;
   std::vector<std::pair<std::string, double>> measures;  ///< in a fixed order, finite (an absent measure is left out)

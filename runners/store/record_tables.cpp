@@ -71,7 +71,7 @@ Table cases_table(const StudyResults& results) {
   Table table = table_of_cases(
       results, "cases", "One case: a combination of the study's axes, what became of it, and its measures.",
       {{"status", "", "done, refused (the combination does not apply), diverged, failed, or partial while it runs."},
-       {"reason", "", "Why the case was refused, diverged or failed."},
+       {"reason", "", "Why the case was refused, diverged or failed; of a done one, what makes its figures doubtful."},
        {"steps", "1", "Steps of time that were marched."},
        {"setup_seconds", "s", "Processor time of what comes before the first step."},
        {"run_seconds", "s", "Processor time of the marching."}});

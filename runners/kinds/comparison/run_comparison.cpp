@@ -7,6 +7,8 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
+#include "runners/march/gap_watch.hpp"
+#include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
@@ -121,6 +123,9 @@ CaseRecord run_comparison(const StudyCase& study_case, const Registry& registry,
   } else {
     record_early_end(record, marcher, prepared.steps, budget);
   }
+  std::vector<std::string> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
+  doubts.push_back(GapWatch::crossed(marcher, recorder));
+  add_doubts(record, doubts);
   return record;
 }
 

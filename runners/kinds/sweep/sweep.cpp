@@ -1,13 +1,17 @@
 #include "runners/kinds/sweep/sweep.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "runners/kinds/single_study.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
 #include "runners/kinds/sweep/dynamics_tables.hpp"
 #include "runners/kinds/sweep/sweep_study.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
+#include "runners/march/load_changes.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
@@ -27,7 +31,12 @@ Kind sweep_kind(RunSweep run) {
     runner.run = [run, shelf, seats, blocks = context.blocks, key = context.key, &registry = context.registry](
                      const StudyCase& study_case, const std::atomic<bool>& stop) {
       const ThreadSeats::Seat seat(*seats);
-      return run(study_case, registry, CaseDesk{*shelf, key(study_case), seats.get(), blocks}, stop);
+      CaseRecord record = run(study_case, registry, CaseDesk{*shelf, key(study_case), seats.get(), blocks}, stop);
+      if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
+        add_doubts(record,
+                   load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,
+                                study_case.steps_per_period));
+      return record;
     };
     runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](
                        const StudyCase& study_case, const std::string& order,

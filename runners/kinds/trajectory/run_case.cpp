@@ -15,6 +15,8 @@
 #include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
+#include "runners/march/gap_watch.hpp"
+#include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"
@@ -29,8 +31,8 @@ constexpr double audit_seconds_per_step = 1e-7;
 // samples. Passes everything on to the observer behind it.
 class Sampler final : public StepObserver {
  public:
-  Sampler(const EnergyAudit& audit, ImpactRecorder& recorder, StepObserver& behind)
-      : audit_(audit), recorder_(recorder), behind_(behind) {
+  Sampler(const Marcher& marcher, const EnergyAudit& audit, ImpactRecorder& recorder, StepObserver& behind)
+      : audit_(audit), recorder_(recorder), behind_(behind), gaps_(marcher) {
     for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
   }
@@ -52,6 +54,7 @@ class Sampler final : public StepObserver {
     if (!marcher.status(0).running) return;
     see(marcher.tip(0));
     deepest_ = std::max(deepest_, audit_.penetration(0));
+    gaps_.see(marcher, audit_.penetration(0));
   }
   long long may_skip(const Marcher& marcher) override { return behind_.may_skip(marcher); }
   // Where the tip went is searched for.
@@ -59,6 +62,7 @@ class Sampler final : public StepObserver {
     behind_.skipped(marcher, steps);
     if (!marcher.status(0).running) return;
     deepest_ = std::max(deepest_, steps.penetration);
+    gaps_.see(marcher, steps.penetration);
     steps.flight->tip_extremes(low_, high_);
     largest_tip_ = std::max({largest_tip_, std::abs(low_), std::abs(high_)});
   }
@@ -91,6 +95,7 @@ class Sampler final : public StepObserver {
   }
   Curve finish() { return std::move(curve_); }
   double largest_tip() const { return largest_tip_; }
+  const GapWatch& gaps() const { return gaps_; }
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -110,6 +115,7 @@ class Sampler final : public StepObserver {
   StepObserver& behind_;
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
   double largest_tip_ = 0;
+  GapWatch gaps_;
   bool seen_ = true;  // the tip where the march stands
   Curve curve_;
 };
@@ -128,7 +134,7 @@ struct Watched {
         means(study_case.settings, audit, marcher.law().reads().has_value(), recorder),
         forces(study_case.settings, means),
         snapshots(marcher, steps, snapshots_asked(study_case.settings), behind_snapshots(study_case.settings)),
-        sampler(audit, recorder,
+        sampler(marcher, audit, recorder,
                 snapshots_asked(study_case.settings) > 0 ? snapshots : behind_snapshots(study_case.settings)) {}
 
  private:
@@ -208,6 +214,8 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   plan.steps = prepared.steps;
   plan.notes = prepared.notes;
   if (!prepared.program) return plan;
+  for (std::string& change : load_changes(study_case.scene, study_case.step, prepared.steps))
+    plan.notes.push_back(std::move(change));
   plan.coarsest_step = plan.finest_step = study_case.step;
   plan.operator_name = operator_name(prepared.program->kind);
   plan.left_out = left_out_pairs(prepared.program->left_out);
@@ -229,6 +237,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   Prepared prepared = prepare_case(study_case, registry);
   CaseRecord record = begin_record(study_case, prepared);
   if (!prepared.program) return record;
+  std::vector<std::string> doubts = load_changes(study_case.scene, study_case.step, prepared.steps);
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
@@ -271,6 +280,9 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   recorder.finish(marcher);
   fill_measures(record, marcher, audit, *problem);
   add_contact(record, recorder, marcher);
+  doubts.push_back(GapWatch::crossed(marcher, recorder));
+  doubts.push_back(sampler.gaps().passed());
+  add_doubts(record, doubts);
   if (snapshots.taken()) record.numbers.push_back(table_of(snapshots.finish()));
   put_measure(record, "largest_tip_displacement", sampler.largest_tip());
   put_measure(record, "steps_visited", static_cast<double>(marcher.steps_visited()));

@@ -1,0 +1,221 @@
+#include "runners/march/load_changes.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <ricochet/scene/checks.hpp>
+#include <set>
+
+namespace ricochet {
+namespace {
+
+constexpr double beyond_ends = 0.1, beyond_neighbours = 0.5, jumps = 0.25;  // of the largest load
+constexpr long long fewest_looks = 500, most_looks = 2500, steps_per_look = 4;
+constexpr std::size_t most_numbers = 64, most_told = 3;
+
+/// A part of the load as a function of time, N, and its text.
+struct Signal {
+  std::function<double(double)> at;
+  std::string text;
+};
+
+/// One step of a signal: its ends, and what was met between them.
+struct Seen {
+  long long step = 0;
+  double begin = 0, end = 0, low = 0, high = 0, low_at = 0, high_at = 0;
+};
+
+std::vector<Signal> signals_of(const SceneSpec& scene) {
+  std::vector<Signal> signals;
+  const double length = structure_length(scene), tip = tip_position(scene);
+  const double whole = length > 0 ? length : 1;
+  const LoadSpec& load = scene.load;
+  if (load.formula.uses_t())
+    for (const double x : length > 0 ? std::vector<double>{0.37 * length, tip} : std::vector<double>{0.0})
+      signals.push_back(
+          {[f = load.formula, x, whole](double t) { return whole * f.value(x, t); }, load.formula.text()});
+  for (const LoadTerm& term : load.terms) {
+    if (!term.history.uses_t()) continue;
+    double size = term.force ? 1 : 0;
+    if (!term.force)
+      for (const double x : {0.0, 0.37 * length, 0.5 * length, 0.81 * length, length})
+        size = std::max(size, whole * std::abs(term.shape.value(x, 0)));
+    if (size > 0)
+      signals.push_back({[f = term.history, size](double t) { return size * f.value(0, t); }, term.history.text()});
+  }
+  return signals;
+}
+
+/// The numbers of a formula within ]0, end[, where conditions and pulses of it mostly are.
+std::set<double> numbers_in(const std::string& text, double end) {
+  std::set<double> numbers;
+  for (std::size_t i = 0; i < text.size();) {
+    const bool digit = (text[i] >= '0' && text[i] <= '9') || text[i] == '.';
+    if (!digit) {
+      ++i;
+      continue;
+    }
+    char* stop = nullptr;
+    const double number = std::strtod(text.c_str() + i, &stop);
+    const auto next = static_cast<std::size_t>(stop - text.c_str());
+    if (number > 0 && number < end) numbers.insert(number);
+    i = std::max(next, i + 1);
+  }
+  return numbers;
+}
+
+class Look {
+ public:
+  Look(const Signal& signal, double h, long long steps) : signal_(signal), h_(h), steps_(steps) {
+    look_evenly();
+    look_around_numbers();
+    std::sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) { return a.step < b.step; });
+  }
+
+  double largest() const { return largest_; }
+
+  /// Times at which the signal comes and goes, and steps in which it jumps, ascending.
+  void tell(double largest, std::set<double>& passing, std::set<long long>& jumping) {
+    for (const Seen& one : seen_) {
+      const double high = one.high - std::max(one.begin, one.end), low = std::min(one.begin, one.end) - one.low;
+      if (std::max(high, low) > beyond_ends * largest) {
+        passing.insert(high > low ? one.high_at : one.low_at);
+        continue;
+      }
+      const double change = one.end - one.begin;
+      if (!(std::abs(change) > jumps * largest)) continue;
+      const auto stands_out = [&](long long instant, double here, double there, double other) {
+        const double to = here - there, back = here - other;
+        const bool out = std::min(std::abs(to), std::abs(back)) > beyond_neighbours * largest && (to > 0) == (back > 0);
+        if (out) passing.insert(time(instant));
+        return out;
+      };
+      if (one.step + 2 <= steps_ && stands_out(one.step + 1, one.end, one.begin, value(time(one.step + 2)))) continue;
+      if (one.step > 0 && stands_out(one.step, one.begin, one.end, value(time(one.step - 1)))) continue;
+      if (is_jump(one)) jumping.insert(one.step);
+    }
+  }
+
+ private:
+  double time(long long instant) const { return static_cast<double>(instant) * h_; }
+  double value(double t) {
+    const double found = signal_.at(t);
+    if (!std::isfinite(found)) return 0;
+    largest_ = std::max(largest_, std::abs(found));
+    return found;
+  }
+
+  Seen begin(long long step, double value_there) {
+    Seen one;
+    one.step = step;
+    one.begin = value_there;
+    one.end = value(time(step + 1));
+    one.low = std::min(one.begin, one.end);
+    one.high = std::max(one.begin, one.end);
+    return one;
+  }
+  void look_at(Seen& one, double t) {
+    const double found = value(t);
+    if (found < one.low) one.low = found, one.low_at = t;
+    if (found > one.high) one.high = found, one.high_at = t;
+  }
+
+  // One instant inside of each step, nowhere twice at the same phase of it.
+  void look_evenly() {
+    const long long count = std::min(steps_, std::clamp(steps_ / steps_per_look, fewest_looks, most_looks));
+    double phase = 0.5;
+    for (long long i = 0; i < count; ++i) {
+      const long long step = count == steps_
+                                 ? i
+                                 : static_cast<long long>(static_cast<double>(steps_) / static_cast<double>(count) *
+                                                          static_cast<double>(i));
+      if (!seen_.empty() && seen_.back().step == step) continue;
+      const bool next = !seen_.empty() && seen_.back().step + 1 == step;
+      Seen one = begin(step, next ? seen_.back().end : value(time(step)));
+      look_at(one, (static_cast<double>(step) + phase) * h_);
+      phase += std::numbers::phi - 1;
+      phase -= std::floor(phase);
+      seen_.push_back(one);
+    }
+  }
+
+  void look_around_numbers() {
+    const std::set<double> found = numbers_in(signal_.text, time(steps_));
+    const std::vector<double> numbers(found.begin(), found.end());
+    const std::size_t count = std::min(numbers.size(), most_numbers);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double centre = numbers[k * numbers.size() / count];
+      const auto middle = static_cast<long long>(std::floor(centre / h_));
+      for (long long step = std::max(0LL, middle - 1); step <= std::min(steps_ - 1, middle + 1); ++step) {
+        Seen one = begin(step, value(time(step)));
+        for (const double part : {1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.5})
+          for (const double t : {centre - part * h_, centre + part * h_})
+            if (t > time(step) && t < time(step + 1)) look_at(one, t);
+        seen_.push_back(one);
+      }
+    }
+  }
+
+  // Whether half of the change is in an eighth of the step.
+  bool is_jump(const Seen& one) {
+    double left = time(one.step), right = time(one.step + 1), at_left = one.begin, at_right = one.end;
+    for (int halving = 0; halving < 3; ++halving) {
+      const double middle = 0.5 * (left + right), there = value(middle);
+      if (std::abs(there - at_left) > std::abs(at_right - there))
+        right = middle, at_right = there;
+      else
+        left = middle, at_left = there;
+    }
+    return std::abs(at_right - at_left) >= 0.5 * std::abs(one.end - one.begin);
+  }
+
+  const Signal& signal_;
+  double h_;
+  long long steps_;
+  double largest_ = 0;
+  std::vector<Seen> seen_;
+};
+
+std::string some_of(const std::vector<std::string>& times) {
+  const std::size_t count = std::min(times.size(), most_told);
+  return fmt::format("{} s{}", fmt::join(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), ", "),
+                     times.size() > count ? fmt::format(" and {} more", times.size() - count) : "");
+}
+
+}  // namespace
+
+std::vector<std::string> load_changes(const SceneSpec& shared, double step, long long steps) {
+  std::vector<std::string> said;
+  if (!shared.load.uses_t() || steps < 1) return said;
+  const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
+  const std::vector<Signal> signals = signals_of(scene);
+  std::vector<Look> looks;
+  double largest = 0;
+  if (const auto* oscillator = std::get_if<OscillatorSpec>(&scene.structure))
+    largest = std::abs(oscillator->force.amplitude);
+  for (const Signal& signal : signals) largest = std::max(largest, looks.emplace_back(signal, step, steps).largest());
+  std::set<double> passing;
+  std::set<long long> jumping;
+  for (Look& look : looks) look.tell(largest, passing, jumping);
+  std::vector<std::string> times;
+  double last = -step;
+  for (const double t : passing) {
+    if (t - last < step) continue;  // seen twice
+    times.push_back(fmt::format("{:.9g}", last = t));
+  }
+  if (!times.empty())
+    said.push_back(fmt::format("the load comes and goes within a step of {:g} s, at t = {}", step, some_of(times)));
+  times.clear();
+  for (const long long one : jumping)
+    times.push_back(
+        fmt::format("{:.9g} to {:.9g}", static_cast<double>(one) * step, static_cast<double>(one + 1) * step));
+  if (!times.empty()) said.push_back(fmt::format("the load jumps within a step, at t = {}", some_of(times)));
+  return said;
+}
+
+}  // namespace ricochet

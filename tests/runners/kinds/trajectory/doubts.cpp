@@ -1,0 +1,79 @@
+// What a trajectory says of steps that are too long for its load or for its gap.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/runners/kinds/trajectory/case_runs.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A mass of 1 kg between two stops, at 1 m/s.
+Json thrown(double gap, double step, const Json& law) {
+  Json study = Json::parse(R"({
+    "name": "thrown", "kind": "trajectory",
+    "scene": {
+      "structure": {"type": "oscillator", "mass": 1, "stiffness": 0},
+      "stops": {"at": "tip"},
+      "initial": {"velocity": "1"}
+    },
+    "methods": {"mass": "consistent", "time": {"name": "moreau-jean", "restitution": 1}},
+    "samples": 10
+  })");
+  study["scene"]["stops"]["lower"] = -gap / 2;
+  study["scene"]["stops"]["upper"] = gap / 2;
+  study["methods"]["contact"] = law;
+  study["step"] = step;
+  study["duration"] = 50 * step;
+  return study;
+}
+
+const Json rigid = "signorini", soft = {{"name", "penalty"}, {"stiffness", 100}};
+
+}  // namespace
+
+TEST_CASE("a step that is longer than the way from stop to stop is told") {
+  const CaseRecord fine = CaseRuns().first_of(thrown(0.1, 1e-3, rigid));
+  CHECK(fine.status == "done");
+  CHECK(fine.reason.empty());
+  const CaseRecord coarse = CaseRuns().first_of(thrown(1e-3, 1e-2, rigid));
+  CHECK(coarse.status == "done");
+  CHECK_THAT(coarse.reason,
+             Contains("a step of 0.01 s takes a point further than the gap, 10 times as far, first at t"));
+  // One stop has no gap, nor have two that meet.
+  Json one = thrown(1e-3, 1e-2, rigid);
+  one["scene"]["stops"]["lower"] = nullptr;
+  CHECK(CaseRuns().first_of(one).reason.empty());
+  Json meeting = thrown(1e-3, 1e-2, rigid);
+  meeting["scene"]["stops"]["lower"] = meeting["scene"]["stops"]["upper"] = 0;
+  CHECK(CaseRuns().first_of(meeting).reason.empty());
+}
+
+TEST_CASE("a point that is further beyond its stop than the gap is wide is told") {
+  // It turns v √(m/k) = 0.1 m beyond the stop.
+  const auto told = [](double gap, double step) { return CaseRuns().first_of(thrown(gap, step, soft)).reason; };
+  CHECK(told(0.2, 1e-3).empty());
+  CHECK_THAT(told(0.02, 1e-3),
+             Contains("a point passes its stop by more than the gap, up to ") && !Contains("a step of"));
+  Json damped = thrown(0.02, 1e-3, soft);
+  damped["duration"] = 1;
+  damped["step"] = 1e-3;
+  // 0.1 m are five gaps, and a step is a twentieth of one.
+  CHECK_THAT(CaseRuns().first_of(damped).reason, Contains("up to 5 times, first at t = 0.0"));
+}
+
+TEST_CASE("a load that no step sees is told, and a case that fails keeps it as a note") {
+  Json study = thrown(0.1, 1e-3, rigid);
+  study["scene"]["load"] = Json::array({{{"force", "t > 0.0101 && t < 0.0102 ? 1 : 0"}}});
+  const CaseRecord done = CaseRuns().first_of(study);
+  CHECK_THAT(done.reason, Contains("the load comes and goes within a step of 0.001 s, at t = 0.0101"));
+  study["budget"] = 1e-12;
+  study["duration"] = 1000;
+  const CaseRecord failed = CaseRuns().first_of(study);
+  CHECK(failed.status == "failed");
+  CHECK_THAT(failed.reason, Contains("budget") && !Contains("comes and goes"));
+  CHECK(std::any_of(failed.notes.begin(), failed.notes.end(),
+                    [](const std::string& note) { return note.find("comes and goes") != std::string::npos; }));
+}

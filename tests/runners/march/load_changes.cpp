@@ -1,0 +1,90 @@
+#include "runners/march/load_changes.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+using namespace ricochet;
+using Catch::Matchers::Contains;
+
+namespace {
+
+SceneSpec pushed(const std::vector<std::string>& forces) {
+  SceneSpec scene;
+  scene.structure = OscillatorSpec{.mass = 1, .stiffness = 100, .damping = 0, .force = {}};
+  for (const std::string& force : forces)
+    scene.load.terms.push_back(
+        {.force = true, .at = std::nullopt, .shape = Formula(), .history = Formula(force, "/scene/load/0/force", "t")});
+  return scene;
+}
+
+std::vector<std::string> said(const std::string& force, double step, long long steps) {
+  return load_changes(pushed({force}), step, steps);
+}
+
+}  // namespace
+
+TEST_CASE("a load that steps resolve has nothing to be said of") {
+  CHECK(said("5", 0.1, 100).empty());
+  CHECK(said("3 + 2*exp(-t)", 0.1, 100).empty());
+  // Waves of ten steps and more, at any phase; a pulse that lasts as long.
+  for (const double per_period : {10.0, 12.7, 20.0, 64.0})
+    for (const double phase : {0.0, 0.3, 1.1}) {
+      const std::string wave = fmt::format("7*sin(2*pi*t/{} + {})", per_period * 0.01, phase);
+      CAPTURE(wave);
+      CHECK(said(wave, 0.01, 5000).empty());
+      CHECK(said(fmt::format("exp(-((t - 0.5)/{})^2)", per_period * 0.01 / 4), 0.01, 5000).empty());
+    }
+  // A ramp and a table with corners at the steps' own spacing.
+  CHECK(said("t < 1 ? 10*t : 10", 0.01, 200).empty());
+  CHECK(said("t < 0.02 ? 50*t : (t < 0.05 ? 1 + 20*(t - 0.02) : 1.6)", 0.01, 200).empty());
+  // Small beside the largest load.
+  CHECK(load_changes(pushed({"sin(t)", "t > 0.3 && t < 0.3001 ? 0.05 : 0"}), 0.01, 1000).empty());
+  // A support and a force that are harmonic are no formulas.
+  SceneSpec harmonic = pushed({});
+  std::get<OscillatorSpec>(harmonic.structure).force = {.amplitude = 1, .pulsation = 1000, .phase = 0};
+  CHECK(load_changes(harmonic, 0.1, 100).empty());
+}
+
+TEST_CASE("a load that comes and goes within a step is told with its times") {
+  // Within one step of some thousands, wherever it lies in it.
+  for (const double at : {0.30001, 0.30037, 0.30052, 0.30098}) {
+    const auto found = said(fmt::format("t > {0} && t < {0} + 1e-5 ? 1000 : 0", at), 1e-3, 4000);
+    CAPTURE(at, found);
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Contains("comes and goes within a step of 0.001 s, at t = 0.300"));
+  }
+  // The same of a million steps, of which a hundredth is looked at: the formula says where.
+  CHECK(said("abs(t - 0.73311) < 1e-8 ? 4 : 0", 1e-6, 1000000).size() == 1);
+  // One instant alone meets it.
+  const auto once = said("abs(t - 0.5) < 0.004 ? 1 : 0", 0.01, 100);
+  REQUIRE(once.size() == 1);
+  CHECK_THAT(once[0], Contains("comes and goes") && Contains("at t = 0.5 s"));
+  // A wave of three steps.
+  CHECK_THAT(said("sin(2*pi*t/0.03)", 0.01, 100).at(0), Contains("comes and goes") && Contains(" more"));
+  // One part of several, and what is spread over a beam.
+  CHECK(load_changes(pushed({"1 + 0.1*sin(t)", "t > 0.3 && t < 0.3001 ? 5 : 0"}), 0.01, 1000).size() == 1);
+  SceneSpec beam;
+  beam.structure = BeamSpec{.length = 2};
+  beam.load = Formula("x^2*(t > 0.3 && t < 0.3001 ? 5 : 0)", "/scene/load", "xt");
+  CHECK(load_changes(beam, 0.01, 1000).size() == 1);
+  beam.load = LoadSpec();
+  beam.load.terms.push_back({.force = false,
+                             .at = std::nullopt,
+                             .shape = Formula("x", "", "x"),
+                             .history = Formula("t > 0.3 && t < 0.3001 ? 5 : 0", "", "t")});
+  CHECK(load_changes(beam, 0.01, 1000).size() == 1);
+}
+
+TEST_CASE("a load that jumps is told with the steps in which it does") {
+  const auto found = said("t < 0.305 ? 0 : 10", 0.01, 100);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0] == "the load jumps within a step, at t = 0.3 to 0.31 s");
+  // A square wave jumps twice in each period.
+  const auto square = said("sin(2*pi*t) > 0 ? 1 : -1", 0.01, 1000);
+  REQUIRE(square.size() == 1);
+  CHECK_THAT(square[0], Contains("the load jumps within a step, at t = ") && Contains(" more"));
+  // A ramp of a tenth of a step is one; of five steps none.
+  CHECK(said("t < 0.3 ? 0 : (t < 0.301 ? 1000*(t - 0.3) : 1)", 0.01, 100).size() == 1);
+  CHECK(said("t < 0.3 ? 0 : (t < 0.35 ? 20*(t - 0.3) : 1)", 0.01, 100).empty());
+}
