@@ -74,14 +74,15 @@ void EventDriven::close_at_start(State& now) {
   }
 }
 
-// Points that lie on a stop already.
+// Points that lie on a stop already. No point lies on a stop that is absent.
 ContactSet EventDriven::touched(const State& now) const {
   ContactSet set(set_.size(), 0);
   const Eigen::VectorXd y = at_.contact * now.place;
   for (const int sign : {1, -1}) {
     const Eigen::VectorXd stop = at_.bound_at(sign, now.time);
     for (Eigen::Index i = 0; i < y.size(); ++i)
-      if (std::abs(y[i] - stop[i]) <= 1e-13 * (std::abs(stop[i]) + now.place.lpNorm<Eigen::Infinity>()))
+      if (std::isfinite(stop[i]) &&
+          std::abs(y[i] - stop[i]) <= 1e-13 * (std::abs(stop[i]) + now.place.lpNorm<Eigen::Infinity>()))
         set[static_cast<std::size_t>(i)] = static_cast<signed char>(sign);
   }
   return set;
