@@ -20,6 +20,8 @@ struct SampleGrid {
 };
 
 /// The beginning or the end of contact on one side: a phase during which at least one point of that stop is touched.
+/// Contact that is there at t = 0 does not begin, and has an end alone: of points that lie beyond their stop at the
+/// start, or on it without moving into it.
 struct ContactEvent {
   double time = 0;      ///< s
   int side = -1;        ///< −1 lower stop, +1 upper stop

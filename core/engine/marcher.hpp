@@ -89,6 +89,8 @@ class Marcher {
     clamp_.turn(lane, sine, cosine);
     return phase.along * sine + phase.across * cosine;
   }
+  /// Which stops pushed a lane at the last instant of contact: lower, upper.
+  std::array<bool, 2> pushed_by(int lane) const;
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.

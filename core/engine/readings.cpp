@@ -47,6 +47,20 @@ bool Marcher::beyond_bound(int lane, double energy) {
   return energy_bounds_->passed(lane, energy, time());
 }
 
+std::array<bool, 2> Marcher::pushed_by(int lane) const {
+  std::array<bool, 2> sides = {false, false};
+  for (std::size_t k = stage_states_.size(); k-- > 0;) {
+    const StageState& stage = *stage_states_[k];
+    if (!stage.delassus) continue;
+    for (int i = 0; i < stage.effort[0].rows(); ++i) {
+      sides[0] = sides[0] || stage.effort[0].at(i, lane) > 0;
+      sides[1] = sides[1] || stage.effort[0].at(i, lane) < 0;
+    }
+    if (program_.stages[k].opens_instant) break;
+  }
+  return sides;
+}
+
 Eigen::VectorXd Marcher::position(int lane) const {
   Eigen::VectorXd q(program_.model->rows());
   for (int i = 0; i < q.size(); ++i) q[i] = blocks_[0].at(i, lane);

@@ -33,7 +33,7 @@ class ClosedPoints {
   /// What an instant is beside the one before it.
   struct Change {
     int active = 0;        ///< points closed now
-    int closings = 0;      ///< of them, those that were open or closed on the other side: impacts
+    int closings = 0;      ///< of them, those that were open or closed on the other side
     bool changed = false;  ///< whether any point opened, closed or changed its side
     bool was_active = false;
   };

@@ -22,7 +22,7 @@ ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std
     : model_(*marcher.program().model), behind_(behind), most_(most), h_(marcher.program().h), T_(marcher.width()) {
   const int points = model_.problem().points();
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
-    Lane& state = lanes_.emplace_back(points);
+    Lane& state = lanes_.emplace_back(points, StartContact(marcher, lane));
     state.leaving.reserve(static_cast<std::size_t>(points));
     state.stops.resize(2 * static_cast<std::size_t>(points));
     state.impacts.reserve(std::min<std::size_t>(most, 64));
@@ -40,6 +40,7 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
   if (!view.effort) return;
   const StageProgram& program = *view.program;
   if (program.opens_instant) open_instant(marcher, view);
+  let_go(marcher, view);
   lasts_ = std::max(lasts_, program.momentum);
   for (std::uint32_t mask = view.contact_lanes; mask != 0; mask &= mask - 1) {
     const int lane = std::countr_zero(mask);
@@ -254,11 +255,23 @@ void ImpactRecorder::leave(const Marcher& marcher, int lane, double lifted) {
   });
 }
 
+// Points that have left the stop that held them at the start.
+void ImpactRecorder::let_go(const Marcher& marcher, const StageView& view) {
+  for (int lane = 0; lane < marcher.lanes(); ++lane)
+    if (StartContact& start = lanes_[static_cast<std::size_t>(lane)].start; start.any())
+      start.look(marcher, view.slots, view.from);
+}
+
+// A point closes; contact of the start goes on as if it had always been there.
 void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int lane, int point, int side) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   Point& one = state.points[static_cast<std::size_t>(point)];
   one.velocity = velocity(marcher, lane, point, lift(marcher, lane));
   std::erase(state.leaving, point);
+  if (state.start.any() && state.start.take(point, side)) {
+    one.row = nowhere;
+    return;
+  }
   const double towards = side > 0 ? -one.velocity : one.velocity;
   StopTotals& totals = stop(state, point, side);
   totals.fastest = totals.impacts == 0 ? towards : std::max(totals.fastest, towards);
@@ -266,7 +279,7 @@ void ImpactRecorder::begin(const Marcher& marcher, const StageView& view, int la
   ++state.count;
   one.row = state.impacts.size();
   if (one.row >= most_) {
-    one.row = std::numeric_limits<std::size_t>::max();
+    one.row = nowhere;
     return;
   }
   Impact impact;

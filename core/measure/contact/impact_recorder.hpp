@@ -4,6 +4,7 @@
 #include <limits>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/contact/start_contact.hpp>
 #include <vector>
 
 /// \file
@@ -93,6 +94,7 @@ class ImpactRecorder final : public StepObserver {
   double take_peak(int lane);
 
  private:
+  static constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
   struct Point {
     double given = 0;     // I of the instant under way
     double velocity = 0;  // over the sub-step before the last instant; of closed points
@@ -100,11 +102,14 @@ class ImpactRecorder final : public StepObserver {
     double pushed = 0;    // I of the last instant
     int side = 0;         // at the last instant: −1 upper, 0 open, 1 lower
     int free = 0;         // sub-steps without an effort since it opened, while its speed out is open
-    std::size_t row = 0;  // of its last impact; beyond the list where that is full
+    // Of its last impact; beyond the list where that is full, or where contact is that of the start.
+    std::size_t row = nowhere;
   };
   struct Lane {
-    explicit Lane(int count_of_points) : closed(count_of_points), points(static_cast<std::size_t>(count_of_points)) {}
+    Lane(int count_of_points, StartContact of_start)
+        : closed(count_of_points), start(std::move(of_start)), points(static_cast<std::size_t>(count_of_points)) {}
     ClosedPoints closed;
+    StartContact start;
     std::vector<Point> points;
     std::vector<int> leaving;  // points whose speed out is open
     std::vector<StopTotals> stops;
@@ -126,6 +131,7 @@ class ImpactRecorder final : public StepObserver {
   double lift(const Marcher& marcher, int lane) const;
   void close_instant(const Marcher& marcher, const StageView& view, int lane);
   void begin(const Marcher& marcher, const StageView& view, int lane, int point, int side);
+  void let_go(const Marcher& marcher, const StageView& view);
   static void move(Lane& lane, int point, double now);
   void move_to_place(Lane& lane, int point, double place, double time);
   static void press(Lane& lane, int point, double lasts);

@@ -46,7 +46,7 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
       compliant_(marcher.law().reads().has_value()),
       mean_velocity_(marcher.program().velocity_offset != 0) {
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
-    Lane& state = lanes_.emplace_back(model_.problem().points());
+    Lane& state = lanes_.emplace_back(model_.problem().points(), StartContact(marcher, lane));
     if (marcher.program().increment_slot < 0) state.increment = Block(model_.rows(), 1);
     state.duration = h_;
     state.energy.first = state.energy.last = state.now = initial_energy(marcher, lane);
@@ -150,6 +150,7 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     if (!marcher.status(lane).running) continue;
     Lane& state = lanes_[static_cast<std::size_t>(lane)];
     if (view.stage == 0) begin_step(marcher, view, state);
+    if (state.start.any()) state.start.look(marcher, view.slots, view.from);
     if (!state.has_scheme && balanced) start_balance(view, lane);
     if (moves) state.duration = (facts.to - facts.from) * h_;
     if (state.looking && !ways_.empty()) follow_position(view, lane, moves);
@@ -194,14 +195,17 @@ void EnergyAudit::close_instant(const StageView& view, Lane& state) {
   contact.active = 0;
   state.still = state.closed.idle();
   if (state.still) return;
-  const ClosedPoints::Change change = state.closed.end_instant();
+  int impacts = 0;
+  const ClosedPoints::Change change = state.closed.end_instant([&](int point, int before, int now) {
+    impacts += now != 0 && now != before && !(state.start.any() && state.start.take(point, now));
+  });
   contact.active = change.active;
   contact.active_set_changes += change.changed;
-  contact.impacts += change.closings;
+  contact.impacts += impacts;
   if (contact.active > 0) {
     ++contact.contact_steps;
     contact.spells += !change.was_active;
-    if (contact.first_impact < 0) contact.first_impact = view.time + view.program->facts.instant * h_;
+    if (contact.first_impact < 0 && impacts > 0) contact.first_impact = view.time + view.program->facts.instant * h_;
   } else if (change.was_active && contact.first_release < 0) {
     contact.first_release = view.from;
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <ricochet/measure/contact/closed_points.hpp>
+#include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
 #include <ricochet/measure/energy/state_energies.hpp>
 #include <vector>
@@ -45,7 +46,8 @@ struct EnergyTotals {
 /// Contact seen over a run, per lane. It is looked at once per instant: each sub-step, with the stages that ask
 /// together as one.
 struct ContactTotals {
-  long long impacts = 0;             ///< times that a point closed, summed over the points
+  /// Times that a point closed, summed over the points; contact that is there from the start (StartContact) is none.
+  long long impacts = 0;
   long long spells = 0;              ///< times that contact began anywhere: from no closed point to some
   long long active_set_changes = 0;  ///< steps whose set of active points (with side) differs from the step before
   long long contact_steps = 0;
@@ -53,7 +55,7 @@ struct ContactTotals {
   double impulse = 0;                            ///< Σ ω Σ_i |p_i| (N s), ω the momentum weight of the stage
   double deepest_penetration = 0;                ///< m
   double residual = 0;                           ///< largest complementarity residual of the law
-  double first_impact = -1, first_release = -1;  ///< s; −1: never
+  double first_impact = -1, first_release = -1;  ///< of an impact, of the end of contact anywhere, s; −1: never
   double force = 0;                              ///< Σ_i p_i of the last step, N
   int active = 0;                                ///< points active in the last step
 };
@@ -114,11 +116,12 @@ class EnergyAudit final : public StepObserver {
     EnergyTotals energy;
     EnergySample now;
     ContactTotals contact;
-    explicit Lane(int points) : closed(points) {}
+    Lane(int points, StartContact of_start) : closed(points), start(std::move(of_start)) {}
     // Of the position over the stages of the last sub-step, where that is looked at; empty where a slot holds it.
     Block increment;
     double duration = 0;  // of that sub-step, s
     ClosedPoints closed;
+    StartContact start;
     double force = 0;  // of the present instant
     Works step;        // of the step under way
     Works since;       // of the steps since the last look

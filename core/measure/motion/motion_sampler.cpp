@@ -56,6 +56,7 @@ ContactLog::ContactLog(const Marcher& marcher, StepObserver* behind)
       asked_(signs_),
       position_(static_cast<std::size_t>(model_.rows())),
       velocity_(static_cast<std::size_t>(model_.rows())),
+      start_(marcher, 0),
       momentum_(marcher.program()) {
   events_.reserve(64);
 }
@@ -92,8 +93,9 @@ void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
   }
   if (view.program->opens_instant) {
     force_ = 0;
-    now_[0] = now_[1] = false;
+    now_[0] = now_[1] = hit_[0] = hit_[1] = false;
   }
+  if (start_.any()) start_.look(marcher, view.slots, view.from);
   if ((view.contact_lanes & 1u) != 0)
     look(marcher, view);
   else
@@ -111,11 +113,11 @@ void ContactLog::look(const Marcher& marcher, const StageView& view) {
     force += p;
     const int side = p > 0 ? 0 : 1;
     asked_[static_cast<std::size_t>(j)] = p > 0 ? 1 : -1;
-    if (!closed_[side]) {
-      const double time = onset(marcher, view, j, side);
-      onset_[side] = now_[side] ? std::min(onset_[side], time) : time;
-    }
     now_[side] = true;
+    if (closed_[side] || start_.holds(j, p > 0 ? 1 : -1)) continue;
+    const double time = onset(marcher, view, j, side);
+    onset_[side] = hit_[side] ? std::min(onset_[side], time) : time;
+    hit_[side] = true;
   }
   momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), force);
   // What only puts a position right is no force.
@@ -145,10 +147,13 @@ void ContactLog::skipped(Marcher& marcher, const SkippedSteps& steps) {
 
 void ContactLog::close_instant(const StageView& view) {
   if (asked_ != signs_) ++changes_;
+  if (start_.any())
+    for (std::size_t j = 0; j < asked_.size(); ++j)
+      if (asked_[j] != 0) start_.take(static_cast<int>(j), asked_[j]);
   signs_.swap(asked_);
   std::fill(asked_.begin(), asked_.end(), static_cast<signed char>(0));
   for (const int side : {0, 1}) {
-    if (now_[side] && !closed_[side])
+    if (hit_[side] && !closed_[side])
       events_.push_back({onset_[side], side == 0 ? -1 : 1, true, tip_speed_});
     else if (!now_[side] && closed_[side])
       events_.push_back({view.from, side == 0 ? -1 : 1, false, 0});

@@ -3,6 +3,7 @@
 #include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/momentum_ledger.hpp>
 #include <vector>
 
@@ -17,6 +18,7 @@ void sample_places(double length, int cells, SampleGrid& grid);
 ///
 /// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero, kept within a
 /// sub-step of the one that closed it; a release is the beginning of the first sub-step without contact on that side.
+/// Contact that is there from the start (StartContact) is no impact, and has a release only.
 /// Passes everything on to the observer behind it.
 class ContactLog final : public StepObserver {
  public:
@@ -50,6 +52,8 @@ class ContactLog final : public StepObserver {
   std::vector<double> position_, velocity_;
   bool state_known_ = false;                                   // position_ and velocity_ are those before the stage
   bool closed_[2] = {false, false}, now_[2] = {false, false};  // lower, upper
+  bool hit_[2] = {false, false};                               // whether a point has hit that side at this instant
+  StartContact start_;
   double onset_[2] = {0, 0}, tip_speed_ = 0;
   std::vector<ContactEvent> events_;
   MomentumLedger momentum_;

@@ -324,6 +324,10 @@ void SectionMarch::end_transient(int place, Orbit& orbit) const {
   if (orbit.transient_periods < plan_.transient) return;
   if (!orbit.settled && orbit.transient_periods < plan_.at_most) return;
   orbit.stage = Orbit::Stage::keep;
+  // Contact that is there when the kept periods begin is no impact of theirs.
+  const std::array<bool, 2> closed = marcher_.pushed_by(place);
+  orbit.closed[0] = closed[0];
+  orbit.closed[1] = closed[1];
   orbit.entry = marcher_.lane_state(place);
 }
 

@@ -78,7 +78,7 @@ struct Orbit {
   std::vector<SectionPoint> strobed;  ///< per kept period
   std::vector<SectionPoint> points;   ///< of the other sections; empty for a strobe
   std::vector<ImpactPoint> impacts;   ///< of the last 64 kept periods
-  std::vector<int> impact_counts;     ///< per kept period
+  std::vector<int> impact_counts;     ///< per kept period; contact that is there when they begin is none
   long long contact_steps = 0;        ///< of the kept periods
   int most_on_a_side = 0;             ///< impacts on one side in one period, the most
   bool closed[2] = {false, false};

@@ -24,8 +24,10 @@ SampledMotion EventDriven::run() {
   State now{0, problem_.discrete->position, problem_.discrete->velocity};
   if (record_.pending() && record_.next() <= 0) record_.sample(now, 0);
   set_.assign(static_cast<std::size_t>(at_.points()), 0);
+  hold(now);
   enter(now);
   while (const auto fall = march_.march(impulse_)) {
+    let_go(march_.state(fall->tau / 2));
     if (fall->tau > 0) stuck_ = 0;
     if (++stuck_ > 40 + 4 * at_.points())
       throw Stopped{
@@ -74,6 +76,36 @@ void EventDriven::close_at_start(State& now) {
   }
 }
 
+// How far a point is from its stop, and what of it is round-off; infinite where there is none.
+double EventDriven::gap(const State& now, Eigen::Index i, int sign, double& round_off) const {
+  const double place = at_.contact.row(i).dot(now.place), stop = at_.bound_at(sign, now.time)[i];
+  round_off = std::isfinite(stop) ? 1e-12 * (std::abs(stop) + now.place.lpNorm<Eigen::Infinity>()) : 0;
+  return sign * (place - stop);
+}
+
+// Points that lie beyond a stop at the start, or on it without moving into it: what they close there is no impact.
+void EventDriven::hold(const State& start) {
+  held_.assign(set_.size(), 0);
+  const double lifted = support_rate_at(problem_, start.time);
+  const double still = 1e-12 * (std::abs(lifted) + start.rate.lpNorm<Eigen::Infinity>());
+  for (Eigen::Index i = 0; i < at_.points(); ++i)
+    for (const int sign : {1, -1}) {
+      double round_off = 0;
+      const double gap = this->gap(start, i, sign, round_off);
+      const double approach = -sign * (at_.contact.row(i).dot(start.rate) + lifted);
+      if (gap < -round_off || (gap <= round_off && approach <= still))
+        held_[static_cast<std::size_t>(i)] = static_cast<signed char>(sign);
+    }
+}
+
+// Of these, those that are seen away from their stop.
+void EventDriven::let_go(const State& seen) {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    double round_off = 0;
+    if (held_[i] != 0 && gap(seen, static_cast<Eigen::Index>(i), held_[i], round_off) > round_off) held_[i] = 0;
+  }
+}
+
 // Points that lie on a stop already. No point lies on a stop that is absent.
 ContactSet EventDriven::touched(const State& now) const {
   ContactSet set(set_.size(), 0);
@@ -118,10 +150,18 @@ void EventDriven::change(const State& now, const ContactSet& next, bool struck) 
     const auto on = [&](const ContactSet& set) {
       return std::any_of(set.begin(), set.end(), [&](signed char one) { return one == sign; });
     };
-    if (!on(set_) && on(next)) record_.motion.events.push_back({now.time, -sign, true, struck ? struck_speed_ : tip});
+    const auto hit = [&] {
+      for (std::size_t i = 0; i < next.size(); ++i)
+        if (next[i] == sign && held_[i] != sign) return true;
+      return false;
+    };
+    if (!on(set_) && on(next) && hit())
+      record_.motion.events.push_back({now.time, -sign, true, struck ? struck_speed_ : tip});
     if (on(set_) && !on(next)) record_.motion.events.push_back({now.time, -sign, false, 0});
   }
   set_ = next;
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (set_[i] != 0) held_[i] = 0;
 }
 
 void EventDriven::turn(State& now, const Watch& watch) {
@@ -167,6 +207,8 @@ void EventDriven::strike(State& now, const Watch& watch) {
       haze = open_.watch_place.row(k).cwiseAbs().dot(at.value.cwiseAbs());
     }
   const double height = pull < 0 ? rebound * rebound / (-2 * pull) : INFINITY;
+  // At rest on its stop since the start, and pulled away: nothing hits, and nothing holds it.
+  if (held_[static_cast<std::size_t>(watch.point)] == watch.sign && pull >= 0) return;
   const bool rests = height <= 1e-14 * travel_ + 16 * std::numeric_limits<double>::epsilon() * haze;
   impulse_ += sign * ((rests ? 0 : rebound) - approach) / compliance;
   ContactSet closed = set_;

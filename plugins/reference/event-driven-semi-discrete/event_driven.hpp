@@ -27,6 +27,9 @@ class EventDriven {
   // The set at t = 0.
   void enter(State& now);
   void close_at_start(State& now);
+  double gap(const State& now, Eigen::Index i, int sign, double& round_off) const;
+  void hold(const State& start);
+  void let_go(const State& seen);
   ContactSet touched(const State& now) const;
   ContactSet pushed_set(const State& now, const ContactSet& touching);
   void note_jump(const State& given, const State& released);
@@ -46,6 +49,7 @@ class EventDriven {
   std::map<ContactSet, ContactModes> known_;
 
   ContactSet set_;
+  ContactSet held_;  // by the stop that they start on
   std::vector<std::string> notes_;
   double impulse_ = 0, travel_ = 0, struck_speed_ = 0;
   Eigen::Index stuck_ = 0;

@@ -131,7 +131,8 @@ void BeamRun::enter_contact(int side, double velocity, double on_lift, double ra
                             const Eigen::ArrayXd& on_modes, const Eigen::ArrayXd& rate_on_modes) {
   const double t = state_.time;
   side_ = side;
-  out_.events.push_back({t, side, true, velocity});
+  // A tip that starts on its stop and does not move into it hits nothing.
+  if (t > 0 || side * velocity > 0) out_.events.push_back({t, side, true, velocity});
   momentum_ = momentum(t, rate_on_lift, on_lift);
   state_ = contact_.start(t, on_modes - lift(t) * beam_.lift_pinned, rate_on_modes - lift_rate(t) * beam_.lift_pinned);
   contact_.set_offset(3 * stop() / std::pow(beam_.length, 3));

@@ -98,6 +98,7 @@ class ImpactOscillator {
     for (const double stop : {spec_.lower, spec_.upper})
       if (std::isfinite(stop)) travel_ = std::max(travel_, std::abs(spec_.position - stop));
     begin(0, 0, spec_.position, spec_.velocity);
+    hold();
     while (true) {
       const auto fall = march();
       if (steps_ > step_limit)
@@ -215,15 +216,28 @@ class ImpactOscillator {
     return first;
   }
 
+  /// The stop that it starts beyond, or on without moving into it: what it closes there is no impact.
+  void hold() {
+    for (const int side : {-1, 1}) {
+      if (!std::isfinite(stop(side))) continue;
+      const double gap = normal(side) * (spec_.position - stop(side)), round_off = near(side);
+      if (gap < -round_off || (gap <= round_off && normal(side) * spec_.velocity >= 0)) held_ = side;
+    }
+  }
+  double near(int side) const { return 1e-12 * (std::abs(spec_.position) + std::abs(stop(side))); }
+
   /// From one arc to the next.
   void turn(const Fall& fall) {
     const double time = start_ + fall.tau, speed = arc(fall.tau).rate;
+    // It is still held where the way there has not led away from the stop.
+    const bool held = !closed() && held_ == fall.side && watch(fall.side, fall.tau / 2).value <= near(fall.side);
+    held_ = 0;
     if (closed()) {
       impulse_ += pushed(fall.tau);
       motion_.events.push_back({time, fall.side, false, 0});
       return begin(time, 0, stop(fall.side), rigid() ? 0 : speed);
     }
-    motion_.events.push_back({time, fall.side, true, speed});
+    if (!held) motion_.events.push_back({time, fall.side, true, speed});
     if (!rigid()) return begin(time, fall.side, stop(fall.side), speed);
     strike(time, fall.side, speed);
   }
@@ -276,6 +290,7 @@ class ImpactOscillator {
   LinearMode mode_;
   double start_ = 0, base_ = 0, velocity_ = 0, step_ = 0;  // of the arc
   int side_ = 0;                                           // the stop it lies on
+  int held_ = 0;                                           // the one that it starts on
   double end_ = 0, impulse_ = 0, travel_ = 0;
   std::size_t sampled_ = 0;
   long long steps_ = 0;

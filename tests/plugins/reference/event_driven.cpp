@@ -342,9 +342,8 @@ TEST_CASE("a beam that rests on its stop under its weight stays there, and weigh
     return (-load * x * x * (6 * L * L - 4 * L * x + x * x) / 24 + reaction * x * x * (3 * L - x) / 6) / EI;
   };
   const ReferenceMotion found = solved(problem, {spread(2, 8), {1.0}, {}});
-  REQUIRE(found.motion.events.size() == 1);
-  CHECK(found.motion.events[0].time == 0);
-  CHECK(found.motion.events[0].side == -1);
+  // It has lain there from the start: nothing begins, and nothing ends.
+  CHECK(found.motion.events.empty());
   for (std::size_t i = 0; i <= 8; ++i) {
     CHECK(std::abs(found.motion.tip[i] + drop) < 1e-12);
     CHECK(found.motion.impulse[i] == Approx(reaction * 0.25 * static_cast<double>(i)).epsilon(1e-9).margin(1e-12));
@@ -365,7 +364,6 @@ TEST_CASE("a tip held between two stops that meet never leaves them") {
   ReferenceProblem problem = forced_problem(0.05, 1e-4);
   problem.lower = problem.upper = [](double) { return 0.0; };
   const SampledMotion motion = solved(problem, {spread(1, 40), {}, {}}).motion;
-  REQUIRE(motion.events.size() == 1);
   for (const double tip : motion.tip) CHECK(tip == 0);
   CHECK(*std::min_element(motion.impulse.begin(), motion.impulse.end()) < 0);
 }

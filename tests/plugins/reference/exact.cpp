@@ -294,11 +294,10 @@ TEST_CASE("a mass that rests on its stop leaves it when the force turns") {
   problem.force_phase = M_PI;
   const double lift = (M_PI - std::acos(0.6)) / 2, before = 0.9 * lift;
   const auto motion = solved(problem, {{0, before, lift + 0.2}, {}, {}});
-  REQUIRE(motion.events.size() >= 2);
-  CHECK(motion.events[0].begins);
-  CHECK(motion.events[0].time == 0);
-  CHECK_FALSE(motion.events[1].begins);
-  CHECK(motion.events[1].time == Approx(lift).epsilon(1e-14));
+  // It has lain there from the start, which is no impact.
+  REQUIRE_FALSE(motion.events.empty());
+  CHECK_FALSE(motion.events[0].begins);
+  CHECK(motion.events[0].time == Approx(lift).epsilon(1e-14));
   CHECK(motion.tip[1] == -0.2);
   CHECK(motion.impulse[1] == Approx(3 * before + 2.5 * std::sin(2 * before)).epsilon(1e-13));
   CHECK(motion.tip[2] > -0.2);

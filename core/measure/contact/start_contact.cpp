@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/contact/start_contact.hpp>
+
+namespace ricochet {
+namespace {
+
+// Of places and speeds, relative to the numbers that they are sums of.
+constexpr double round_off_of_sums = 1e-12;
+
+}  // namespace
+
+StartContact::StartContact(const Marcher& marcher, int lane) : lane_(lane) {
+  const Program& program = marcher.program();
+  if (!program.contact || marcher.step() > 0) return;
+  const SparseRows& contact = program.problem->contact;
+  const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane)];
+  layer_ = marcher.law().layer(lane);
+  const double lifted = marcher.support(lane, 0), rising = marcher.support_rate(lane, 0);
+  for (int point = 0; point < program.problem->points(); ++point) {
+    double place = lifted, speed = rising, terms = std::abs(rising);
+    for (SparseRows::InnerIterator entry(contact, point); entry; ++entry) {
+      place += entry.value() * spec.position[entry.col()];
+      speed += entry.value() * spec.velocity[entry.col()];
+      terms += std::abs(entry.value() * spec.velocity[entry.col()]);
+    }
+    for (const int side : {1, -1}) {
+      const Held one{point, side};
+      const Gap gap = this->gap(spec, one, place);
+      if (!(gap.value <= gap.round_off)) continue;
+      const bool beyond = gap.value < -gap.round_off, still = -side * speed <= round_off_of_sums * terms;
+      if (beyond || still) held_.push_back(one);
+    }
+  }
+}
+
+StartContact::Gap StartContact::gap(const LaneSpec& spec, const Held& held, double place) const {
+  const double stop = held.side > 0 ? spec.lower[held.point] + layer_ : spec.upper[held.point] - layer_;
+  return {held.side * (place - stop), round_off_of_sums * (std::abs(place) + std::abs(stop))};
+}
+
+void StartContact::look(const Marcher& marcher, const double* const* slots, double t) {
+  const Program& program = marcher.program();
+  const LaneSpec& spec = program.lanes[static_cast<std::size_t>(lane_)];
+  const RowMatrix& rows = program.model->contact();
+  const double lifted = marcher.support(lane_, t);
+  const auto width = static_cast<std::size_t>(marcher.width());
+  std::erase_if(held_, [&](const Held& held) {
+    double place = lifted;
+    const auto point = static_cast<std::size_t>(held.point);
+    for (int e = rows.start[point]; e < rows.start[point + 1]; ++e)
+      place += rows.value[static_cast<std::size_t>(e)] *
+               slots[0][static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)]) * width +
+                        static_cast<std::size_t>(lane_)];
+    const Gap gap = this->gap(spec, held, place);
+    return gap.value > gap.round_off;
+  });
+}
+
+bool StartContact::holds(int point, int side) const {
+  return std::any_of(held_.begin(), held_.end(),
+                     [&](const Held& one) { return one.point == point && one.side == side; });
+}
+
+bool StartContact::take(int point, int side) {
+  const bool held = holds(point, side);
+  std::erase_if(held_, [&](const Held& one) { return one.point == point; });
+  return held;
+}
+
+}  // namespace ricochet
