@@ -8,8 +8,7 @@
 namespace ricochet {
 
 int DiagramRun::cycle() const {
-  if (motion.regime == Regime::periodic) return motion.period;
-  return motion.regime == Regime::no_contact ? std::max(period, 1) : 0;
+  return cycle_of(motion, period);
 }
 
 bool DiagramCase::any_decided() const {

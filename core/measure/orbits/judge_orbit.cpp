@@ -27,6 +27,10 @@ bool touches(const Orbit& orbit) {
   return orbit.contact_steps > 0;
 }
 
+bool rests(const Orbit& orbit) {
+  return orbit.rests;
+}
+
 double impacts_per_period(const Orbit& orbit) {
   if (orbit.impact_counts.empty()) return 0;
   const double sum = std::accumulate(orbit.impact_counts.begin(), orbit.impact_counts.end(), 0.0);
@@ -63,6 +67,7 @@ JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::option
   out.zero_one = zero_one_test(displacements);
   RegimeInput input;
   input.contact = touches(orbit);
+  input.rests = orbit.rests;
   input.recurrence = out.recurrence;
   input.zero_one = out.zero_one;
   input.exponent = exponent;
@@ -108,6 +113,7 @@ void keep_end(Orbit& orbit, const SectionPlan& plan) {
 std::optional<MotionClass> rough_class(const Orbit& orbit, const SectionPlan& plan) {
   if (orbit.stage != Orbit::Stage::complete) return std::nullopt;
   if (!touches(orbit)) return MotionClass{Regime::no_contact};
+  if (orbit.rests) return MotionClass{Regime::at_rest};
   const OrbitPeriod found = orbit_period(orbit, plan);
   const int period = found.doubtful > 0 ? 0 : found.recurrence.period;
   return period > 0 ? MotionClass{Regime::periodic, period} : MotionClass{Regime::undecided};

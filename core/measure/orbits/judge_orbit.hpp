@@ -18,6 +18,8 @@ constexpr int chatter_impacts = 10;
 
 /// Whether a stop was touched while the orbit was kept.
 bool touches(const Orbit& orbit);
+/// Whether what touches its stop rests on it: the contact lasted over all kept periods, and no point came to a stop.
+bool rests(const Orbit& orbit);
 /// Mean over the kept periods, both sides.
 double impacts_per_period(const Orbit& orbit);
 

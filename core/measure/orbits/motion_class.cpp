@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <ricochet/measure/orbits/motion_class.hpp>
@@ -6,7 +7,7 @@ namespace ricochet {
 namespace {
 
 // In the order of Regime.
-constexpr std::array<const char*, 6> regime_words = {"no contact", "periodic",  "quasi-periodic",
+constexpr std::array<const char*, 7> regime_words = {"no contact", "at rest",   "periodic", "quasi-periodic",
                                                      "chaotic",    "undecided", "failed"};
 constexpr double longest_told = 1e9;  // forcing periods; beyond, a cell holds no period
 
@@ -45,6 +46,11 @@ std::optional<MotionClass> motion_class(std::string_view regime, std::optional<d
   if (*known != Regime::periodic) return MotionClass{*known, 0};
   if (!period || !(*period >= 1) || !(*period < longest_told)) return std::nullopt;
   return MotionClass{*known, static_cast<int>(*period)};
+}
+
+int cycle_of(const MotionClass& motion, int period) {
+  const bool linear = motion.regime == Regime::no_contact || motion.regime == Regime::at_rest;
+  return linear ? std::max(period, 1) : motion.period;
 }
 
 }  // namespace ricochet

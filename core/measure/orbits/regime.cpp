@@ -79,11 +79,9 @@ std::string undecided_text(const RegimeInput& input) {
 RegimeVerdict classify(const RegimeInput& input) {
   const Recurrence& r = input.recurrence;
   const std::string cut = input.settled ? "" : "; the transient was cut at its cap";
-  if (!input.contact) {
-    return {{Regime::no_contact},
-            r.period,
-            "no stop was touched" + (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut};
-  }
+  const std::string linear = (r.period > 0 ? "; the motion " + repeats_text(input) : std::string()) + cut;
+  if (!input.contact) return {{Regime::no_contact}, r.period, "no stop was touched" + linear};
+  if (input.rests) return {{Regime::at_rest}, r.period, "the contact with the stop never opened" + linear};
   if (input.doubtful > 0)
     return {{Regime::undecided},
             0,

@@ -10,6 +10,7 @@ namespace ricochet {
 /// What is known of one orbit over its kept periods.
 struct RegimeInput {
   bool contact = false;              ///< whether any stop was touched
+  bool rests = false;                ///< whether the contact never opened
   Recurrence recurrence;             ///< of its section
   std::optional<Interval> exponent;  ///< largest Lyapunov exponent, 1/s; those owed to the scheme have been set apart
   std::optional<double> zero_one;    ///< K
@@ -28,7 +29,7 @@ struct RegimeVerdict {
   std::string evidence;  ///< one sentence, with the numbers
 };
 
-/// 1. No contact: no stop was touched.
+/// 1. No contact: no stop was touched. At rest: one was, and that contact never opened.
 /// 2. Undecided: the step does not tell whether the section repeats at a shorter lag than the one found, or at all.
 /// 3. Periodic: the section repeats. An exponent whose interval lies above zero contradicts that, unless T is known and
 ///    the growth it means over the window, e^{low T window}, is less than 2: undecided.

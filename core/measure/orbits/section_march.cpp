@@ -59,11 +59,12 @@ class SectionMarch::Watch final : public StepObserver {
 
   // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
   long long may_skip(const Marcher&) override { return std::numeric_limits<long long>::max(); }
-  void skipped(Marcher&, const SkippedSteps& steps) override {
+  void skipped(Marcher& marcher, const SkippedSteps& steps) override {
     if ((keeping_ & 1U) == 0) return;
     if (plan_.section == SectionKind::extremum) steps.flight->each_tip([&](double tip) { see_tip(0, tip); });
     if (steps.held.empty()) return;
     Orbit& orbit = *orbits_.front();
+    for (const HeldPoint& held : steps.held) push(orbit, held.point, held.lower ? 0 : 1, kept_step(marcher, orbit));
     orbit.contact_steps += steps.instants * steps.steps;
     for (BriefContact& contact : orbit.brief)
       if (contact.point >= 0) contact.steps += steps.instants * steps.steps;
@@ -99,10 +100,12 @@ class SectionMarch::Watch final : public StepObserver {
     const int width = marcher.width(), points = model_.contact().rows();
     int first[2] = {-1, -1};
     const double* efforts = view.effort[0] + lane;
+    const std::int64_t step = kept_step(marcher, orbit) + 1;
     for (int i = points; i-- > 0;) {
       const double p = efforts[static_cast<std::ptrdiff_t>(i) * width];
       if (p > 0) first[0] = i;
       if (p < 0) first[1] = i;
+      if (p != 0) push(orbit, i, p > 0 ? 0 : 1, step);
     }
     std::array<bool, 2>& asked = asked_[static_cast<std::size_t>(lane)];
     if (view.program->opens_instant) asked = {false, false};
@@ -120,6 +123,19 @@ class SectionMarch::Watch final : public StepObserver {
     orbit.contact_steps += any;
     closed_ &= ~(1u << lane);
     closed_ |= static_cast<std::uint32_t>(any) << lane;
+  }
+
+  // Steps since its periods are kept.
+  std::int64_t kept_step(const Marcher& marcher, const Orbit& orbit) const {
+    return static_cast<std::int64_t>(orbit.kept_periods) * plan_.steps_per_period + marcher.step() - plan_.strobe - 1;
+  }
+
+  static void push(Orbit& orbit, int point, std::size_t side, std::int64_t step) {
+    if (orbit.arrived) return;
+    std::int64_t& last = orbit.pushed[2 * static_cast<std::size_t>(point) + side];
+    orbit.arrived = step - last > longest_loose + 1;
+    last = step;
+    if (orbit.arrived) orbit.pushed = {};
   }
 
   // Until it is over or has lasted. What rests at its stop afterwards is where it is whenever it came.
@@ -312,7 +328,7 @@ void SectionMarch::close_period(int place, Orbit& orbit, const SectionPoint& poi
     const std::size_t old = orbit.impact_counts.size();
     if (old > impact_periods && orbit.impact_counts[old - 1 - impact_periods] > 0)
       orbit.impacts.erase(orbit.impacts.begin(), orbit.impacts.begin() + orbit.impact_counts[old - 1 - impact_periods]);
-    if (orbit.kept_periods >= plan_.keep) orbit.stage = Orbit::Stage::complete;
+    if (orbit.kept_periods >= plan_.keep) complete(orbit);
     return;
   }
   ++orbit.transient_periods;
@@ -329,6 +345,26 @@ void SectionMarch::end_transient(int place, Orbit& orbit) const {
   orbit.closed[0] = closed[0];
   orbit.closed[1] = closed[1];
   orbit.entry = marcher_.lane_state(place);
+  // A contact that was there before has not begun.
+  const auto closed = marcher_.closed(place);
+  std::copy(closed.begin(), closed.end(), orbit.closed);
+  orbit.pushed.assign(2 * static_cast<std::size_t>(marcher_.program().model->contact().rows()), 0);
+}
+
+void SectionMarch::complete(Orbit& orbit) const {
+  orbit.stage = Orbit::Stage::complete;
+  std::int64_t last = 0;
+  for (const std::int64_t step : orbit.pushed) last = std::max(last, step);
+  const std::int64_t steps = static_cast<std::int64_t>(orbit.kept_periods) * plan_.steps_per_period;
+  orbit.rests = orbit.contact_steps > 0 && !orbit.arrived && steps - last <= longest_loose;
+  orbit.pushed = {};
+  if (!orbit.rests) return;
+  // What never opens is no impact.
+  orbit.impacts = {};
+  std::fill(orbit.impact_counts.begin(), orbit.impact_counts.end(), 0);
+  orbit.most_on_a_side = 0;
+  orbit.rebounds = 0;
+  if (plan_.section == SectionKind::impact) orbit.points = {};
 }
 
 std::vector<Orbit> SectionMarch::running() const {

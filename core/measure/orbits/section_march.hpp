@@ -60,6 +60,9 @@ struct BriefContact {
   std::int64_t steps = 0;   ///< that it has lasted
   double before = 0;        ///< velocity of the point when it began, m/s
 };
+/// Steps without effort after which a point pushes the same stop again and has not left it: a hop so short is the
+/// scheme's, or a load that vanishes for an instant.
+constexpr int longest_loose = 3;
 /// Steps that a contact without a duration of its own may last in a scheme.
 constexpr int briefest_contact = 3;
 
@@ -82,6 +85,11 @@ struct Orbit {
   long long contact_steps = 0;        ///< of the kept periods
   int most_on_a_side = 0;             ///< impacts on one side in one period, the most
   bool closed[2] = {false, false};
+  /// Per row of H and side (2 row + side), the step of the kept ones, from 1 on, at which the point last pushed its
+  /// stop; empty once one has arrived.
+  std::vector<std::int64_t> pushed;
+  bool arrived = false;  ///< a point came to its stop in the kept periods, after more than longest_loose steps
+  bool rests = false;    ///< of a complete one: stops were touched all the time, and no point arrived at one
   /// Of the kept periods, the largest sum over one of |v₊ − v₋| over contacts of at most briefest_contact steps that
   /// leave with a tenth of their speed or more (m/s).
   /// A step h places their instants to within h, which moves what follows by up to h times this.
@@ -125,6 +133,7 @@ class SectionMarch {
   void march_to(int step, bool watched);
   /// Whether the transient is over; then the next period is kept.
   void end_transient(int place, Orbit& orbit) const;
+  void complete(Orbit& orbit) const;
   void close_period(int place, Orbit& orbit, const SectionPoint& point, double smoothed);
 
   Marcher marcher_;

@@ -120,8 +120,9 @@ class BasinImages {
 
   SettledSection section_at(const Image& image, std::size_t place, const MotionClass& motion) const {
     if (motion.regime == Regime::no_contact) return {motion, true, {}};
-    const SectionReadings readings = image.sections.read(static_cast<double>(image.row_of[place]), "");
-    const int cycle = motion.period;
+    const std::size_t row = image.row_of[place];
+    const SectionReadings readings = image.sections.read(static_cast<double>(row), "");
+    const int cycle = cycle_of(motion, static_cast<int>(TableReader(*image.table).number(row, "period").value_or(0)));
     return {motion, cycle > 0, make_cloud(readings.points, readings.opposite, scale_, cycle)};
   }
 

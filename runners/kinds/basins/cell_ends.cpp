@@ -61,7 +61,7 @@ SettledSection settled_section(const CellEnd& end, const SectionPlan& plan) {
     run.push_back({end.displacements[i], end.section[i].velocity});
     opposite.push_back({end.section[i].opposite_displacement, end.section[i].opposite_velocity});
   }
-  const int cycle = end.motion.period;
+  const int cycle = cycle_of(end.motion, end.period);
   return {end.motion, cycle > 0, make_cloud(run, opposite, {plan.scale, plan.scale * plan.pulsation}, cycle)};
 }
 

@@ -76,9 +76,10 @@ Table changes(const std::vector<OrbitView>& views, const std::vector<std::string
     const OrbitView &before = views[below], &view = views[above];
     if (before.start != view.start) continue;
     const MotionClass &from = *classes[below], &to = *classes[above];
-    const bool grazing = (from.regime == Regime::no_contact) != (to.regime == Regime::no_contact);
-    table.rows.push_back({starts[view.start], text(from), text(to), grazing ? "grazing" : "change",
-                          0.5 * (before.value + view.value), before.value, view.value, nullptr});
+    const auto either = [&](Regime one) { return (from.regime == one) != (to.regime == one); };
+    const char* kind = either(Regime::no_contact) ? "grazing" : either(Regime::at_rest) ? "lift-off" : "change";
+    table.rows.push_back({starts[view.start], text(from), text(to), kind, 0.5 * (before.value + view.value),
+                          before.value, view.value, nullptr});
   }
   return table;
 }

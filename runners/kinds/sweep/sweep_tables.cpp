@@ -11,7 +11,8 @@ namespace {
 const Column start_column{"start", "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
 const Column class_column{
     "class", "",
-    "no contact, periodic, quasi-periodic, chaotic, undecided, or failed: what the orbit is in the long run."};
+    "no contact, at rest (what touches its stop never leaves it), periodic, quasi-periodic, chaotic, undecided, or "
+    "failed: what the orbit is in the long run."};
 const Column period_column{"period", "1", "Forcing periods after which a periodic orbit repeats."};
 const Column attractor_column{
     "attractor", "", "Number of the attractor, the same for every case and start of the study; empty where undecided."};
@@ -81,7 +82,8 @@ Table values_head(int exponents, const SweptColumns& swept) {
                start_column,
                class_column,
                period_column,
-               {"impacts_per_period", "1", "Impacts in one forcing period, mean over the kept ones."},
+               {"impacts_per_period", "1",
+                "Impacts in one forcing period, mean over the kept ones; a contact that never opens is none."},
                {"symmetric", "", "Whether the orbit is its own image under x → −x half a forcing period later."}},
               {}};
   for (int k = 1; k <= exponents; ++k) {
@@ -120,7 +122,8 @@ Table bifurcations_head(const SweptColumns& swept) {
           {start_column,
            {"from", "", "Class below the change."},
            {"to", "", "Class above it."},
-           {"kind", "", "grazing (contact begins or ends) or change (any other)."},
+           {"kind", "",
+            "grazing (contact begins or ends), lift-off (a contact that never opens begins to) or change (any other)."},
            in_units_of(of, "value", "Value of the parameter at which the change is located."),
            in_units_of(of, "low", "Largest value known to lie below the change."),
            in_units_of(of, "high", "Smallest value known to lie above it."),
@@ -267,7 +270,8 @@ Table shifts_head(const SweptColumns& swept) {
            start_column,
            {"from", "", "Class below the change."},
            {"to", "", "Class above it."},
-           {"kind", "", "grazing (contact begins or ends) or change (any other)."},
+           {"kind", "",
+            "grazing (contact begins or ends), lift-off (a contact that never opens begins to) or change (any other)."},
            in_units_of(of, "reference_value", "Where the reference case has the change; empty where it has none."),
            in_units_of(of, "value", "Where this case has it; empty where it has none."),
            in_units_of(of, "shift", "value less reference_value."),

@@ -38,7 +38,15 @@ TEST_CASE("orbit ends: one orbit, or its mirror image, is one end, another orbit
   CHECK(ends.label(cycle(0.3, 0.7, -0.2, 0.4, 2)) == 2);
   CHECK(ends.label({{Regime::no_contact}, true, {}}) == 3);
   CHECK(ends.label({{Regime::no_contact}, true, {}}) == 3);
-  CHECK(ends.met().size() == 4);
+  // One at rest where another orbit passes by, and one at rest elsewhere.
+  const auto resting = [](double x) {
+    return SettledSection{{Regime::at_rest}, true, make_cloud(std::vector<CloudPoint>(20, {x, 0}), {}, {1, 1}, 1)};
+  };
+  CHECK(ends.label(cycle(0.5, 0, -0.5, 0)) == 4);
+  CHECK(ends.label(resting(0.5)) == 5);
+  CHECK(ends.label(resting(0.5)) == 5);
+  CHECK(ends.label(resting(0.8)) == 6);
+  CHECK(ends.met().size() == 7);
 }
 
 TEST_CASE("orbit ends: of several that are near, the nearest") {

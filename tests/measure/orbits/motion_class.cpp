@@ -14,8 +14,8 @@ namespace {
 
 std::vector<MotionClass> all_classes() {
   std::vector<MotionClass> all;
-  for (const Regime regime :
-       {Regime::no_contact, Regime::quasi_periodic, Regime::chaotic, Regime::undecided, Regime::failed})
+  for (const Regime regime : {Regime::no_contact, Regime::at_rest, Regime::quasi_periodic, Regime::chaotic,
+                              Regime::undecided, Regime::failed})
     all.push_back({regime, 0});
   for (int period = 1; period <= 2 * longest_period; ++period) all.push_back({Regime::periodic, period});
   return all;
@@ -33,13 +33,25 @@ TEST_CASE("motion class: every class is read from its own words, and from the tw
     CHECK(motion_class(text(one.regime), one.period > 0 ? std::optional<double>(one.period) : std::nullopt) == one);
   }
   CHECK(words.count("no contact") == 1);
+  CHECK(words.count("at rest") == 1);
   CHECK(words.count("periodic 3") == 1);
   CHECK(words.count("quasi-periodic") == 1);
 }
 
 TEST_CASE("motion class: what a motion without contact repeats after is no part of its class") {
   CHECK(motion_class("no contact", 1) == MotionClass{Regime::no_contact, 0});
+  CHECK(motion_class("at rest", 2) == MotionClass{Regime::at_rest, 0});
   CHECK(motion_class("chaotic", 7) == MotionClass{Regime::chaotic, 0});
+}
+
+TEST_CASE("motion class: a motion whose contacts never change has a cycle, what never repeats has none") {
+  for (const Regime regime : {Regime::no_contact, Regime::at_rest}) {
+    CHECK(cycle_of({regime}, 0) == 1);
+    CHECK(cycle_of({regime}, 3) == 3);
+  }
+  CHECK(cycle_of({Regime::periodic, 4}, 4) == 4);
+  for (const Regime regime : {Regime::quasi_periodic, Regime::chaotic, Regime::undecided, Regime::failed})
+    CHECK(cycle_of({regime}, 5) == 0);
 }
 
 TEST_CASE("motion class: other words are none") {

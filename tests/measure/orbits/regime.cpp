@@ -115,6 +115,19 @@ TEST_CASE("regime: without contact nothing else matters") {
   CHECK(says(classify(input), "no stop was touched"));
 }
 
+TEST_CASE("regime: a contact that never opens is rest, whatever repeats") {
+  RegimeInput input = touched(third);
+  input.rests = true;
+  input.impacts_per_period = 0;
+  CHECK(classify(input).motion == MotionClass{Regime::at_rest});
+  CHECK(classify(input).period == 3);
+  CHECK(says(classify(input), "the contact with the stop never opened"));
+  input.recurrence = {0, 0.3, 1, 300};
+  CHECK(classify(input).motion == MotionClass{Regime::at_rest});
+  input.contact = false;
+  CHECK(classify(input).motion == MotionClass{Regime::no_contact});
+}
+
 TEST_CASE("regime: what repeats is periodic unless an exponent above zero contradicts") {
   RegimeInput input = touched(third);
   CHECK(classify(input).motion.regime == Regime::periodic);

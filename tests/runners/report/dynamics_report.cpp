@@ -54,6 +54,7 @@ TEST_CASE("an orbit's group follows its class and period", "[report]") {
     return std::string(regime_groups[regime_group(regime, period)].name);
   };
   CHECK(named("no contact", 1) == "no contact");
+  CHECK(named("at rest", 1) == "at rest");
   CHECK(named("periodic", 1) == "period 1");
   CHECK(named("periodic", 4) == "period 4");
   CHECK(named("periodic", 5) == "periods 5–8");
@@ -106,7 +107,7 @@ TEST_CASE("the page has every section point, but for repeats of periodic orbits"
     for (size_t o = 0; o < orbits.size(); ++o) {
       if (!orbits[o].done()) {
         CHECK(drawn[o].empty());
-      } else if (regime_group(orbits[o]) > 6) {
+      } else if (regime_group(orbits[o]) >= repeating_groups) {
         CHECK(drawn[o] == stored[o]);
       } else {
         // One point per period; where a point lies on the edge of a cell, two.
@@ -148,7 +149,7 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
     for (const auto o : numbers_of<std::uint16_t>(whole, record.id + "/points/orbit:u16")) ++all[o];
     for (const auto o : numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16")) ++some[o];
     for (const auto& [o, count] : all)
-      if (regime_group(orbits[o]) <= 6) CHECK(some[o] == count);
+      if (regime_group(orbits[o]) < repeating_groups) CHECK(some[o] == count);
   }
   // Shares are rounded upwards, by less than one point per orbit.
   CHECK(written <= budget.points + orbits_with);

@@ -1,7 +1,7 @@
 // What one chart of the bifurcation diagram shows: points, exponents, the regime of each start, verdicts, and marks on its edges. Points and exponents are
 // drawn by hand, from blocks of numbers; the others are series of the library, from tables.
 {
-  const failed = 10;   // of the groups of regimes: what did not finish
+  const failed = 11;   // of the groups of regimes: what did not finish
   const verdicts = [["robust", "#8CC9A6"], ["depends", "#F2A65A"], ["undecided", "#DADADA"]];
   const dark = "#222222";
 

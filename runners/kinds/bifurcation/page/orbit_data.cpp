@@ -107,7 +107,7 @@ std::optional<Section> section_of(const CaseRecord& record) {
     Rows& rows = out.rows[o];
     out.stored += rows.size();
     std::erase_if(rows, [&](std::uint32_t i) { return !std::isfinite((*out.u)[i]) || !std::isfinite((*out.v)[i]); });
-    out.repeats.push_back(regime_group(orbits[o]) <= 6);
+    out.repeats.push_back(regime_group(orbits[o]) < repeating_groups);
     if (out.repeats.back()) {
       std::set<std::pair<long long, long long>> seen;
       std::erase_if(

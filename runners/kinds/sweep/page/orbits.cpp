@@ -51,12 +51,14 @@ size_t regime_group(std::string_view regime, std::optional<int> period) {
   switch (motion->regime) {
     case Regime::no_contact:
       return 0;
+    case Regime::at_rest:
+      return 1;
     case Regime::periodic:
-      return motion->period <= 4 ? static_cast<size_t>(motion->period) : motion->period <= 8 ? 5 : 6;
+      return motion->period <= 4 ? static_cast<size_t>(motion->period) + 1 : motion->period <= 8 ? 6 : 7;
     case Regime::quasi_periodic:
-      return 7;
-    case Regime::chaotic:
       return 8;
+    case Regime::chaotic:
+      return 9;
     case Regime::undecided:
       return undecided_group;
     case Regime::failed:

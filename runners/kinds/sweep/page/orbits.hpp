@@ -31,7 +31,8 @@ struct RegimeGroup {
   const char* name;
   const char* colour;
 };
-inline constexpr std::array<RegimeGroup, 11> regime_groups = {{{"no contact", "#5B5B5B"},
+inline constexpr std::array<RegimeGroup, 12> regime_groups = {{{"no contact", "#5B5B5B"},
+                                                               {"at rest", "#B8A200"},
                                                                {"period 1", "#0072B2"},
                                                                {"period 2", "#56B4E9"},
                                                                {"period 3", "#009E73"},
@@ -42,7 +43,8 @@ inline constexpr std::array<RegimeGroup, 11> regime_groups = {{{"no contact", "#
                                                                {"chaotic", "#D55E00"},
                                                                {"undecided", "#B3B3B3"},
                                                                {"failed", "#111111"}}};
-inline constexpr size_t undecided_group = 9, failed_group = 10;
+inline constexpr size_t undecided_group = 10, failed_group = 11;
+inline constexpr size_t repeating_groups = 8;  ///< the first ones, of what repeats
 /// Index into regime_groups; what did not finish is `failed`.
 size_t regime_group(const Orbit& orbit);
 /// The same for words such as "periodic 3".

@@ -238,6 +238,36 @@ TEST_CASE("bifurcation: changes of class are bracketed down to the tolerance") {
   CHECK(grazing);
 }
 
+TEST_CASE("bifurcation: the load at which a mass leaves its stop is bracketed, below it nothing strikes") {
+  // Weight 1 N, the force a cos ωt lifts from a = 1 on.
+  Json text = oscillator_sweep({0.8, 0.9, 1, 1.1, 1.2}, GENERATE(0.0, 0.5));
+  text["scene"] = Json::parse(R"({
+    "structure": {"type": "oscillator", "mass": 1, "stiffness": 0, "force": {"amplitude": 1, "pulsation": 6.283185307179586}},
+    "load": [{"force": -1}], "stops": {"lower": 0, "at": "tip"}})");
+  text["parameter"]["pointer"] = "/scene/structure/force/amplitude";
+  text["start"] = Json::array({"rest", "up"});
+  text["refine"] = 2e-3;
+  const CaseRecord record = run_sweep(text);
+  for (std::size_t i = 0; i < of_values(record, "class").size(); ++i) {
+    const bool held = of_values(record, "parameter")[i].number().value() <= 1;
+    CHECK((of_values(record, "class")[i] == "at rest") == held);
+    CHECK((of_values(record, "impacts_per_period")[i].number() == 0.0) == held);
+  }
+  const Table& changes = table_of(record, "bifurcations");
+  int lifts = 0;
+  for (std::size_t i = 0; i < changes.rows.size(); ++i) {
+    if (!(column_of(changes, "kind")[i] == "lift-off")) continue;
+    ++lifts;
+    CHECK(column_of(changes, "from")[i] == "at rest");
+    const double low = column_of(changes, "low")[i].number().value(),
+                 high = column_of(changes, "high")[i].number().value();
+    CHECK(low <= 1);
+    CHECK(high > 1);
+    CHECK(high - low <= 2e-3);
+  }
+  CHECK(lifts == 2);
+}
+
 TEST_CASE("bifurcation: what cannot be marched is a row with its reason") {
   Json text = beam_sweep({0.08, 0.15});
   text["scene"]["stops"]["at"] = "nodes";

@@ -32,6 +32,9 @@ Orbit full_orbit() {
   orbit.contact_steps = 1234567890123;
   orbit.most_on_a_side = 3;
   orbit.closed[1] = true;
+  orbit.pushed = {0, 1234567890123};
+  orbit.arrived = true;
+  orbit.rests = true;
   orbit.entry = {{1, 2}, {3}, {4}, {5, 6}};
   orbit.now = {{0.1, std::numeric_limits<double>::denorm_min()}, {-0.0}, {}, {}};
   return orbit;
