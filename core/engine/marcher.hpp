@@ -93,8 +93,6 @@ class Marcher {
   std::array<bool, 2> pushed_by(int lane) const;
   /// Absolute displacement of the tip at the end of the last step.
   double tip(int lane) const;
-  /// Whether a point pushes the lower stop, and whether one pushes the upper one, at the last look at contact.
-  std::array<bool, 2> closed(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop at the end of the last step (0: none), m.
   /// `law_saw_end`: where the last stage's law reads the position there, points that its own problem leaves between
   /// their stops need not be measured.

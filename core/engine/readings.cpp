@@ -74,22 +74,6 @@ double Marcher::tip(int lane) const {
   return sum;
 }
 
-std::array<bool, 2> Marcher::closed(int lane) const {
-  std::array<bool, 2> sides = {false, false};
-  // The stages of one instant are one look.
-  for (std::size_t stage = stage_states_.size(); stage-- > 0;) {
-    const StageState& state = *stage_states_[stage];
-    if (!state.delassus) continue;
-    for (int i = 0; i < state.effort[0].rows(); ++i) {
-      const double p = state.effort[0].at(i, lane);
-      sides[0] = sides[0] || p > 0;
-      sides[1] = sides[1] || p < 0;
-    }
-    if (program_.stages[stage].opens_instant) break;
-  }
-  return sides;
-}
-
 double Marcher::depth(int lane, int point, double relative, double support) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
   return std::max(spec.lower[point] - (relative + support), relative + support - spec.upper[point]);

@@ -342,12 +342,8 @@ void SectionMarch::end_transient(int place, Orbit& orbit) const {
   orbit.stage = Orbit::Stage::keep;
   // Contact that is there when the kept periods begin is no impact of theirs.
   const std::array<bool, 2> closed = marcher_.pushed_by(place);
-  orbit.closed[0] = closed[0];
-  orbit.closed[1] = closed[1];
-  orbit.entry = marcher_.lane_state(place);
-  // A contact that was there before has not begun.
-  const auto closed = marcher_.closed(place);
   std::copy(closed.begin(), closed.end(), orbit.closed);
+  orbit.entry = marcher_.lane_state(place);
   orbit.pushed.assign(2 * static_cast<std::size_t>(marcher_.program().model->contact().rows()), 0);
 }
 
