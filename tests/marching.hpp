@@ -57,9 +57,11 @@ std::unique_ptr<Interface> make(const Entry<Interface>* entry, const Choice& cho
 /// Without a law, the problem of laws that do not change it.
 inline std::shared_ptr<const SemiDiscrete> problem_of(const SceneSpec& scene, int elements, const Choice& mass,
                                                       const std::optional<Choice>& contact = {}) {
-  const auto law = contact ? make(registry().contact(contact->name), *contact) : nullptr;
+  const auto* entry = contact ? registry().contact(contact->name) : nullptr;
+  const auto law = contact ? make(entry, *contact) : nullptr;
+  const Parameters parameters = contact ? complete(entry->manual.parameters, contact->values) : Parameters();
   return std::make_shared<const SemiDiscrete>(
-      discretised(scene, elements, *make(registry().mass(mass.name), mass), law.get()));
+      discretised(scene, elements, *make(registry().mass(mass.name), mass), law.get(), law ? &parameters : nullptr));
 }
 
 inline PlanOrRefusal plan_of(const Choice& time, double h, const ProblemFacts& facts) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/scene/start_force.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -57,6 +58,46 @@ void Marcher::connect_efforts() {
     for (std::size_t k = 0; k <= i && k < most; ++k) {
       const StageState& before = *start_states_[i - k];
       state.effort_pointers.push_back(before.delassus ? before.effort[0].data() : nullptr);
+    }
+  }
+}
+
+// A start beyond a stop is pushed from its first step as from any other: where a plan weights efforts of steps before,
+// those before t = 0 are the force of a compliant law in the initial state, at rest, as a start has no past at another
+// place; and a law that keeps a memory has seen that state. Rigid laws have no force there.
+void Marcher::begin_contact() {
+  if (!program_.contact || !program_.law->reads() || step_ != 0) return;
+  const int points = lower_.rows(), T = program_.width;
+  Block place(points, T), rate(points, T);
+  const SparseRows& measured = program_.problem->measured();
+  for (int lane = 0; lane < lanes(); ++lane) {
+    const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+    for (int i = 0; i < points; ++i) {
+      double at = support(lane, 0), speed = support_rate(lane, 0);
+      for (SparseRows::InnerIterator entry(measured, i); entry; ++entry) {
+        at += entry.value() * spec.position[entry.col()];
+        speed += entry.value() * spec.velocity[entry.col()];
+      }
+      place.at(i, lane) = at;
+      rate.at(i, lane) = speed;
+    }
+  }
+  const std::uint32_t beyond = kernels_.outside(points, place.data(), lower_.data(), upper_.data());
+  if (beyond == 0) return;
+  StandingPoints standing{points, T, place.data(), lower_.data(), upper_.data()};
+  const std::vector<double> force = standing_force(*program_.law, standing);
+  if (memory_.rows() > 0) {
+    standing.rate = rate.data();
+    standing.memory = memory_.data();
+    standing_force(*program_.law, standing);
+  }
+  for (int lane = 0; lane < lanes(); ++lane) {
+    if (((beyond >> lane) & 1U) == 0) continue;
+    for (const auto& state : stage_states_) {
+      if (!state->delassus || state->effort_pointers.size() < 2) continue;
+      for (Block& effort : state->effort)
+        for (int i = 0; i < points; ++i) effort.at(i, lane) = force[static_cast<std::size_t>(i * T + lane)];
+      state->contact_lanes |= 1U << lane;
     }
   }
 }

@@ -13,8 +13,8 @@ EnergyBounds::EnergyBounds(const Program& program)
   if (program.load) load_ = factor * scale_.of_load(0);
 }
 
-void EnergyBounds::place(int lane, const LaneSpec& spec) {
-  lanes_[static_cast<std::size_t>(lane)] = bounded_ ? factor * scale_.of_lane(spec) : infinity;
+void EnergyBounds::place(int lane, const LaneSpec& spec, double stored) {
+  lanes_[static_cast<std::size_t>(lane)] = bounded_ ? factor * std::max(scale_.of_lane(spec), stored) : infinity;
 }
 
 double EnergyBounds::known(int lane) const {

@@ -12,7 +12,8 @@ class EnergyBounds {
 
   explicit EnergyBounds(const Program& program);
 
-  void place(int lane, const LaneSpec& spec);
+  /// `stored`: by the law in the lane's initial state, J.
+  void place(int lane, const LaneSpec& spec, double stored);
   /// A lane's own, whoever marches beside it; infinite where the scene mentions no energy.
   double of(int lane) const;
   /// Whether an energy at time t is beyond it; looks again at a load that depends on time before it says so.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
@@ -9,8 +10,23 @@ namespace ricochet {
 // What a lane's spec says of its surroundings: clamp and stops, and the energies to expect.
 void Marcher::place_lane(int lane) {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  energy_bounds_->place(lane, spec);
+  energy_bounds_->place(lane, spec, stored_at_start(lane));
   clamp_.place(lane, spec.amplitude, spec.phase);
+}
+
+// What springs hold that a lane begins pressed into, J.
+double Marcher::stored_at_start(int lane) const {
+  if (!program_.contact || !program_.law->reads()) return 0;
+  const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
+  const SparseRows& measured = program_.problem->measured();
+  double sum = 0;
+  for (int point = 0; point < program_.problem->points(); ++point) {
+    double place = 0;
+    for (SparseRows::InnerIterator entry(measured, point); entry; ++entry)
+      place += entry.value() * spec.position[entry.col()];
+    sum += stored(lane, point, place, spec.amplitude * std::sin(spec.phase));
+  }
+  return sum;
 }
 
 // The law acts from its layer on.
@@ -85,8 +101,8 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   const bool same_law = own.law.values() == spec.law.values();
   const bool same_stops = own.lower == spec.lower && own.upper == spec.upper;
   own = spec;
-  place_lane(lane);
   if (!same_law) prepare_law();
+  place_lane(lane);
   status_[static_cast<std::size_t>(lane)] = LaneStatus{};
   // What the lane left behind when it stopped is gone.
   frozen_now_ &= ~(1u << lane);

@@ -48,6 +48,7 @@ Marcher::Marcher(Program program)
     upper_.fill(infinity);
   }
   energy_bounds_ = std::make_unique<EnergyBounds>(program_);
+  prepare_law();
   for (int lane = 0; lane < lanes(); ++lane) {
     const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
     const Eigen::VectorXd q = model.to_model(spec.position), v = model.to_model(spec.velocity);
@@ -57,7 +58,6 @@ Marcher::Marcher(Program program)
     place_lane(lane);
   }
   if (program_.load) load_window_ = std::make_unique<LoadWindow>(program_);
-  prepare_law();
   for (std::size_t k = 0; k < program_.start.size(); ++k)
     start_states_.push_back(make_state(program_.start[k], program_.plan.start[k]));
   for (std::size_t k = 0; k < program_.stages.size(); ++k)
@@ -170,6 +170,7 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
 void Marcher::start(StepObserver* observer) {
   const FlushDenormals flush;
   clamp_.set_time(time());
+  begin_contact();
   for (std::size_t k = 0; k < program_.start.size(); ++k)
     run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer, false,
               false);

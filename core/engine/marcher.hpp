@@ -97,8 +97,8 @@ class Marcher {
   /// `law_saw_end`: where the last stage's law reads the position there, points that its own problem leaves between
   /// their stops need not be measured.
   double penetration(int lane, bool law_saw_end = false) const;
-  /// The same at w = q − increment/2 and so on: one contact point's depth (> 0 beyond a stop) for a given H w.
-  double depth(int lane, int point, double relative, double support) const;
+  /// Energy that a compliant law stores at a contact point, J: of both of its stops, for a given H w and φ.
+  double stored(int lane, int point, double relative, double support) const;
   /// Σ φ_k F(t + c_k h) of the distributed load in model coordinates (n); null when there is none.
   const double* distributed_load(const Levels& levels, double t);
   /// Number of Delassus columns computed so far in the stages.
@@ -158,6 +158,7 @@ class Marcher {
   // effort_history.cpp: efforts of stages and steps before.
   void connect_efforts();
   void keep_start_efforts();
+  void begin_contact();
 
   // tangent_contact.cpp: the same derivative for tangent columns.
   void remove_load(StageProgram& program, const double* load);
@@ -171,6 +172,7 @@ class Marcher {
 
   // lane_state.cpp: lanes that come and go.
   void place_lane(int lane);
+  double stored_at_start(int lane) const;
   void place_stops(int lane);
   void prepare_law();
   LaneState state_at(int column) const;

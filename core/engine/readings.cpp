@@ -74,9 +74,13 @@ double Marcher::tip(int lane) const {
   return sum;
 }
 
-double Marcher::depth(int lane, int point, double relative, double support) const {
+double Marcher::stored(int lane, int point, double relative, double support) const {
   const LaneSpec& spec = program_.lanes[static_cast<std::size_t>(lane)];
-  return std::max(spec.lower[point] - (relative + support), relative + support - spec.upper[point]);
+  const double place = relative + support, layer = program_.law->layer(lane);
+  double sum = 0;
+  for (const double depth : {spec.lower[point] - place, place - spec.upper[point]})
+    if (depth > -layer) sum += program_.law->potential(depth, lane);
+  return sum;
 }
 
 // `see`(point) of each that is beyond its stop, or within round-off of it, by the reduced problem of the law: y = y° +

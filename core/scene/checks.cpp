@@ -150,20 +150,27 @@ std::vector<double> touchable(const SceneSpec& scene, int elements) {
   return x;
 }
 
-void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+bool pushed_back(const ForceBeyond& beyond, double depth) {
+  return beyond && beyond(depth);
+}
+
+/// Stops that pass each other leave a point no place that is beyond neither.
+void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                 const ForceBeyond& beyond) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    if (lower[row] <= upper[row]) continue;
-    throw InputError(
+    if (lower[row] <= upper[row] || pushed_back(beyond, 0.5 * (lower[row] - upper[row]))) continue;
+    throw BeyondStop(
         "/scene/stops/lower",
-        fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected "
-                    "lower ≤ upper everywhere",
+        fmt::format("at x = {:.6g} m the lower stop, {:.6g} m, is above the upper stop, {:.6g} m; expected lower ≤ "
+                    "upper everywhere, or a compliant law that lets points pass both",
                     x[i], lower[row], upper[row]));
   }
 }
 
-/// With a stop along the whole structure the clamp lies between the stops too, wherever the support takes it.
-void check_clamp(const SceneSpec& scene) {
+/// With a stop along the whole structure the clamp lies between the stops too, wherever the support takes it; where a
+/// law lets points pass, the clamp may as well.
+void check_clamp(const SceneSpec& scene, const ForceBeyond& beyond) {
   if (scene.stops.place != StopsSpec::Place::nodes || (!left_fixed(scene) && !right_fixed(scene))) return;
   const double clamp = left_fixed(scene) ? 0 : structure_length(scene);
   const double lower = scene.stops.lower ? (*scene.stops.lower)(clamp) : -infinity;
@@ -172,15 +179,16 @@ void check_clamp(const SceneSpec& scene) {
   const double start = support_at_start(scene.support).position;
   const double highest = moves ? std::abs(scene.support.amplitude) : start, lowest = moves ? -highest : start;
   if (lower <= lowest && highest <= upper) return;
+  if (pushed_back(beyond, std::max(lower - lowest, highest - upper))) return;
   const bool above = highest > upper;
   const char* side = above ? "upper" : "lower";
   const double stop = above ? upper : lower, reached = above ? highest : lowest;
   if (scene.support.amplitude == 0)
-    throw InputError(fmt::format("/scene/stops/{}", side),
+    throw BeyondStop(fmt::format("/scene/stops/{}", side),
                      fmt::format("the {} stop at x = {:.6g} is at {:.6g} m, beyond the clamp at 0 m; expected lower "
                                  "≤ 0 ≤ upper there",
                                  side, clamp, stop));
-  throw InputError("/scene/support/amplitude",
+  throw BeyondStop("/scene/support/amplitude",
                    fmt::format("the support takes the clamp to {:.6g} m, through the {} stop at {:.6g} m (x = {:.6g}); "
                                "expected an amplitude of at most {:.6g} m",
                                reached, side, stop, clamp, std::max(0.0, std::min(-lower, upper))));
@@ -209,18 +217,27 @@ std::vector<double> contact_positions(const SceneSpec& scene, int elements) {
   return nodes;
 }
 
+ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters) {
+  if (law.absent()) return [](double) { return true; };
+  if (!law.reads()) return {};
+  law.prepare(1, {&parameters, 1});
+  return [&law](double depth) { return std::isfinite(law.potential(depth, 0)); };
+}
+
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
-                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what) {
+                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
+                         const ForceBeyond& beyond) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const bool above = u[row] > upper[row] + 1e-12 * (std::abs(u[row]) + std::abs(upper[row]));
-    const bool below = u[row] < lower[row] - 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
-    if (!above && !below) continue;
-    throw NoStart(
-        pointer,
-        fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state between the "
-                    "stops",
-                    what, u[row], x[i], above ? "upper" : "lower", above ? upper[row] : lower[row]));
+    const double over = u[row] - upper[row], under = lower[row] - u[row];
+    const bool above = over > 1e-12 * (std::abs(u[row]) + std::abs(upper[row]));
+    const bool below = under > 1e-12 * (std::abs(u[row]) + std::abs(lower[row]));
+    if ((!above && !below) || pushed_back(beyond, std::max(over, under))) continue;
+    const bool upper_one = above && over >= under;
+    throw BeyondStop(
+        pointer, fmt::format("{} is {:.6g} m at x = {:.6g} m, beyond the {} stop at {:.6g} m; expected a state "
+                             "between the stops, or a compliant law that lets points pass them",
+                             what, u[row], x[i], upper_one ? "upper" : "lower", upper_one ? upper[row] : lower[row]));
   }
 }
 
@@ -237,7 +254,7 @@ Eigen::VectorXd stop_values(const std::optional<Formula>& stop, const std::vecto
   return values;
 }
 
-void check_scene(const SceneSpec& shared, int elements) {
+void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyond) {
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
   std::visit([](const auto& structure) { check_structure(structure); }, scene.structure);
   const auto space = make_space(scene.structure, elements);
@@ -252,11 +269,11 @@ void check_scene(const SceneSpec& shared, int elements) {
   const auto x = touchable(scene, elements);
   const auto lower = stop_values(scene.stops.lower, x, -infinity);
   const auto upper = stop_values(scene.stops.upper, x, infinity);
-  check_order(x, lower, upper);
-  check_clamp(scene);
+  check_order(x, lower, upper, beyond);
+  check_clamp(scene, beyond);
   Eigen::VectorXd start(static_cast<Eigen::Index>(x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) start[static_cast<Eigen::Index>(i)] = scene.initial.displacement(x[i]);
-  check_between_stops(x, start, lower, upper, "/scene/initial/displacement", "the initial displacement");
+  check_between_stops(x, start, lower, upper, "/scene/initial/displacement", "the initial displacement", beyond);
 
   for (double node : node_positions(structure_length(scene), elements)) {
     scene.initial.displacement(node);

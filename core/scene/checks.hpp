@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
-#include <ricochet/contract/errors.hpp>
+#include <functional>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <vector>
@@ -18,16 +19,29 @@ double tip_position(const SceneSpec& scene);
 /// Positions of the contact points: free nodes, the tip, or the positions given; empty without stops.
 std::vector<double> contact_positions(const SceneSpec& scene, int elements);
 
-/// The initial state lies beyond a stop: the scene is possible, but no motion of it begins there.
-class NoStart : public InputError {
- public:
+/// Whether something pushes a point back that lies so far beyond its stop (m): what a contact law says of it. Empty:
+/// nothing does, at any depth, as under a rigid law.
+using ForceBeyond = std::function<bool(double depth)>;
+/// Something does, at any depth.
+inline ForceBeyond anywhere_beyond() {
+  return [](double) { return true; };
+}
+
+/// That of a law with these parameters: a compliant law pushes where it stores a finite energy, and where there is no
+/// contact nothing has to. Sizes the law for one point, and is good for as long as the law is.
+ForceBeyond force_beyond(ContactLaw& law, const Parameters& parameters);
+
+/// What is wrong with stops, clamp or initial state is that they lie beyond a stop where nothing pushes them back:
+/// another contact law may.
+struct BeyondStop : InputError {
   using InputError::InputError;
 };
 
-/// Throws NoStart at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m); `what` names u
-/// in the sentence. A passage smaller than 1e-12 of the values compared is rounding.
+/// Throws BeyondStop at `pointer` when u leaves [lower, upper] at a point (absolute displacements, m) where no law
+/// pushes it back; `what` names u in the sentence. A passage smaller than 1e-12 of the values compared is rounding.
 void check_between_stops(const std::vector<double>& x, const Eigen::VectorXd& u, const Eigen::VectorXd& lower,
-                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what);
+                         const Eigen::VectorXd& upper, const std::string& pointer, const std::string& what,
+                         const ForceBeyond& beyond = {});
 
 /// Throws InputError where numbers that are each in range make coefficients whose squares doubles cannot hold: the
 /// stiffness and the mass of an element, their ratio, damping, the acceleration of the support.

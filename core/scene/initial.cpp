@@ -74,10 +74,12 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
              1e-10 * (rate + rate / length));
 }
 
-void measure_mass_constraint(SemiDiscrete& problem) {
+void measure_mass_constraint(SemiDiscrete& problem, const Eigen::VectorXd& pushed) {
   if (problem.inertia.kernel_dimension == 0) return;
   const MasslessPart massless(problem.stiffness, problem.inertia);
-  problem.kernel_energy = massless.energy(problem.stiffness * problem.position - load_at_start(problem));
+  Eigen::VectorXd residual = problem.stiffness * problem.position - load_at_start(problem);
+  if (pushed.size() > 0) residual -= pushed;
+  problem.kernel_energy = massless.energy(residual);
 }
 
 void project_on_mass_constraint(SemiDiscrete& problem) {

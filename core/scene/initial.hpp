@@ -7,8 +7,9 @@ namespace ricochet {
 /// `velocity`. What the clamp imposes is dropped, and a note says so when the formulas differ from it.
 void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem);
 
-/// Fills problem.kernel_energy from the state as it is.
-void measure_mass_constraint(SemiDiscrete& problem);
+/// Fills problem.kernel_energy from the state as it is. `pushed`: Gᵀp of a compliant law that pushes in it, n; empty:
+/// none does.
+void measure_mass_constraint(SemiDiscrete& problem, const Eigen::VectorXd& pushed = {});
 
 /// Brings the state onto the constraint of a singular mass. Z spans Ker M; multiplied by Zᵀ the equation of motion has
 /// no inertia left (C = αK + ηM, MZ = 0):

@@ -8,6 +8,7 @@
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/initial.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <ricochet/scene/start_force.hpp>
 #include <stdexcept>
 
 namespace ricochet {
@@ -80,17 +81,38 @@ std::vector<int> touched_dofs(const SparseRows& contact) {
   return dofs;
 }
 
-void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what) {
+void check_start(const SemiDiscrete& problem, const std::string& pointer, const std::string& what,
+                 const ForceBeyond& beyond) {
   const double support = support_at_start(problem.support).position;
   const Eigen::VectorXd absolute = (problem.contact * problem.position).array() + support;
-  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what);
+  check_between_stops(problem.contact_x, absolute, problem.lower, problem.upper, pointer, what, beyond);
+}
+
+/// Gᵀp of a compliant law that pushes in the initial state; empty where none does.
+Eigen::VectorXd pushed_at_start(ContactLaw& law, const Parameters& parameters, const SemiDiscrete& problem) {
+  const int points = problem.points();
+  if (points == 0 || law.absent() || !law.reads()) return {};
+  law.prepare(points, {&parameters, 1});
+  const double layer = law.layer(0);
+  const Eigen::VectorXd place =
+      (problem.measured() * problem.position).array() + support_at_start(problem.support).position;
+  const Eigen::VectorXd lower = problem.lower.array() + layer, upper = problem.upper.array() - layer;
+  const std::vector<double> force = standing_force(law, {points, 1, place.data(), lower.data(), upper.data()});
+  const Eigen::Map<const Eigen::VectorXd> p(force.data(), points);
+  if (p.isZero(0)) return {};
+  return problem.measured().transpose() * p;
 }
 
 }  // namespace
 
-SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law) {
+SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const MassStrategy& mass, ContactLaw* law,
+                                 const Parameters* parameters) try {
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
-  check_scene(scene, elements);
+  const bool law_decides = law && parameters;
+  // A law that changes the problem knows its force once it has.
+  ForceBeyond beyond;
+  if (law_decides) beyond = law->changes_problem() ? anywhere_beyond() : force_beyond(*law, *parameters);
+  check_scene(scene, elements, beyond);
 
   SemiDiscrete problem;
   problem.space = make_space(scene.structure, elements);
@@ -109,18 +131,29 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
   problem.upper = stop_values(scene.stops.upper, problem.contact_x, infinity);
   problem.tip = displacement_rows(problem.space, {tip_position(scene)});
-  if (law && law->changes_problem() && problem.points() > 0)
+  if (law && law->changes_problem() && problem.points() > 0) {
     if (auto refusal = change_by(*law, problem)) return *refusal;
+    if (law_decides) beyond = force_beyond(*law, *parameters);
+  }
 
   interpolate_initial(scene, problem);
-  check_start(problem, "/scene/initial/displacement", "the initial displacement");
+  check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
+  Eigen::VectorXd pushed;
+  if (law_decides && problem.inertia.kernel_dimension > 0) pushed = pushed_at_start(*law, *parameters, problem);
   if (scene.initial.projection == InitialSpec::Projection::constraint) {
+    if (pushed.size() > 0)
+      return Refusal{
+          "the initial state lies beyond a stop, whose force the projection does not know; expected a state "
+          "between the stops, or no projection"};
     project_on_mass_constraint(problem);
-    check_start(problem, "/scene/initial/projection", "the projected initial displacement");
+    check_start(problem, "/scene/initial/projection", "the projected initial displacement", beyond);
   } else {
-    measure_mass_constraint(problem);
+    measure_mass_constraint(problem, pushed);
   }
   return problem;
+} catch (const BeyondStop& error) {
+  if (!law || !parameters) throw;
+  return Refusal{error.what()};
 }
 
 void show_problem(ContactLaw& law, const SemiDiscrete& problem) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <variant>
@@ -72,9 +73,9 @@ struct SemiDiscrete {
   Eigen::SparseMatrix<double, Eigen::RowMajor> tip;  ///< 1 × n: the displacement shown to people
   Eigen::VectorXd position, velocity;                ///< q₀, v₀ of w
   double projection_energy = 0;  ///< ½qᵀKq + ½vᵀMv after projection minus before (J); 0 without projection
-  /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0), Z = Ker M: what an initial state off the constraint of a singular mass exceeds
-  /// the equilibrium of its massless part by (J), and loses in the first steps at any h; 0 for a regular mass or after
-  /// projection.
+  /// ½ rᵀZ(ZᵀKZ)⁻¹Zᵀr, r = Kq₀ − F(0) − Hᵀp(q₀), Z = Ker M: what an initial state off the constraint of a singular mass
+  /// exceeds the equilibrium of its massless part by (J), and loses in the first steps at any h; 0 for a regular mass
+  /// or after projection.
   double kernel_energy = 0;
   std::vector<std::string> notes;  ///< what was done that a reader should know
   /// What the law measures and pushes along: H, or G.
@@ -91,19 +92,22 @@ using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",
-/// …) for stops that cross (lower ≥ upper somewhere), a clamp that the support pushes through a stop, an initial state
+/// …) for stops that cross (lower > upper somewhere), a clamp that the support pushes through a stop, an initial state
 /// outside the stops, formulas that give no finite value. A strategy that does not apply is a Refusal, and so is a law.
 /// Without a law the problem is that of laws that do not change it.
+///
+/// With a law and its parameters, stops may cross and the clamp and the initial state lie beyond them where the law
+/// pushes back (force_beyond()); where it does not, that is a Refusal of the law.
 SemiDiscreteOrRefusal discretise(const SceneSpec& scene, int elements, const MassStrategy& mass,
-                                 ContactLaw* law = nullptr);
+                                 ContactLaw* law = nullptr, const Parameters* parameters = nullptr);
 
 /// Shows a law the problem that was discretised for one with its parameters; nothing to do for laws that do not change
 /// it. Throws std::logic_error where the problem was made for another law.
 void show_problem(ContactLaw& law, const SemiDiscrete& problem);
 
 /// The checks of discretise() that need no mass and no mesh, for a study to run before any case (mesh: finest of the
-/// study).
-void check_scene(const SceneSpec& scene, int elements);
+/// study). `beyond`: of the law, or of any law that the scene is to be run with.
+void check_scene(const SceneSpec& scene, int elements, const ForceBeyond& beyond = {});
 
 /// Orthonormal-in-nothing basis Z (n × N) of Ker M (only for kernel_dimension > 0).
 Eigen::MatrixXd mass_kernel(const Inertia& inertia);

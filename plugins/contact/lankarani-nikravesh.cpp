@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "damped_law.hpp"
 
 namespace {
@@ -39,7 +41,10 @@ class LankaraniNikravesh final : public PointwiseContact {
     const double lower = problem.lower[at] - problem.free[at], upper = problem.free[at] - problem.upper[at];
     if (!(std::max(lower, upper) > 0)) return;
     const double closing = lower > upper ? -problem.rate_free[at] : problem.rate_free[at];
-    if (closing > 0) memory_[at] = closing;
+    if (closing > 0)
+      memory_[at] = closing;
+    else if (memory_[at] == 0)
+      memory_[at] = std::numeric_limits<double>::infinity();  // it begins within the stop, and has never closed on it
   }
 
   void set_lanes(std::span<const Parameters> lanes) override {

@@ -1,4 +1,6 @@
 #include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/algebra/pointwise_solver.hpp>
+#include <utility>
 
 #include "power_law.hpp"
 
@@ -7,37 +9,63 @@ namespace {
 using namespace ricochet;
 
 /// Linear springs behind the stops: p = κ (lower − g)₊ − κ (g − upper)₊. With g = g° + reach·W p this is the box
-/// problem lower ≤ g + p/κ ⊥ p ≤ upper: a shifted diagonal, closed form when reach = 0.
-class Penalty final : public ContactLaw {
+/// problem lower ≤ g + p/κ ⊥ p ≤ upper: a shifted diagonal, closed form when reach = 0. Stops that pass each other
+/// leave no box: both springs push there, and each point is solved for as under any other law.
+class Penalty final : public ContactLaw, private PointwiseLaw {
  public:
   explicit Penalty(Evaluation evaluation) : evaluation_(evaluation) {}
   std::optional<Evaluation> reads() const override { return evaluation_; }
 
   void prepare(int points, std::span<const Parameters> lanes) override {
     solver_.prepare(points);
+    crossed_.assign(lanes.size(), 0);
+    crosses_ = false;
     stiffness_.clear();
     for (const Parameters& lane : lanes) stiffness_.push_back(lane.real("stiffness"));
   }
 
   void solve(ReducedProblem& problem) override {
-    for (const int lane : problem.touched)
-      problem.outcome[lane] = solver_.solve(*problem.delassus, problem.reach, 1 / stiffness(lane), problem.free + lane,
-                                            problem.lower + lane, problem.upper + lane, problem.effort + lane,
-                                            problem.points, problem.lanes);
+    for (const int lane : problem.touched) {
+      crossed_[static_cast<std::size_t>(lane)] = crosses(problem, lane);
+      // Once, at the first such stops: scenes without them have no room for it to pay.
+      if (crossed_[static_cast<std::size_t>(lane)] != 0 && !std::exchange(crosses_, true))
+        both_sides_.prepare(problem.points, static_cast<int>(crossed_.size()));
+      problem.outcome[lane] = crossed_[static_cast<std::size_t>(lane)] != 0
+                                  ? both_sides_.solve(*this, problem, lane)
+                                  : solver_.solve(*problem.delassus, problem.reach, 1 / stiffness(lane),
+                                                  problem.free + lane, problem.lower + lane, problem.upper + lane,
+                                                  problem.effort + lane, problem.points, problem.lanes);
+    }
   }
 
   double potential(double depth, int lane) const override { return 0.5 * stiffness(lane) * depth * depth; }
   std::optional<double> constant_stiffness(int lane) const override { return stiffness(lane); }
-  std::optional<ContactSlopes> linear_slopes(int lane) const override { return slopes(0, lane); }
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
+    return ContactSlopes{.stiffness = stiffness(lane)};
+  }
   bool offers_slopes() const override { return true; }
-  ContactSlopes slopes(int, int lane) const override { return {.stiffness = stiffness(lane)}; }
+  ContactSlopes slopes(int point, int lane) const override {
+    if (crossed_[static_cast<std::size_t>(lane)] != 0) return both_sides_.slopes(point, lane);
+    return {.stiffness = stiffness(lane)};
+  }
   bool closed_form(int points) const override { return points == 1; }
   std::string how_solved() const override { return "one point: closed form; more: active set with a finite fallback"; }
 
  private:
   double stiffness(int lane) const { return stiffness_[static_cast<std::size_t>(lane)]; }
+  static unsigned char crosses(const ReducedProblem& problem, int lane) {
+    for (int i = 0; i < problem.points; ++i)
+      if (problem.lower[i * problem.lanes + lane] > problem.upper[i * problem.lanes + lane]) return 1;
+    return 0;
+  }
+  PointForce force(const ContactState& state) const override {
+    return PowerLaw{stiffness(state.lane), 1}.at(state.depth);
+  }
   Evaluation evaluation_;
   BoxSolver solver_;
+  PointwiseSolver both_sides_;
+  std::vector<unsigned char> crossed_;  // of each lane, whether its last solve had stops that pass each other
+  bool crosses_ = false;                // whether any has, and the solver of both sides is there
   std::vector<double> stiffness_;
 };
 

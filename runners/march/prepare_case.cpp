@@ -77,7 +77,8 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry, lon
   auto law = make_law(study_case, registry);
   const auto scheme = make_scheme(study_case, registry);
 
-  auto discretised = discretise(study_case.scene, study_case.elements, *mass, law.get());
+  auto discretised =
+      discretise(study_case.scene, study_case.elements, *mass, law.get(), &study_case.contact.parameters);
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
     prepared.refusal = refusal->sentence;
     return prepared;

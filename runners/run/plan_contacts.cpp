@@ -38,7 +38,8 @@ std::optional<ContactSpring> spring_of(const StudyCase& one, double stiffness, c
   SceneSpec scene = one.scene;
   scene.initial = {};
   try {
-    const auto built = discretise(scene, one.elements, *make_mass(one, registry));
+    const auto law = make_law(one, registry);
+    const auto built = discretise(scene, one.elements, *make_mass(one, registry), law.get(), &one.contact.parameters);
     const auto* problem = std::get_if<SemiDiscrete>(&built);
     return problem && problem->dofs() <= most_dofs ? contact_spring(*problem, stiffness) : std::nullopt;
   } catch (const InputError&) {  // a value of the scene that none of its orbits has

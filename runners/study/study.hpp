@@ -38,6 +38,8 @@ struct StudyCase {
   std::string march = "every-step";      ///< auto, every-step, flights
   std::vector<MethodChoice> references;  ///< of kinds that compare, in the study's order
   Json settings;  ///< the further keys of the kind, complete; null where it has none or all are at rest
+  /// Whether its contact law pushes back what lies beyond a stop: then the scene may begin there.
+  bool starts_beyond = false;
   std::optional<std::string> excluded;  ///< the reason given in `exclude`
   /// Method parameters that the settings go through: JSON pointer, and how the plugin declares it.
   std::vector<std::pair<std::string, ParameterSpec>> swept;

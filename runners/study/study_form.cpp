@@ -72,7 +72,8 @@ ObjectForm structure() {
 
 ObjectForm scene() {
   ObjectForm stops;
-  stops.fields = {formula("lower", "m", "x", true, Json(nullptr), "Lower stop g1(x) ≤ u; null: absent."),
+  stops.fields = {formula("lower", "m", "x", true, Json(nullptr),
+                          "Lower stop g1(x) ≤ u; null: absent. Above the upper one under compliant laws only."),
                   formula("upper", "m", "x", true, Json(nullptr), "Upper stop u ≤ g2(x); null: absent."),
                   of_form(Field::Form::places, "at", Json("nodes"),
                           "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")};
@@ -85,7 +86,8 @@ ObjectForm scene() {
 
   ObjectForm initial;
   initial.fields = {
-      formula("displacement", "m", "x", false, Json("0"), "Absolute displacement u(x,0)."),
+      formula("displacement", "m", "x", false, Json("0"),
+              "Absolute displacement u(x,0); beyond a stop under compliant laws only."),
       formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0)."),
       word("projection", {"none", "constraint"}, "none",
            "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};

@@ -69,8 +69,8 @@ inline Inertia built(const MassStrategy& strategy, const FiniteElementSpace& spa
 }
 
 inline SemiDiscrete discretised(const SceneSpec& scene, int elements, const MassStrategy& strategy,
-                                ContactLaw* law = nullptr) {
-  auto result = discretise(scene, elements, strategy, law);
+                                ContactLaw* law = nullptr, const Parameters* parameters = nullptr) {
+  auto result = discretise(scene, elements, strategy, law, parameters);
   REQUIRE(std::holds_alternative<SemiDiscrete>(result));
   return std::get<SemiDiscrete>(result);
 }

@@ -22,6 +22,8 @@ Flight::Flight(const Program& program, double layer, long long steps)
       powers_(flight_powers(steps)),
       most_sets_(most_flight_sets(
           flight_set_bytes(program.model->rows(), static_cast<int>(program.plan.slots.size()), powers_))) {
+  const LaneSpec& lane = program.lanes.front();
+  crossed_ = (lane.lower.array() > lane.upper.array()).any();
   free_ = std::make_unique<FlightSet>(program, layer, std::vector<HeldPoint>{}, powers_);
   set_ = free_.get();
   held_cause_ = why_not_held(program);
@@ -51,6 +53,7 @@ std::string Flight::why_not_held(const Program& program) {
 // Points that are held elsewhere move otherwise: their sets are made anew.
 void Flight::place(const LaneSpec& lane, double layer) {
   layer_ = layer;
+  crossed_ = (lane.lower.array() > lane.upper.array()).any();
   closed_ = nullptr;
   free_->place(lane, layer);
   sets_.clear();
@@ -94,6 +97,8 @@ bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
   set_ = free_.get();
   steps_ = nullptr;
   set_pace_ = &pace_;
+  // Stops that pass each other push from both sides: no point is held by one of them alone.
+  if (!held.empty() && crossed_) return false;
   const Kept* const before = std::exchange(closed_, nullptr);
   if (!held.empty() && !held_cause_.empty()) {
     if (!steps_cause_.empty()) return false;

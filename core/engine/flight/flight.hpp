@@ -130,6 +130,7 @@ class Flight {
   void search(FlightBound& tip, std::size_t depth, long long k, int stride, double& low, double& high);
 
   double layer_;
+  bool crossed_ = false;     // whether stops pass each other somewhere
   long long worth_reading_;  // readings of points for each step that is left out
   int powers_;
   std::size_t most_sets_;

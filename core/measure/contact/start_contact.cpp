@@ -7,6 +7,10 @@ namespace {
 
 // Of places and speeds, relative to the numbers that they are sums of.
 constexpr double round_off_of_sums = 1e-12;
+// Of what a point moves by in a step.
+constexpr double round_off_of_steps = 1e-6;
+// Steps away from its stop that no round-off makes.
+constexpr double well_away = 10;
 
 }  // namespace
 
@@ -25,13 +29,17 @@ StartContact::StartContact(const Marcher& marcher, int lane) : lane_(lane) {
       terms += std::abs(entry.value() * spec.velocity[entry.col()]);
     }
     for (const int side : {1, -1}) {
-      const Held one{point, side};
+      const Held one{.point = point, .side = side, .place = place};
       const Gap gap = this->gap(spec, one, place);
       if (!(gap.value <= gap.round_off)) continue;
       const bool beyond = gap.value < -gap.round_off, still = -side * speed <= round_off_of_sums * terms;
       if (beyond || still) held_.push_back(one);
     }
   }
+}
+
+bool StartContact::Held::left() const {
+  return away > round_off + round_off_of_steps * moved;
 }
 
 StartContact::Gap StartContact::gap(const LaneSpec& spec, const Held& held, double place) const {
@@ -45,7 +53,7 @@ void StartContact::look(const Marcher& marcher, const double* const* slots, doub
   const RowMatrix& rows = program.model->contact();
   const double lifted = marcher.support(lane_, t);
   const auto width = static_cast<std::size_t>(marcher.width());
-  std::erase_if(held_, [&](const Held& held) {
+  std::erase_if(held_, [&](Held& held) {
     double place = lifted;
     const auto point = static_cast<std::size_t>(held.point);
     for (int e = rows.start[point]; e < rows.start[point + 1]; ++e)
@@ -53,18 +61,22 @@ void StartContact::look(const Marcher& marcher, const double* const* slots, doub
                slots[0][static_cast<std::size_t>(rows.index[static_cast<std::size_t>(e)]) * width +
                         static_cast<std::size_t>(lane_)];
     const Gap gap = this->gap(spec, held, place);
-    return gap.value > gap.round_off;
+    held.round_off = gap.round_off;
+    held.away = std::max(held.away, gap.value);
+    held.moved = std::max(held.moved, std::abs(place - held.place));
+    held.place = place;
+    return held.away > gap.round_off + well_away * held.moved;
   });
 }
 
 bool StartContact::holds(int point, int side) const {
   return std::any_of(held_.begin(), held_.end(),
-                     [&](const Held& one) { return one.point == point && one.side == side; });
+                     [&](const Held& one) { return one.point == point && one.side == side && !one.left(); });
 }
 
 bool StartContact::take(int point, int side) {
   const bool held = holds(point, side);
-  std::erase_if(held_, [&](const Held& one) { return one.point == point; });
+  if (!held) std::erase_if(held_, [&](const Held& one) { return one.point == point; });
   return held;
 }
 

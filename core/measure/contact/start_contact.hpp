@@ -16,16 +16,22 @@ class StartContact {
 
   /// Whether any point is held still.
   bool any() const { return !held_.empty(); }
-  /// Lets go of points that have left their stop: the slots before a stage, which begins at time t.
+  /// How far points are from their stop; lets go of those that are well away. The slots before a stage, which begins at
+  /// time t.
   void look(const Marcher& marcher, const double* const* slots, double t);
   /// Whether the stop of that side (1 lower, −1 upper) holds the point.
   bool holds(int point, int side) const;
-  /// A point closes on that side: whether it was held there. From now on it is as any other.
+  /// A point closes on that side: whether it is held there. One that is not is from now on as any other.
   bool take(int point, int side);
 
  private:
   struct Held {
     int point = 0, side = 0;
+    double place = 0;      // when last looked at, m
+    double away = 0;       // farthest from its stop, m
+    double moved = 0;      // most between two looks, m
+    double round_off = 0;  // of its place, m
+    bool left() const;
   };
   /// How far a point is from the place where the law begins to act, m (< 0 beyond), and what of it is round-off.
   struct Gap {

@@ -102,12 +102,9 @@ EnergySample EnergyAudit::initial_energy(const Marcher& marcher, int lane) {
 }
 
 double EnergyAudit::potential(const Marcher& marcher, const double* place, double support, int lane) const {
-  const double layer = marcher.law().layer(lane);
   double sum = 0;
-  for (int j = 0; j < model_.problem().points(); ++j) {
-    const double depth = marcher.depth(lane, j, model_.measured().times(j, place), support);
-    if (depth > -layer) sum += marcher.law().potential(depth, lane);
-  }
+  for (int j = 0; j < model_.problem().points(); ++j)
+    sum += marcher.stored(lane, j, model_.measured().times(j, place), support);
   return sum;
 }
 

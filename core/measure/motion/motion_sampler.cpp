@@ -237,10 +237,7 @@ bool MotionSampler::next() {
   double energy = 0.5 * mass_(v.data()) + 0.5 * stiffness_(w.data());
   if (marcher_.program().contact && marcher_.law().reads()) {
     const Eigen::VectorXd touched = problem.measured() * w;
-    const double layer = marcher_.law().layer(0);
-    for (int j = 0; j < problem.points(); ++j)
-      if (const double depth = marcher_.depth(0, j, touched[j], support); depth > -layer)
-        energy += marcher_.law().potential(depth, 0);
+    for (int j = 0; j < problem.points(); ++j) energy += marcher_.stored(0, j, touched[j], support);
   }
   motion_.tip.push_back((problem.tip * w)[0] + support);
   motion_.tip_velocity.push_back((problem.tip * v)[0] + rate);

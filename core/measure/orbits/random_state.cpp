@@ -44,7 +44,7 @@ void set_random_state(LaneSpec& lane, const SemiDiscrete& problem, std::uint64_t
   const double clamp = lane.amplitude * std::sin(lane.phase);
   double room = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < lane.lower.size(); ++i)
-    room = std::min({room, lane.upper[i] - clamp, clamp - lane.lower[i]});
+    room = std::min({room, std::abs(lane.upper[i] - clamp), std::abs(clamp - lane.lower[i])});
   if (!std::isfinite(room)) room = lane.amplitude != 0 ? std::abs(lane.amplitude) : 1.0;
   lane.position.setZero(problem.dofs());
   lane.velocity.setZero(problem.dofs());
@@ -58,7 +58,8 @@ void set_random_state(LaneSpec& lane, const SemiDiscrete& problem, std::uint64_t
   double factor = 1;
   for (Eigen::Index i = 0; i < at.size(); ++i) {
     const double limit = 0.95 * (at[i] > 0 ? lane.upper[i] - clamp : clamp - lane.lower[i]);
-    if (std::abs(at[i]) > limit) factor = std::min(factor, limit / std::abs(at[i]));
+    // A stop that presses on the structure at rest leaves no room to keep to.
+    if (limit > 0 && std::abs(at[i]) > limit) factor = std::min(factor, limit / std::abs(at[i]));
   }
   lane.position *= factor;
 }

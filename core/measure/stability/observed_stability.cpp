@@ -10,6 +10,7 @@
 #include <numbers>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
+#include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/observed_stability.hpp>
 
 namespace ricochet {
@@ -23,13 +24,6 @@ constexpr double growth_since_start = 4, growth_at_end = 1.5;
 // times is out of its reach but for the last half per mille.
 constexpr double blown_up = 1000;
 constexpr std::size_t window = 1024;
-
-class NoContact final : public ContactLaw {
- public:
-  bool absent() const override { return true; }
-  void prepare(int, std::span<const Parameters>) override {}
-  void solve(ReducedProblem&) override {}
-};
 
 // Whether what its largest values of each third of a march say grows on to the end.
 bool grows_on(double first, double second, double third) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numbers>
+#include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_modes.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
@@ -41,7 +42,10 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
                                                           const MassStrategy& mass) {
   StructurePhysics out;
   out.elements = std::min(elements, most_elements);
-  const auto made = discretise(scene, out.elements, mass);
+  // Nor where the structure begins.
+  NoContact nothing;
+  const Parameters none;
+  const auto made = discretise(scene, out.elements, mass, &nothing, &none);
   if (const auto* refusal = std::get_if<Refusal>(&made)) return *refusal;
   const SemiDiscrete& problem = std::get<SemiDiscrete>(made);
   out.damping = problem.damping;

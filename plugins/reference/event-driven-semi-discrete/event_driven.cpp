@@ -62,6 +62,10 @@ void EventDriven::enter(State& now) {
 
 void EventDriven::close_at_start(State& now) {
   const Eigen::VectorXd lower = at_.bound_at(1, 0), upper = at_.bound_at(-1, 0), y = at_.contact * now.place;
+  if ((lower.array() > upper.array()).any())
+    throw Stopped{
+        "stops that pass each other push from both sides at once, and modes are those of one side: use the "
+        "reference self"};
   for (Eigen::Index i = 0; i < y.size(); ++i)
     for (const double gap : {y[i] - lower[i], upper[i] - y[i]})
       if (std::isfinite(gap)) travel_ = std::max(travel_, std::abs(gap));

@@ -1,4 +1,6 @@
 #pragma once
+#include <fmt/format.h>
+
 #include <limits>
 #include <optional>
 #include <ricochet/contract/reference.hpp>
@@ -97,8 +99,18 @@ class ImpactOscillator {
     end_ = grid.times.empty() ? 0 : grid.times.back();
     for (const double stop : {spec_.lower, spec_.upper})
       if (std::isfinite(stop)) travel_ = std::max(travel_, std::abs(spec_.position - stop));
-    begin(0, 0, spec_.position, spec_.velocity);
+    if (spec_.lower > spec_.upper)
+      return Refusal{
+          "the stops pass each other and push from both sides at once, which arcs on one stop do not know: "
+          "use the reference self"};
+    if (rigid() && pressed() != 0)
+      return Refusal{
+          fmt::format("the start lies beyond the {} stop, which is rigid here: use event-driven-semi-discrete, "
+                      "which follows a linear spring, or self",
+                      pressed() < 0 ? "lower" : "upper")};
     hold();
+    // A spring pushes from the start what lies beyond it.
+    begin(0, rigid() ? 0 : pressed(), spec_.position, spec_.velocity);
     while (true) {
       const auto fall = march();
       if (steps_ > step_limit)
@@ -147,7 +159,8 @@ class ImpactOscillator {
     if (closed() && rigid()) return {};
     const auto basis = mode_.fundamental(tau);
     Motion forced = spec_.force.response(mode_, start_, tau, basis);
-    const double pull = spec_.stiffness * base_ / spec_.mass;
+    const double pressed = closed() ? spec_.contact_stiffness * (base_ - stop(side_)) : 0;
+    const double pull = (spec_.stiffness * base_ + pressed) / spec_.mass;
     Motion now;
     now.value = velocity_ * basis.s + forced.value / spec_.mass - pull * mode_.to_constant(tau, basis);
     now.rate = velocity_ * basis.s_rate + forced.rate / spec_.mass - pull * basis.s;
@@ -180,7 +193,8 @@ class ImpactOscillator {
     if (closed() && rigid()) return 16 * epsilon * (std::abs(spec_.stiffness * stop(side)) + spec_.force.size(0));
     const double fastest = std::max(mode_.pulsation(), spec_.force.pulsation());
     const double reach = fastest > 0 ? std::min(tau, 1 / fastest) : tau;
-    const double push = (spec_.force.size(0) + std::abs(spec_.stiffness * base_)) / spec_.mass;
+    const double pressed = closed() ? spec_.contact_stiffness * std::abs(base_ - stop(side_)) : 0;
+    const double push = (spec_.force.size(0) + std::abs(spec_.stiffness * base_) + pressed) / spec_.mass;
     return 16 * epsilon * (std::abs(base_ - stop(side)) + std::abs(velocity_) * reach + push * reach * reach / 2);
   }
 
@@ -223,6 +237,12 @@ class ImpactOscillator {
       const double gap = normal(side) * (spec_.position - stop(side)), round_off = near(side);
       if (gap < -round_off || (gap <= round_off && normal(side) * spec_.velocity >= 0)) held_ = side;
     }
+  }
+  /// The side on which it starts beyond its stop by more than rounding.
+  int pressed() const {
+    for (const int side : {-1, 1})
+      if (std::isfinite(stop(side)) && normal(side) * (spec_.position - stop(side)) < -near(side)) return side;
+    return 0;
   }
   double near(int side) const { return 1e-12 * (std::abs(spec_.position) + std::abs(stop(side))); }
 
@@ -271,7 +291,7 @@ class ImpactOscillator {
     const Motion now = arc(tau);
     const double position = base_ + now.value;
     const double across = position - spec_.support.at(time), rate = now.rate - spec_.support.rate(time);
-    const double depth = closed() ? now.value : 0;
+    const double depth = closed() ? now.value + (base_ - stop(side_)) : 0;
     motion_.tip.push_back(position);
     motion_.tip_velocity.push_back(now.rate);
     motion_.energy.push_back(

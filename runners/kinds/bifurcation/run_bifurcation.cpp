@@ -130,7 +130,7 @@ class BifurcationRun {
     const auto one = make_law(case_, registry_);
     if (one->changes_problem()) {
       const StudyCase met = with_parameters(at_rest(case_), scenes_[scenes_.pioneer()].variant.values);
-      discretise(met.scene, case_.elements, *make_mass(case_, registry_), one.get());
+      discretise(met.scene, case_.elements, *make_mass(case_, registry_), one.get(), &case_.contact.parameters);
     }
     const auto compliance = contact_compliance(*one, case_.contact.parameters, 1e-3 * section_.scale);
     NumberTable law = contact_law_head();

@@ -207,7 +207,8 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
   }
   if (solver->of_the_mesh()) {
     const auto law = make_law(study_case, registry_);
-    auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get());
+    auto built = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry_), law.get(),
+                            &study_case.contact.parameters);
     if (const auto* refusal = std::get_if<Refusal>(&built)) {
       known.refusal = refusal->sentence;
       return known;

@@ -26,8 +26,8 @@ std::vector<double> steps_of(const StudyCase& study_case) {
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry) {
   CasePlan out;
   const auto law = make_law(study_case, registry);
-  const auto discretised =
-      discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry), law.get());
+  const auto discretised = discretise(study_case.scene, study_case.elements, *make_mass(study_case, registry),
+                                      law.get(), &study_case.contact.parameters);
   if (const auto* refusal = std::get_if<Refusal>(&discretised)) {
     out.refusal = refusal->sentence;
     return out;

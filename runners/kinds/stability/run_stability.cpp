@@ -66,7 +66,8 @@ class StabilityRun {
   CaseRecord run() {
     begin_ = thread_seconds();
     const auto law = make_law(case_, registry_);
-    auto discretised = discretise(case_.scene, case_.elements, *make_mass(case_, registry_), law.get());
+    auto discretised =
+        discretise(case_.scene, case_.elements, *make_mass(case_, registry_), law.get(), &case_.contact.parameters);
     if (const auto* refusal = std::get_if<Refusal>(&discretised)) return refused(refusal->sentence);
     problem_ = std::make_shared<const SemiDiscrete>(std::move(std::get<SemiDiscrete>(discretised)));
     record_.notes = problem_->notes;

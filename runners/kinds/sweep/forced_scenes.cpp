@@ -39,7 +39,7 @@ int ForcedScenes::add(SceneVariant variant) {
     candidate.law = shared_parameters(one.contact.parameters, entry->manual);
     candidate.make_law = [entry, parameters = one.contact.parameters] { return entry->make(parameters); };
     const auto law = make_law(one, registry_);
-    auto made = discretise(one.scene, one.elements, *make_mass(one, registry_), law.get());
+    auto made = discretise(one.scene, one.elements, *make_mass(one, registry_), law.get(), &one.contact.parameters);
     if (const auto* refusal = std::get_if<Refusal>(&made)) {
       scene.refusal = refusal->sentence;
       return number;
@@ -65,7 +65,7 @@ int ForcedScenes::add(SceneVariant variant) {
     scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];
   } catch (const InputError& error) {
     scene.refusal = (error.pointer().empty() ? "" : error.pointer() + ": ") + error.what();
-    scene.no_start = dynamic_cast<const NoStart*>(&error) != nullptr;
+    scene.no_start = dynamic_cast<const BeyondStop*>(&error) != nullptr;
   } catch (const Refusal& refusal) {
     scene.refusal = refusal.sentence;
   }

@@ -128,7 +128,7 @@ SectionPlan section_plan(const StudyCase& study_case, const ForcedScenes& scenes
     for (Eigen::Index p = 0; p < scene.lane.lower.size(); ++p) {
       const double lower = scene.lane.lower[p], upper = scene.lane.upper[p];
       if (std::isfinite(lower) && std::isfinite(upper))
-        gap = std::min(gap, (upper - lower) / 2);
+        gap = std::min(gap, std::abs(upper - lower) / 2);
       else if (std::isfinite(lower) || std::isfinite(upper))
         gap = std::min(gap, std::abs(std::isfinite(lower) ? lower : upper));
     }

@@ -121,7 +121,7 @@ StudyCase with_parameters(const StudyCase& study_case, const std::vector<std::pa
   }
   if (scene) {
     one.scene = read_scene(one.scene_json);
-    check_scene(one.scene, one.elements);
+    check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
   }
   if (one.steps_per_period > 0) check_forcing(one.scene);
   return one;

@@ -35,18 +35,18 @@ NumberTable impacts_head() {
        {"duration", "s", "Time for which the point is pushed, whole sub-steps."},
        {"release_force", "N", "The last force; where the point is still closed, that of the last instant."},
        {"open_end", "", "Whether the point was still closed when the march ended."}});
-  table.text = "One impact of one case: a contact point closes, is pushed, and opens.";
+  table.text = "One impact of one case: a contact point closes, is pushed, and opens. Contact from the start is none.";
   return table;
 }
 
 Table stops_head() {
   return {
       "stops",
-      "One stop of one contact point of one case that was ever hit.",
+      "One stop of one contact point of one case that was ever touched.",
       {point_column,
        x_column,
        {"side", "", "The stop: lower or upper."},
-       {"impacts", "1", "Number of times that the point closed there."},
+       {"impacts", "1", "Number of times that the point closed there; contact from the start is none."},
        {"peak_force", "N", "Largest force."},
        {"mean_force", "N", "Mean of the force over the time in contact."},
        {"rms_force", "N", "Root mean square of the force over the time in contact."},
@@ -55,7 +55,7 @@ Table stops_head() {
        {"normal_work", "J",
         "∫F|v|dt over the run: what the force works on the point, in and out alike; on a free mass ½mv²(1 + e²) per "
         "impact."},
-       {"largest_speed_in", "m/s", "Largest velocity with which the point came."}},
+       {"largest_speed_in", "m/s", "Largest velocity with which the point came; empty where it hit nothing."}},
       {}};
 }
 
@@ -84,13 +84,13 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
   for (int point = 0; point < problem.points(); ++point)
     for (const StopSide side : {StopSide::lower, StopSide::upper}) {
       const StopTotals& totals = recorder.totals(0, point, side);
-      if (totals.impacts == 0) continue;
+      if (totals.impacts == 0 && totals.contact_time == 0) continue;
       peak = std::max(peak, totals.peak_force);
       time += totals.contact_time;
       stops.rows.push_back({point, problem.contact_x[static_cast<std::size_t>(point)],
                             side_names[static_cast<std::size_t>(side)], totals.impacts, totals.peak_force,
                             totals.mean_force(), totals.rms_force(), totals.contact_time, totals.impulse,
-                            totals.normal_work, totals.fastest});
+                            totals.normal_work, totals.impacts > 0 ? Cell(totals.fastest) : Cell()});
     }
   put_measure(record, "peak_contact_force", peak);
   put_measure(record, "contact_time", time);

@@ -77,7 +77,8 @@ std::vector<MeasureInfo> trajectory_measures() {
       {"deepest_penetration", "m", "Largest distance by which a contact point passed its stop.", Of::motion, false,
        "largest_tip_displacement"},
       {"impacts", "1",
-       "Number of times that a contact point closed, summed over the points; each is a row of impacts.csv."},
+       "Number of times that a contact point closed, summed over the points; each is a row of impacts.csv. Contact "
+       "that is there from the start is none."},
       {"contact_instants", "1", "Number of instants of contact (sub-steps) at which some point was closed.", Of::motion,
        true},
       {"active_set_changes", "1", "Number of sub-steps at which the set of closed contact points changed.", Of::motion,
@@ -119,7 +120,7 @@ std::vector<MeasureInfo> trajectory_measures() {
        "the "
        "scheme declares its losses.",
        Of::motion, false, "energy_brought_in"},
-      {"first_impact", "s", "Time at which a contact point first closed.", Of::motion, true},
+      {"first_impact", "s", "Time of the first impact.", Of::motion, true},
       {"first_release", "s", "Time at which a contact point first opened again.", Of::motion, true},
       {"tip_displacement_end", "m", "Absolute displacement of the tip at the end of the run.", Of::motion, false,
        "largest_tip_displacement"},

@@ -180,7 +180,12 @@ TEST_CASE("a point that is always closed hides no impact of another") {
   CHECK(counted == listed);
   CHECK(counted == run.audit.contact(0).impacts);
   CHECK(impulse == Approx(run.audit.contact(0).impulse).epsilon(1e-12));
-  CHECK(durations == Approx(contact_time).epsilon(1e-12));
+  // The tip lies on its stop from the start: that contact is no impact.
+  double tip_hits = 0;
+  for (const Impact& impact : run.impacts())
+    if (impact.point == 2) tip_hits += impact.duration;
+  CHECK(tip.contact_time > tip_hits + 1e-4);
+  CHECK(durations - tip_hits == Approx(contact_time - tip.contact_time).epsilon(1e-12));
   CHECK(tip.contact_time > 0.3 * duration);
   // What is counted where nothing was closed before misses them.
   CHECK(run.audit.contact(0).spells < counted);

@@ -1,4 +1,6 @@
 // Contact that is there from the start is no impact, whoever counts; a point thrown at the stop it lies on is one.
+#include <fmt/format.h>
+
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
@@ -49,7 +51,7 @@ SceneSpec pressed(double speed, const std::string& load = "-5") {
 
 Choice spring(const char* law, const char* evaluation) {
   Choice choice{law, {{"stiffness", 1e4}, {"evaluation", std::string(evaluation)}}};
-  if (choice.name == "kelvin-voigt") choice.values["damping"] = 20.0;
+  if (choice.name == "kelvin-voigt") choice.values["viscosity"] = 20.0;
   return choice;
 }
 
@@ -75,13 +77,13 @@ TEST_CASE("a mass that is pressed on its rigid stop at t = 0 hits nothing, whate
 TEST_CASE("a mass that is pressed into a spring from its surface is in contact from the start") {
   const auto law = GENERATE(spring("penalty", "implicit"), spring("penalty", "explicit"), spring("penalty", "averaged"),
                             spring("penalty", "conserving"), spring("kelvin-voigt", "implicit"),
-                            Choice{"hertz", {{"stiffness", 1e5}}});
+                            Choice{"hertz", {{"stiffness", 1e8}}});
   const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean"},
                              Choice{"newmark-dumont-paoli", {{"start", std::string("first-order")}}},
                              Choice{"generalised-alpha"}, Choice{"bathe"});
   INFO(law.name << ", " << time.name);
   // It goes down 2·weight/k and comes back to the surface at rest: half of that is watched.
-  const double half = law.name == "hertz" ? 0.01 : M_PI / 100;
+  const double half = law.name == "hertz" ? 0.004 : M_PI / 100;
   auto program = compiled(problem_of(pressed(0), 1, {"consistent"}, law), {{"consistent"}, law, time}, h / 10);
   if (std::holds_alternative<Refusal>(program)) return;
   const Counted run(Marcher(std::move(std::get<Program>(program))), half);
@@ -118,9 +120,9 @@ TEST_CASE("what was lifted from its stop and falls back hits it") {
   const Counted run(marcher(pressed(0, "-5 + 10*sin(20*t)"), 1, {{"consistent"}, {"signorini"}, time}, h / 10));
   run.impacts(1);
   CHECK(run.recorder.impacts(0).front().speed_in > 0.05);
-  REQUIRE(run.log.events().size() >= 2);
-  CHECK_FALSE(run.log.events()[0].begins);
-  CHECK(run.log.events()[0].time == Approx(std::asin(0.5) / 20).margin(2 * h));
+  CHECK(std::any_of(run.log.events().begin(), run.log.events().end(), [](const ContactEvent& event) {
+    return !event.begins && std::abs(event.time - std::asin(0.5) / 20) < 2 * h;
+  }));
 }
 
 TEST_CASE("a load that begins to press later has not thrown what lay on its stop") {

@@ -156,8 +156,9 @@ SampledMotion motion_by(const std::string& reference, const SceneSpec& scene, co
                         double restitution, double end) {
   const int elements = one.structure == "oscillator" ? 1 : 3;
   if (reference == "self") {
-    Marcher marched =
-        marcher(scene, elements, {mass, {"signorini"}, {"moreau-jean", {{"restitution", restitution}}}}, end / 6000);
+    const Choice time = mass.name == "singular" ? Choice{"newmark-dumont-paoli"}
+                                                : Choice{"moreau-jean", {{"restitution", restitution}}};
+    Marcher marched = marcher(scene, elements, {mass, {"signorini"}, time}, end / 6000);
     MotionSampler sampler(marched, grid_to(end));
     sampler.march([] { return true; });
     return sampler.finish();
@@ -181,8 +182,11 @@ void same(const SampledMotion& a, const SampledMotion& b, int sign, double round
     CHECK(b.energy[i] == Approx(a.energy[i]).margin(100 * round_off));
     CHECK(sign * b.impulse[i] == Approx(a.impulse[i]).margin(100 * round_off));
   }
-  REQUIRE(a.events.size() == b.events.size());
+  // A chattering ends where bounces are lost in the round-off of the scene, a far stop included.
+  constexpr double chatters = 1e-3;
   for (std::size_t i = 0; i < a.events.size(); ++i) {
+    if (i > 0 && a.events[i].begins && a.events[i].time - a.events[i - 1].time < chatters) break;
+    REQUIRE(i < b.events.size());
     CHECK(sign * b.events[i].side == a.events[i].side);
     CHECK(b.events[i].begins == a.events[i].begins);
     CHECK(b.events[i].time == Approx(a.events[i].time).margin(100 * round_off));
@@ -209,7 +213,9 @@ TEST_CASE("a stop that is absent is a stop out of reach, and a scene in the mirr
     INFO(kind.reference << ", " << kind.structure << ", " << kind.mass << ", seed " << seed);
     const Drawn one = drawn(kind.structure, seed);
     const auto motion = [&](int sign, Far far) {
-      return motion_by(kind.reference, scene_of(one, sign, far), one, {kind.mass}, 0.6, end);
+      // A beam with mass at its tip that is thrown back chatters without end.
+      const double restitution = kind.structure == "beam" ? 0 : 0.6;
+      return motion_by(kind.reference, scene_of(one, sign, far), one, {kind.mass}, restitution, end);
     };
     const SampledMotion alone = motion(1, Far::absent);
     for (const ContactEvent& event : alone.events) CHECK(event.side == -1);
