@@ -4,7 +4,8 @@
 namespace ricochet {
 namespace {
 
-constexpr double steadier = 0.05;  // variance of the area's growth over that of one column
+constexpr double steadier = 0.05;    // variance of the area's growth over that of one column
+constexpr double turns_above = 0.5;  // share of the rounds
 
 // Variance of the sum of two series.
 double spread(const std::vector<double>& a, const std::vector<double>& b) {
@@ -13,6 +14,21 @@ double spread(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) mean += (a[i] + b[i]) / count;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] + b[i] - mean) * (a[i] + b[i] - mean) / count;
   return sum;
+}
+
+// Whether the summed difference of two series stays within twice what it swings about its own trend: that of a pair is
+// bounded, that of two real multipliers grows.
+bool stays_together(const std::vector<double>& a, const std::vector<double>& b) {
+  double end = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) end += a[i] - b[i];
+  double sum = 0, low = 0, high = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += a[i] - b[i];
+    const double off = sum - end * static_cast<double>(i + 1) / static_cast<double>(a.size());
+    low = std::min(low, off);
+    high = std::max(high, off);
+  }
+  return std::abs(end) <= 2 * (high - low);
 }
 
 }  // namespace
@@ -24,7 +40,8 @@ Interval exponent_interval(const std::vector<double>& rates) {
   return {mean, mean, mean};
 }
 
-std::vector<Interval> exponent_intervals(const std::vector<std::vector<double>>& rates, int count) {
+std::vector<Interval> exponent_intervals(const std::vector<std::vector<double>>& rates, int count,
+                                         const std::vector<double>& turning) {
   std::vector<Interval> found;
   for (std::size_t k = 0; k < rates.size() && static_cast<int>(found.size()) < count; ++k) {
     if (k + 1 < rates.size()) {
@@ -34,7 +51,9 @@ std::vector<Interval> exponent_intervals(const std::vector<std::vector<double>>&
       for (std::size_t i = 0; i < rates[k].size(); ++i) apart += (rates[k][i] - rates[k + 1][i]) / count_of;
       // Two real multipliers stay apart; the means of a pair's columns agree up to their swing.
       const bool together = apart * apart <= 16 * alone / count_of;
-      if (together && spread(rates[k], rates[k + 1]) < steadier * alone) {
+      const bool turns =
+          k < turning.size() ? turning[k] > turns_above : turning.empty() && stays_together(rates[k], rates[k + 1]);
+      if (together && turns && spread(rates[k], rates[k + 1]) < steadier * alone) {
         std::vector<double> half(rates[k].size());
         for (std::size_t i = 0; i < half.size(); ++i) half[i] = 0.5 * (rates[k][i] + rates[k + 1][i]);
         found.insert(found.end(), 2, exponent_interval(half));

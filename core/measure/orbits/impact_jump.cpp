@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -10,6 +11,8 @@
 namespace ricochet {
 namespace {
 
+// Steps of flight after which a point that had impacts without a jump does not come to rest of them.
+constexpr int clear_flight = 10;
 // An impact is over within this many steps of contact: restitution over three levels takes two.
 constexpr int longest_impact = 3;
 // hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
@@ -106,6 +109,10 @@ struct ImpactJump::Lane {
   int free_steps = 0;  // since
   Impact impact;
   int applied = 0;
+  std::vector<int> age;       // per point, steps of contact in a row
+  std::vector<bool> pushing;  // per point, in the step under way
+  bool skipped = false;       // an impact has no jump, and its point has neither come to rest nor flown since
+  int resting = 0, most_resting = 0, untold = 0;
 };
 
 struct ImpactJump::Inverse {
@@ -113,6 +120,9 @@ struct ImpactJump::Inverse {
   Eigen::SparseMatrix<double> stiffness;
   Damping damping;
   Eigen::SparseMatrix<double> inertia, inverse;  // one of both
+  Eigen::VectorXd answer(const Eigen::VectorXd& force) const {
+    return inverse.rows() > 0 ? Eigen::VectorXd(inverse * force) : Eigen::VectorXd(mass.solve(force));
+  }
   // The acceleration of a free motion (q, v).
   Eigen::VectorXd of(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
     if (inverse.rows() > 0) return -(inverse * (stiffness * (q + damping.stiffness * v))) - damping.mass * v;
@@ -137,6 +147,8 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     lanes_.push_back(std::make_unique<Lane>());
     lanes_.back()->columns.resize(static_cast<std::size_t>(program.tangents));
+    lanes_.back()->age.assign(massive_.size(), 0);
+    lanes_.back()->pushing.assign(massive_.size(), false);
   }
   const Inertia& inertia = program.model->inertia();
   if (inertia.factored() || inertia.kernel_dimension > 0) return;
@@ -161,19 +173,39 @@ int ImpactJump::applied(int lane) const {
   return needed_ ? lanes_[static_cast<std::size_t>(lane)]->applied : 0;
 }
 
+int ImpactJump::lost(int lane) const {
+  if (!needed_) return 0;
+  const Lane& one = *lanes_[static_cast<std::size_t>(lane)];
+  if (one.most_resting > 0) return 2 * one.most_resting;
+  return one.applied > 0 && restitution_ == 0.0 ? 1 : 0;
+}
+
+int ImpactJump::untold(int lane) const {
+  if (!needed_) return 0;
+  const Lane& one = *lanes_[static_cast<std::size_t>(lane)];
+  return one.untold + (one.skipped ? 1 : 0);
+}
+
 void ImpactJump::stage_solved(const Marcher& marcher, const StageView& view) {
   for (std::size_t index = 0; index < lanes_.size(); ++index) {
     Lane& lane = *lanes_[index];
     // Contact anywhere in the step, whichever of its stages asked.
-    if (view.stage == 0) lane.contact = false;
+    if (view.stage == 0) {
+      lane.contact = false;
+      std::fill(lane.pushing.begin(), lane.pushing.end(), false);
+    }
     if (!view.effort || !((view.contact_lanes >> index) & 1u)) continue;
     for (std::size_t i = 0; i < massive_.size(); ++i) {
       const double p = view.effort[0][i * static_cast<std::size_t>(marcher.width()) + index];
       if (p == 0 || !massive_[i]) continue;
+      lane.pushing[i] = true;
+      if (lane.age[i] > longest_impact) continue;  // it rests
+      const auto point = static_cast<int>(i);
       lane.contact = true;
-      if (!lane.known && lane.steps == 0 && lane.orbit.known == 3)
-        watch(marcher, lane, static_cast<int>(index), static_cast<int>(i), p > 0 ? 0 : 1, view.time);
-      break;
+      if (lane.known && lane.impact.point != point)
+        lane.known = false;
+      else if (!lane.known && lane.steps == 0 && lane.orbit.known == 3)
+        watch(marcher, lane, static_cast<int>(index), point, p > 0 ? 0 : 1, view.time);
     }
   }
 }
@@ -206,22 +238,80 @@ void ImpactJump::step_done(Marcher& marcher) {
     lane.orbit.add(marcher.slot(0), rows, width, number);
     for (std::size_t k = 0; k < lane.columns.size(); ++k)
       lane.columns[k].add(marcher.slot(0), rows, width, marcher.tangent_lane(number, static_cast<int>(k)));
+    bool comes_to_rest = false;
+    lane.resting = 0;
+    for (std::size_t i = 0; i < lane.age.size(); ++i) {
+      lane.age[i] = lane.pushing[i] ? lane.age[i] + 1 : 0;
+      comes_to_rest = comes_to_rest || lane.age[i] == longest_impact + 1;
+      lane.resting += lane.age[i] > longest_impact;
+    }
+    lane.most_resting = std::max(lane.most_resting, lane.resting);
+    if (comes_to_rest) {
+      hold(marcher, lane, number);
+      // Of another point's impact nothing is known any more.
+      lane.skipped = lane.known && lane.age[static_cast<std::size_t>(lane.impact.point)] <= longest_impact;
+      lane.known = lane.contact = false;
+      lane.steps = lane.free_steps = 0;
+      for (Past& past : lane.columns) past.known = 0;
+      continue;
+    }
     if (lane.contact) {
       ++lane.steps;
       lane.free_steps = 0;
-      if (lane.steps > longest_impact) lane.known = false;  // it rests: its derivative is that of the step
+      if (lane.steps > longest_impact) lane.known = false;
       continue;
     }
-    if (lane.steps == 0) continue;
     ++lane.free_steps;
+    if (lane.skipped && lane.free_steps > clear_flight) {
+      lane.skipped = false;
+      ++lane.untold;
+    }
+    if (lane.steps == 0) continue;
     if (!lane.known) {
       lane.steps = 0;
+      lane.skipped = true;
       continue;
     }
     if (lane.free_steps < 2 || lane.columns.empty() || lane.columns.front().known < 3) continue;
     finish(marcher, lane, number);
     lane.known = false;
     lane.steps = 0;
+  }
+}
+
+// Takes out of the columns what moves the points that rest.
+void ImpactJump::hold(Marcher& marcher, Lane& lane, int index) {
+  const MarchModel& model = *marcher.program().model;
+  const RowMatrix& rows = model.measured();
+  const Eigen::Index size = model.rows();
+  const bool all = lane.resting >= size;
+  // Without rebound the speed is lost at once, and what damping makes of that is not in the limit of chattering.
+  if (!all && (!inverse_mass_ || restitution_ == 0.0)) {
+    ++lane.untold;
+    return;
+  }
+  Eigen::MatrixXd push = Eigen::MatrixXd::Zero(size, lane.resting), answer(size, lane.resting);
+  Eigen::Index a = 0;
+  for (std::size_t i = 0; i < lane.age.size(); ++i) {
+    if (lane.age[i] <= longest_impact) continue;
+    for (auto e = static_cast<std::size_t>(rows.start[i]); e < static_cast<std::size_t>(rows.start[i + 1]); ++e)
+      push(rows.index[e], a) += rows.value[e];
+    if (!all) answer.col(a) = inverse_mass_->answer(push.col(a));
+    ++a;
+  }
+  const Eigen::MatrixXd share =
+      all ? Eigen::MatrixXd() : Eigen::MatrixXd((push.transpose() * answer).ldlt().solve(push.transpose()));
+  for (int k = 0; k < marcher.tangents(); ++k) {
+    LaneState column = marcher.tangent(index, k);
+    for (std::size_t first = 0; first < column.slots.size(); first += static_cast<std::size_t>(size)) {
+      Eigen::Map<Eigen::VectorXd> slot(column.slots.data() + first, size);
+      if (all)
+        slot.setZero();
+      else
+        slot -= answer * (share * slot);
+    }
+    std::fill(column.efforts.begin(), column.efforts.end(), 0.0);
+    marcher.set_tangent(index, k, column);
   }
 }
 
@@ -259,6 +349,7 @@ void ImpactJump::finish(Marcher& marcher, Lane& lane, int index) {
     }
     marcher.set_tangent(index, static_cast<int>(k), column);
   }
+  if (lane.resting > 0) hold(marcher, lane, index);
   for (Past& past : lane.columns) past.known = 0;
   ++lane.applied;
 }

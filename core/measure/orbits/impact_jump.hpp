@@ -16,8 +16,22 @@ namespace ricochet {
 ///     δv⁺ = δv⁻ + (a⁻ − a⁺) δt − (1+e) r [H δv⁻ + (H a⁻ + φ'') δt],        (1+e) r = (v⁻ − v⁺)/w⁻
 ///
 /// w = Hv + φ' the speed of the point; v±, a± are those of the orbit, from its displacements before and after, carried
-/// to the time of the impact; e is what the plan restitutes to a free mass. A contact that lasts longer is a point that
-/// rests: there the derivative of the step with its contact set is right. Second-order accurate in h on regular masses.
+/// to the time of the impact; e is what the plan restitutes to a free mass. Second-order accurate in h on regular
+/// masses.
+///
+/// A contact that lasts longer is a point that comes to rest: at the end of chattering, or at once. Where it is and how
+/// fast then depends on nothing that was before, so with A the points that rest now
+///
+///     δq ← P δq,  δv ← P δv,      P = I − M⁻¹H_Aᵀ (H_A M⁻¹H_Aᵀ)⁻¹ H_A
+///
+/// which is the limit of the jumps above along a chattering sequence, as (a⁻ − a⁺) δt cancels there. From there on the
+/// derivative of the step with its contact set is right, and it is continuous where the point leaves, as the effort is
+/// zero then. That limit is of e > 0: a structure whose point sticks where it lands has untold jumps. An oscillator
+/// keeps nothing: its orbit is superstable. An impact with e = 0 whose point leaves at once
+/// ends one direction only, H δq⁺ = 0: when it leaves still depends on when it came.
+///
+/// An impact before the jump of the last one could be put on has none, nor have two points that meet their stops
+/// together: they count as untold, unless the point comes to rest before it has been away for more than ten steps.
 /// Points whose impact the step does not resolve (resolved_points(): the mass of one node of a beam) are not looked at:
 /// they meet their stop like points without mass, the motion after it is the step's own, and so is its derivative.
 /// Source: Müller (1995), Chaos, Solitons & Fractals 5, 1671–1681; saltation of Leine and Nijmeijer (2004), §7.
@@ -34,6 +48,11 @@ class ImpactJump final : public StepObserver {
   void columns_replaced();
   /// Jumps put on lane's columns so far.
   int applied(int lane) const;
+  /// Directions of the state that no longer depend on what was before: two for each of the most points that rested
+  /// together, else one where an impact without rebound was met.
+  int lost(int lane) const;
+  /// Impacts and rests so far whose effect on the columns is not known.
+  int untold(int lane) const;
 
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
@@ -44,6 +63,7 @@ class ImpactJump final : public StepObserver {
   struct Lane;
   void watch(const Marcher& marcher, Lane& lane, int index, int point, int side, double time);
   void finish(Marcher& marcher, Lane& lane, int index);
+  void hold(Marcher& marcher, Lane& lane, int index);
 
   bool needed_ = false;
   double offset_ = 0;  // of velocity slots, in steps
@@ -62,10 +82,10 @@ std::vector<bool> points_with_mass(const SemiDiscrete& problem);
 /// 0.1.
 std::vector<bool> resolved_points(const SemiDiscrete& problem, double h);
 
-/// Whether rigid stops are met at whole steps: a gate finds the point at its stop, and then the velocity jumps by a rule
-/// that knows no position. Between two orbits with the same gates the step is linear, whatever happens between them:
-/// their impacts do not move with them as they do in the motion. Two of them closer than a step's way stay together, or
-/// part at once where one gate differs.
+/// Whether rigid stops are met at whole steps: a gate finds the point at its stop, and then the velocity jumps by a
+/// rule that knows no position. Between two orbits with the same gates the step is linear, whatever happens between
+/// them: their impacts do not move with them as they do in the motion. Two of them closer than a step's way stay
+/// together, or part at once where one gate differs.
 bool stops_met_at_steps(const Program& program);
 
 /// Whether the tangents of this program say nothing of the motion once there are impacts, nor a twin nearby: stops met

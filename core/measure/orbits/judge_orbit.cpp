@@ -57,6 +57,13 @@ OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan) {
   return out;
 }
 
+bool outlives(const OrbitPeriod& period, const Interval& exponent, const SectionPlan& plan) {
+  const Recurrence& r = period.recurrence;
+  if (r.period == 0 || period.doubtful > 0 || r.contraction > 1 || r.distance <= recurrence_tolerance) return false;
+  const double time = 2 * std::numbers::pi / plan.pulsation * r.window;
+  return std::log(r.distance) + exponent.low * time > 0;
+}
+
 JudgedOrbit judge(const Orbit& orbit, const SectionPlan& plan, const std::optional<Interval>& exponent) {
   JudgedOrbit out;
   if (orbit.stage != Orbit::Stage::complete) return out;

@@ -38,6 +38,11 @@ struct OrbitPeriod {
 };
 OrbitPeriod orbit_period(const Orbit& orbit, const SectionPlan& plan);
 
+/// Whether an orbit stays what it is where neighbours would part at this rate: it wanders by what its step leaves open
+/// (by more than recurrence_tolerance, and does not drift away), and e^{low T window} of that is more than the orbit
+/// itself. The tangents along it then are no derivative of what the step makes of a neighbour.
+bool outlives(const OrbitPeriod& period, const Interval& exponent, const SectionPlan& plan);
+
 /// What the kept periods of an orbit say.
 struct JudgedOrbit {
   Recurrence recurrence;

@@ -1,3 +1,4 @@
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -42,16 +43,78 @@ void scale(LaneState& state, double factor) {
   for (double& x : state.efforts) x *= factor;
 }
 
-// Gram–Schmidt, twice; ln R_kk of each column.
-void orthonormalise(std::vector<LaneState>& columns, const Columns& metric, std::vector<double>& growth) {
+// Gram–Schmidt, twice; R, upper triangular.
+void orthonormalise(std::vector<LaneState>& columns, const Columns& metric, Eigen::MatrixXd& upper) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  upper.setZero(count, count);
   for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
     for (int pass = 0; pass < 2; ++pass)
-      for (std::size_t j = 0; j < k; ++j) add(columns[k], -metric.product(columns[j], columns[k]), columns[j]);
+      for (std::size_t j = 0; j < k; ++j) {
+        const double part = metric.product(columns[j], columns[k]);
+        upper(static_cast<Eigen::Index>(j), column) += part;
+        add(columns[k], -part, columns[j]);
+      }
     const double norm = std::sqrt(metric.product(columns[k], columns[k]));
-    growth[k] = std::log(norm);
+    upper(column, column) = norm;
     if (norm > 0 && std::isfinite(norm)) scale(columns[k], 1 / norm);
   }
 }
+
+// Rounds of an orbit that repeats: whether the map of one turns the plane of two neighbouring columns.
+class Rounds {
+ public:
+  Rounds(int period, const std::vector<LaneState>& columns) : period_(period), planes_(columns.size()) {
+    if (period_ > 0 && !planes_.empty()) planes_.pop_back();
+    if (period_ > 0) begin(columns);
+  }
+
+  /// One more period: its R, and the columns after it.
+  void add(const Eigen::MatrixXd& upper, const std::vector<LaneState>& columns, const Columns& metric) {
+    if (period_ <= 0) return;
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      Eigen::Matrix2d& map = planes_[k].map;
+      const auto first = static_cast<Eigen::Index>(k);
+      map = (upper.block<2, 2>(first, first) * map).eval();
+      if (const double size = map.cwiseAbs().maxCoeff(); size > 0) map /= size;
+    }
+    if (++periods_ < period_) return;
+    ++rounds_;
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      Eigen::Matrix2d turned;
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j)
+          turned(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+              metric.product(start_[k + i], columns[k + j]);
+      const Eigen::Matrix2d map = turned * planes_[k].map;
+      const double half = (map(0, 0) - map(1, 1)) / 2;
+      planes_[k].turned += half * half + map(0, 1) * map(1, 0) < 0;
+    }
+    begin(columns);
+  }
+
+  std::vector<double> turning() const {
+    std::vector<double> shares;
+    if (rounds_ > 0)
+      for (const Plane& plane : planes_) shares.push_back(static_cast<double>(plane.turned) / rounds_);
+    return shares;
+  }
+
+ private:
+  struct Plane {
+    Eigen::Matrix2d map;
+    int turned = 0;
+  };
+  void begin(const std::vector<LaneState>& columns) {
+    start_ = columns;
+    periods_ = 0;
+    for (Plane& plane : planes_) plane.map.setIdentity();
+  }
+
+  int period_, periods_ = 0, rounds_ = 0;
+  std::vector<Plane> planes_;
+  std::vector<LaneState> start_;
+};
 
 LaneState random_column(const LaneState& like, std::mt19937_64& random) {
   LaneState column = like;
@@ -71,7 +134,9 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
   const Columns metric(marcher.program(), plan.pulsation);
   std::vector<LyapunovRates> found(states.size());
   std::vector<std::vector<LaneState>> columns(states.size());
-  std::vector<double> growth(static_cast<std::size_t>(count));
+  std::vector<Rounds> rounds;
+  std::vector<int> untold(states.size(), 0);  // before the measured periods
+  Eigen::MatrixXd upper;
   marcher.set_clock(origin);
   const auto store = [&](int lane) {
     for (int k = 0; k < count; ++k)
@@ -85,9 +150,10 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
     std::mt19937_64 random(plan.seed);
     marcher.set_lane(static_cast<int>(lane), LaneSpec(marcher.program().lanes[lane]), states[lane]);
     for (int k = 0; k < count; ++k) columns[lane].push_back(random_column(states[lane], random));
-    orthonormalise(columns[lane], metric, growth);
+    orthonormalise(columns[lane], metric, upper);
     store(static_cast<int>(lane));
     found[lane].rates.resize(static_cast<std::size_t>(count));
+    rounds.emplace_back(plan.round(lane), columns[lane]);
   }
   ImpactJump jump(marcher);
   StepObserver* observer = jump.needed() ? &jump : nullptr;
@@ -112,14 +178,26 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
           add(columns[lane][k], 1, before[lane][k]);
           scale(columns[lane][k], 0.5);
         }
-      orthonormalise(columns[lane], metric, growth);
+      orthonormalise(columns[lane], metric, upper);
       store(static_cast<int>(lane));
       jump.columns_replaced();
+      if (n == -1) {
+        rounds[lane] = Rounds(plan.round(lane), columns[lane]);
+        untold[lane] = jump.untold(static_cast<int>(lane));
+      }
       if (n < 0) continue;
-      for (std::size_t k = 0; k < growth.size(); ++k) found[lane].rates[k].push_back(growth[k] / period);
+      for (int k = 0; k < count; ++k)
+        found[lane].rates[static_cast<std::size_t>(k)].push_back(std::log(upper(k, k)) / period);
+      rounds[lane].add(upper, columns[lane], metric);
     }
   }
-  for (std::size_t lane = 0; lane < states.size(); ++lane) found[lane].jumps = jump.applied(static_cast<int>(lane));
+  for (std::size_t lane = 0; lane < states.size(); ++lane) {
+    const int number = static_cast<int>(lane);
+    found[lane].jumps = jump.applied(number);
+    found[lane].told = std::clamp(2 * marcher.program().model->rows() - jump.lost(number), 0, count);
+    found[lane].untold = jump.untold(number) - untold[lane];
+    found[lane].turning = rounds[lane].turning();
+  }
   return found;
 }
 
@@ -132,7 +210,7 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
   constexpr double far = 1e-2;  // of the orbit's own size
   const Columns metric(marcher.program(), plan.pulsation);
   std::vector<LyapunovRates> found(states.size());
-  std::vector<double> growth(1);
+  Eigen::MatrixXd upper;
   marcher.set_clock(origin);
   const auto place_twin = [&](std::size_t i, std::vector<LaneState>& direction, const LaneState& orbit) {
     LaneState twin = orbit;
@@ -142,7 +220,7 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
   for (std::size_t i = 0; i < states.size(); ++i) {
     std::mt19937_64 random(plan.seed);
     std::vector<LaneState> direction{random_column(states[i], random)};
-    orthonormalise(direction, metric, growth);
+    orthonormalise(direction, metric, upper);
     place_twin(i, direction, states[i]);
     found[i].rates.resize(1);
   }
@@ -161,15 +239,16 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
       const LaneState& orbit = orbits[i].orbit.at(done);
       std::vector<LaneState> direction{marcher.lane_state(static_cast<int>(i))};
       add(direction.front(), -1, orbit);
-      orthonormalise(direction, metric, growth);
-      if (!std::isfinite(growth[0])) {
+      orthonormalise(direction, metric, upper);
+      const double growth = std::log(upper(0, 0));
+      if (!std::isfinite(growth)) {
         found[i].end = {.cause = EndCause::twin_met};
         continue;
       }
       place_twin(i, direction, orbit);
       if (n < 0) continue;
-      found[i].rates[0].push_back((growth[0] - std::log(offset)) / period);
-      found[i].saturated += growth[0] > std::log(far * std::sqrt(metric.product(orbit, orbit)));
+      found[i].rates[0].push_back((growth - std::log(offset)) / period);
+      found[i].saturated += growth > std::log(far * std::sqrt(metric.product(orbit, orbit)));
     }
   }
   return found;

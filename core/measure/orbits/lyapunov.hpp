@@ -17,6 +17,8 @@ struct LyapunovPlan {
   bool without_sawtooth = false;
   std::uint64_t seed = 1;
   bool keep_orbit = false;  ///< whether LyapunovRates::orbit is wanted
+  std::vector<int> rounds;  ///< per lane, the periods after which its orbit repeats; 0, or no entry: not known
+  int round(std::size_t lane) const { return lane < rounds.size() ? rounds[lane] : 0; }
 };
 
 /// Growth of the tangent columns of one lane.
@@ -24,13 +26,25 @@ struct LyapunovRates {
   std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
   LaneEnd end;                             ///< of a lane that stopped; none otherwise
   int jumps = 0;                           ///< impacts with inertia whose jump was applied
-  int saturated = 0;                       ///< measured periods after which a twin was a hundredth of the orbit away
-  std::vector<LaneState> orbit;            ///< of the lane itself after each period, discarded ones first
+  int told = 0;    ///< columns, from the first on, that have a growth; none: the orbit is superstable (see below)
+  int untold = 0;  ///< impacts in the measured periods whose jump is not known: rates are none
+  /// Per column and the one after it, the share of whole rounds whose map in the plane of both has no real eigenvalue;
+  /// empty where no round was measured.
+  std::vector<double> turning;
+  int saturated = 0;             ///< measured periods after which a twin was a hundredth of the orbit away
+  std::vector<LaneState> orbit;  ///< of the lane itself after each period, discarded ones first
 };
 
 /// Lyapunov exponents along the lanes of a program that has tangent columns: from `states` (one step after a strobe)
 /// the block marches period after period; at each strobe the columns are orthonormalised, X = Q R, in metres
 /// (velocities over ω, accelerations over ω²), and ln R_kk/T is recorded. The k-th exponent is the mean over periods.
+///
+/// With n coordinates the state has 2n directions. A massive point that comes to rest on its stop ends two of them, and
+/// an impact without rebound one (ImpactJump): the exponents of the last columns are −∞, and those of all columns where
+/// n points rest at once.
+///
+/// Over a round of p periods, X_p = A X_0 and X_p = Q R with R the product of the periods' own: the blocks of QᵀA Q
+/// between neighbouring columns are those of Q_0ᵀ Q_p R, upper triangular but for pairs (real Schur form).
 /// Source: Benettin, Galgani, Giorgilli and Strelcyn (1980), Meccanica 15, 9–30; QR after Geist, Parlitz and Lauterborn
 /// (1990).
 std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<LaneState>& states,

@@ -276,11 +276,14 @@ class BifurcationRun {
     std::vector<OrbitView> all = views();
     ExponentTask task;
     std::vector<std::size_t> places;
+    std::vector<OrbitPeriod> periods;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!all[i].complete()) continue;
       task.orbits.push_back(all[i].orbit);
       task.groups.push_back(all[i].group);
       task.scenes.push_back(all[i].scene);
+      const OrbitPeriod& period = periods.emplace_back(orbit_period(*all[i].orbit, section_));
+      task.rounds.push_back(period.doubtful > 0 ? period.doubtful : period.recurrence.period);
       places.push_back(i);
     }
     if (exponents() > 0 && !places.empty()) {
@@ -295,7 +298,13 @@ class BifurcationRun {
       };
       batches.serve(task);
       double seconds = 0;
-      const auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
+      auto found = measure_exponents(scenes_, task, section_, seconds, stop_);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i].method == "tangent+jump" && !found[i].values.empty() &&
+            outlives(periods[i], found[i].values.front(), section_)) {
+          found[i] = {};
+          found[i].outlived = true;
+        }
       record_.run_seconds += seconds;
       for (std::size_t i = 0; i < found.size(); ++i) all[places[i]].exponents = found[i];
       put_measure(record_, "exponent_seconds", seconds);
@@ -307,6 +316,9 @@ class BifurcationRun {
       };
       none_where(&OrbitExponents::saturated, "", why_saturated);
       none_where(&OrbitExponents::blind, " with impacts", why_blind);
+      none_where(&OrbitExponents::untold, "", why_untold);
+      none_where(&OrbitExponents::outlived, "", why_outlived);
+      none_where(&OrbitExponents::superstable, "", why_superstable);
     }
     classify_all(all);
     write_tables(record_, all);

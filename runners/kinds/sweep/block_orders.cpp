@@ -10,8 +10,8 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* order_mark = "block 3";
-constexpr const char* answer_mark = "answer of a block 3";
+constexpr const char* order_mark = "block 4";
+constexpr const char* answer_mark = "answer of a block 4";
 constexpr std::size_t most_scenes = 8192, most_kept_cases = 8;  // that are kept for later blocks
 
 std::vector<double> numbers(const Eigen::VectorXd& vector) {
@@ -43,7 +43,7 @@ void serialize(Archive& archive, OrderedOrbit& orbit) {
 template <class Archive>
 void serialize(Archive& archive, BlockOrder& order) {
   archive(order.scenes, order.section, order.lanes, order.leave, order.ends_only, order.interval, order.orbits,
-          order.marched, order.exponents, order.sawtooth);
+          order.marched, order.exponents, order.rounds, order.sawtooth);
 }
 
 template <class Archive>
@@ -119,6 +119,7 @@ std::string BlockMarcher::march(const StudyCase& study_case, const std::string& 
     ExponentTask task;
     task.sawtooth.assign(static_cast<std::size_t>(kept.all->groups()), order.sawtooth);
     task.count = order.exponents;
+    task.rounds = order.rounds;
     for (std::size_t i = 0; i < order.orbits.size(); ++i) {
       Orbit& orbit = order.marched.finished.at(i);
       orbit.lane = lane_of(order.orbits[i]);

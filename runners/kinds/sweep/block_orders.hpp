@@ -34,7 +34,8 @@ struct BlockOrder {
   std::vector<OrderedOrbit> orbits;
   MarchedOrbits marched;  ///< numbers of tasks are places in `orbits`; for exponents: finished ones with their entries
   int exponents = 0;      ///< 0: the orbits are marched; else so many exponents of each are measured
-  bool sawtooth = false;  ///< see MarginalRoots
+  std::vector<int> rounds;  ///< for exponents: see ExponentTask
+  bool sawtooth = false;    ///< see MarginalRoots
 };
 
 /// What of it is new since the last answer. The last one holds the orbits that are left to others.

@@ -41,6 +41,7 @@ void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, con
       orbit.task = orders.add(task.scenes[i], task.orbits[i]->lane);
       orbit.entry = task.orbits[i]->entry;
       orders.order().marched.finished.push_back(std::move(orbit));
+      orders.order().rounds.push_back(task.rounds.at(i));
     }
     orders.order().exponents = task.count;
     orders.order().sawtooth = task.sawtooth[static_cast<std::size_t>(task.groups[part.orbits.front()])];

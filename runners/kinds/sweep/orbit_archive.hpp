@@ -70,7 +70,8 @@ void serialize(Archive& archive, Interval& interval) {
 
 template <class Archive>
 void serialize(Archive& archive, OrbitExponents& exponents) {
-  archive(exponents.values, exponents.twin, exponents.method, exponents.blind, exponents.saturated);
+  archive(exponents.values, exponents.twin, exponents.method, exponents.blind, exponents.saturated,
+          exponents.superstable, exponents.outlived, exponents.untold);
 }
 
 }  // namespace ricochet

@@ -85,6 +85,7 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     for (const std::size_t i : batch.orbits) {
       lanes.push_back(orbits[i]->lane);
       states.push_back(orbits[i]->entry);
+      one.rounds.push_back(task.rounds.at(i));
     }
     bool tangents = true;
     one.keep_orbit = !one.without_sawtooth;
@@ -94,9 +95,14 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
         OrbitExponents& exponents = found[batch.orbits[b]];
         if (rates[b].end) continue;
+        exponents.superstable = columns > 0 && rates[b].told == 0;
+        exponents.untold = !exponents.superstable && rates[b].untold > 0;
+        if (exponents.superstable) exponents.method = "superstable";
+        if (exponents.superstable || exponents.untold) continue;
         // A column beyond what the state can tell apart has no growth to speak of.
         const auto& all = rates[b].rates;
-        exponents.values = exponent_intervals({all.begin(), std::find_if_not(all.begin(), all.end(), usable)}, count);
+        const auto last = std::find_if_not(all.begin(), all.begin() + rates[b].told, usable);
+        exponents.values = exponent_intervals({all.begin(), last}, count, rates[b].turning);
         exponents.method = rates[b].jumps > 0 ? "tangent+jump" : "tangent";
       }
     } catch (const Refusal&) {
@@ -109,7 +115,8 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     const auto twin = twin_rates(scenes.program(batch.group, lanes), states, rates, one, twin_offset);
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
-      if (twin[b].end || !usable(twin[b].rates[0])) continue;
+      // Closer than a step's way, an orbit and its twin meet their stops at the same steps, as motions do not.
+      if (exponents.superstable || rates[b].jumps > 0 || twin[b].end || !usable(twin[b].rates[0])) continue;
       if (saturates(twin[b])) {
         exponents.saturated = !tangents;
         continue;

@@ -16,9 +16,13 @@ namespace ricochet {
 struct OrbitExponents {
   std::vector<Interval> values;  ///< largest first; those owed to the scheme set apart
   std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
-  std::string method;            ///< "tangent", "tangent+jump", "twin(1e-07)"; "" where none could be measured
-  bool blind = false;            ///< none would see its impacts move: tangents_miss_impacts()
-  bool saturated = false;        ///< there are no tangents, and the twin is soon as far away as orbits are
+  /// "tangent", "tangent+jump", "twin(1e-07)"; "superstable" where all are −∞; "" where none could be measured.
+  std::string method;
+  bool blind = false;        ///< none would see its impacts move: tangents_miss_impacts()
+  bool saturated = false;    ///< there are no tangents, and the twin is soon as far away as orbits are
+  bool superstable = false;  ///< all points come to rest on their stops: LyapunovRates::told is none
+  bool outlived = false;     ///< the orbit stays where its exponents would have it leave: outlives()
+  bool untold = false;       ///< it has impacts whose jump is not known: LyapunovRates::untold
 };
 
 /// Why saturated ones have none, and orbits with impacts where tangents_miss_impacts().
@@ -28,6 +32,16 @@ constexpr const char* why_blind =
     "this scheme changes the velocity at the step that finds a point at its stop, and the time of an impact moves with "
     "the orbit by whole steps alone; the derivative of the step and a twin nearby do not see it, and would call a "
     "chaotic orbit stable";
+
+constexpr const char* why_superstable =
+    "superstable: the mass comes to rest on its stop and leaves it whatever was before, so neighbours become one orbit "
+    "(exponents −∞)";
+constexpr const char* why_outlived =
+    "tangents grow along these orbits, which repeat all the same: what the step leaves open of their impacts does not "
+    "grow; take more steps per period";
+constexpr const char* why_untold =
+    "impacts follow each other within a few steps, or at several points at once, and no point comes to rest of them: "
+    "what they make of a neighbour is not known; take more steps per period";
 
 /// What the stability analysis says of roots of modulus one that are the scheme's.
 struct MarginalRoots {
@@ -40,6 +54,7 @@ MarginalRoots marginal_roots(const ForcedScenes& scenes, int group);
 struct ExponentTask {
   std::vector<const Orbit*> orbits;
   std::vector<int> groups;         ///< of each orbit
+  std::vector<int> rounds;         ///< of each orbit, the periods after which it repeats; 0: not known
   std::vector<bool> sawtooth;      ///< per group: see MarginalRoots
   int count = 1;                   ///< exponents
   ThreadSeats* seats = nullptr;    ///< of threads that may measure; null: the caller alone

@@ -154,6 +154,7 @@ void judge(OrbitView& view, const SectionPlan& plan) {
   if (!view.complete()) return;
   const auto& exponents = view.exponents.values;
   view.judged = judge(*view.orbit, plan, exponents.empty() ? std::nullopt : std::optional(exponents.front()));
+  if (view.exponents.superstable) view.judged.verdict.evidence += fmt::format("; {}", why_superstable);
 }
 
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,

@@ -95,9 +95,13 @@ Table values_head(int exponents, const SweptColumns& swept) {
   table.columns = joined(
       std::move(table.columns),
       {{"exponent_method", "",
-        "How the exponents were found: tangent, tangent+jump, or twin with its offset; empty where there are "
-        "none, or none that would see how impacts move (the notes of the case say so)."},
-       {"exponent_twin", "1/s", "The largest exponent by a second trajectory beside the first, as a check."},
+        "How the exponents were found: tangent, tangent+jump, or twin with its offset; superstable where all are −∞, "
+        "as the mass comes to rest on its stop; empty where there are none, or none that would see how impacts move "
+        "(the notes of the case say so)."},
+       {"exponent_twin", "1/s",
+        "The largest exponent by a second trajectory beside the first, as a check; empty where impacts have inertia, "
+        "as "
+        "both would meet their stops at the same steps."},
        {"marginal", "", "Roots of modulus one that are the scheme's own and not the motion's."},
        attractor_column,
        {"alpha_equivalent", "s",
