@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <ricochet/algebra/infinity.hpp>
+#include <limits>
 
 namespace ricochet {
 namespace {
 
-// Between the stops of a point, m; infinite where there is none.
+constexpr double no_gap = std::numeric_limits<double>::infinity();
+
+// Between the stops of a point, m.
 double gap_of(const Marcher& marcher, int point) {
   const LaneSpec& lane = marcher.program().lanes.front();
   const double gap = lane.upper[point] - lane.lower[point];
-  return gap > 0 ? gap : infinity;
+  return gap > 0 ? gap : no_gap;
 }
 
 int points_of(const Marcher& marcher) {
@@ -22,7 +23,7 @@ int points_of(const Marcher& marcher) {
 
 }  // namespace
 
-GapWatch::GapWatch(const Marcher& marcher) : looked_at_(infinity) {
+GapWatch::GapWatch(const Marcher& marcher) : looked_at_(no_gap) {
   for (int j = 0; j < points_of(marcher); ++j) looked_at_ = std::min(looked_at_, gap_of(marcher, j));
 }
 
@@ -30,12 +31,12 @@ void GapWatch::look(const Marcher& marcher, double penetration) {
   const MarchModel& model = *marcher.program().model;
   const double support = marcher.support(0, marcher.time());
   double most = 0;
-  for (int j = 0; j < points_of(marcher); ++j)
-    most = std::max(
-        most, marcher.depth(0, j, model.times(model.contact(), j, marcher.slot(0)), support) / gap_of(marcher, j));
-  // Steps that get little further are not looked at.
-  constexpr double further = 1.05;
-  looked_at_ = further * penetration;
+  const LaneSpec& lane = marcher.program().lanes.front();
+  for (int j = 0; j < points_of(marcher); ++j) {
+    const double place = model.times(model.contact(), j, marcher.slot(0)) + support;
+    most = std::max(most, std::max(lane.lower[j] - place, place - lane.upper[j]) / gap_of(marcher, j));
+  }
+  looked_at_ = penetration;
   if (!(most > 1)) return;
   if (times_ == 0) first_ = marcher.time();
   times_ = std::max(times_, most);

@@ -24,7 +24,7 @@ class GapWatch {
 
  private:
   void look(const Marcher& marcher, double penetration);
-  double looked_at_;  // m: less is not looked at, at first the smallest gap
+  double looked_at_;  // m: no less is looked at; at first the smallest gap
   double times_ = 0, first_ = 0;
 };
 

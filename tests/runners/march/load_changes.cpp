@@ -65,7 +65,9 @@ TEST_CASE("a load that comes and goes within a step is told with its times") {
   // One part of several, and what is spread over a beam.
   CHECK(load_changes(pushed({"1 + 0.1*sin(t)", "t > 0.3 && t < 0.3001 ? 5 : 0"}), 0.01, 1000).size() == 1);
   SceneSpec beam;
-  beam.structure = BeamSpec{.length = 2};
+  BeamSpec whole;
+  whole.length = 2;
+  beam.structure = whole;
   beam.load = Formula("x^2*(t > 0.3 && t < 0.3001 ? 5 : 0)", "/scene/load", "xt");
   CHECK(load_changes(beam, 0.01, 1000).size() == 1);
   beam.load = LoadSpec();

@@ -176,8 +176,8 @@ TEST_CASE("A value that every cell replaces is not looked at") {
   const Opened opened(study);
   CHECK(plan_basins(opened.study.cases.front(), opened.registry).refusal.empty());
   // What no cell replaces is.
-  study["scene"]["structure"]["damping"] = -1;
-  CHECK_THROWS_WITH(Opened(study), Contains("damping"));
+  study["scene"]["stops"]["upper"] = "x +";
+  CHECK_THROWS_WITH(Opened(study), Contains("does not parse"));
 }
 
 TEST_CASE("Cells marched in batches of their own or many batches together have the same bits") {
