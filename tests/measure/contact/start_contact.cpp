@@ -49,7 +49,7 @@ SceneSpec pressed(double speed, const std::string& load = "-5") {
   return scene;
 }
 
-Choice spring(const char* law, const char* evaluation) {
+Choice on_spring(const char* law, const char* evaluation) {
   Choice choice{law, {{"stiffness", 1e4}, {"evaluation", std::string(evaluation)}}};
   if (choice.name == "kelvin-voigt") choice.values["viscosity"] = 20.0;
   return choice;
@@ -75,9 +75,9 @@ TEST_CASE("a mass that is pressed on its rigid stop at t = 0 hits nothing, whate
 }
 
 TEST_CASE("a mass that is pressed into a spring from its surface is in contact from the start") {
-  const auto law = GENERATE(spring("penalty", "implicit"), spring("penalty", "explicit"), spring("penalty", "averaged"),
-                            spring("penalty", "conserving"), spring("kelvin-voigt", "implicit"),
-                            Choice{"hertz", {{"stiffness", 1e8}}});
+  const auto law = GENERATE(on_spring("penalty", "implicit"), on_spring("penalty", "explicit"),
+                            on_spring("penalty", "averaged"), on_spring("penalty", "conserving"),
+                            on_spring("kelvin-voigt", "implicit"), Choice{"hertz", {{"stiffness", 1e8}}});
   const auto time = GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean"},
                              Choice{"newmark-dumont-paoli", {{"start", std::string("first-order")}}},
                              Choice{"generalised-alpha"}, Choice{"bathe"});
@@ -98,8 +98,8 @@ TEST_CASE("a mass that starts on its stop and moves into it hits it at t = 0, wi
   const auto methods = GENERATE(
       Methods{{"consistent"}, {"signorini"}, {"moreau-jean"}},
       Methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"start", std::string("first-order")}}}},
-      Methods{{"consistent"}, spring("penalty", "implicit"), {"newmark"}},
-      Methods{{"consistent"}, spring("penalty", "explicit"), {"newmark-dumont-paoli"}});
+      Methods{{"consistent"}, on_spring("penalty", "implicit"), {"newmark"}},
+      Methods{{"consistent"}, on_spring("penalty", "explicit"), {"newmark-dumont-paoli"}});
   Methods with = methods;
   if (with.contact.name == "signorini") with.time.values["restitution"] = e;
   INFO(with.contact.name << ", " << with.time.name << ", e = " << e);
@@ -129,7 +129,7 @@ TEST_CASE("a load that begins to press later has not thrown what lay on its stop
   // Nothing presses at t = 0 itself.
   const auto methods = GENERATE(Methods{{"consistent"}, {"signorini"}, {"moreau-jean"}},
                                 Methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}},
-                                Methods{{"consistent"}, spring("penalty", "explicit"), {"newmark"}});
+                                Methods{{"consistent"}, on_spring("penalty", "explicit"), {"newmark"}});
   INFO(methods.contact.name << ", " << methods.time.name);
   const Counted run(marcher(pressed(0, "-5*sin(10*t)"), 1, methods, h), 0.05);
   run.impacts(0);

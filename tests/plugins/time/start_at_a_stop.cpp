@@ -23,6 +23,7 @@ std::vector<Choice> restituting(double e) {
 struct Marched {
   double position = 0, velocity = 0, lost = 0, residual = 0, highest = 0;
   long long impacts = 0;
+  bool balances = false;  // whether the scheme declares what its stops take
 };
 Marched marched(const SceneSpec& scene, const Choice& time, double h, double duration) {
   Marcher mass = marcher(scene, 1, {{"consistent"}, {"signorini"}, time}, h);
@@ -40,6 +41,7 @@ Marched marched(const SceneSpec& scene, const Choice& time, double h, double dur
   out.velocity = (out.position - last) / h;
   out.lost = watch.audit.lost_at_stops(0);
   out.residual = watch.audit.totals(0).balance_residual();
+  out.balances = watch.audit.balances();
   out.impacts = watch.audit.contact(0).impacts;
   return out;
 }
@@ -63,9 +65,10 @@ TEST_CASE("a free mass that starts within a step's way of its stop rebounds with
           const Marched of = marched(with_stop(oscillator(0, 0, side * steps * h, -side), lower), time, h, 30 * h);
           // Round-off of positions of some h, over h.
           CHECK(side * of.velocity == Approx(e).margin(1e-10));
+          CHECK(of.impacts >= 1);
+          if (!of.balances) continue;
           CHECK(of.lost == Approx(0.5 * (1 - e * e)).margin(1e-10));
           CHECK(std::abs(of.residual) < 1e-10);
-          CHECK(of.impacts >= 1);
         }
 }
 
@@ -98,7 +101,7 @@ TEST_CASE("what is pressed on its stop as a march begins stays there, the stop c
       // Round-off, or the way h² F/2m of a first step without a force.
       CHECK(std::abs(of.position) < 2e-6);
       CHECK(std::abs(of.velocity) < 5e-3);
-      CHECK(std::abs(of.lost) < 1e-4);
+      if (of.balances) CHECK(std::abs(of.lost) < 1e-4);
     }
 }
 
