@@ -310,9 +310,8 @@ class BifurcationRun {
       put_measure(record_, "exponent_seconds", seconds);
       const auto none_where = [&](bool OrbitExponents::*fact, const char* which, const char* why) {
         const auto count = std::count_if(found.begin(), found.end(), [&](const auto& one) { return one.*fact; });
-        if (count > 0)
-          record_.notes.push_back(
-              fmt::format("no exponents of {} orbit{}{}: {}", count, count == 1 ? "" : "s", which, why));
+        if (count == 0) return;
+        record_.notes.push_back(fmt::format("no exponents of {} orbit{}{}: {}", count, &"s"[count == 1], which, why));
       };
       none_where(&OrbitExponents::saturated, "", why_saturated);
       none_where(&OrbitExponents::blind, " with impacts", why_blind);
