@@ -210,17 +210,18 @@ std::string span_text(const std::vector<OrderPoint>& points, const OrderFit& fit
 /// Why fewer than three points are left.
 std::string too_few(const std::vector<OrderPoint>& points, const OrderQuestion& question, std::size_t left) {
   std::size_t floored = 0, dominated = 0;
+  // An error that was measured bounds what is in it.
+  double named = question.other_error;
   for (const OrderPoint& p : points) {
     if (!std::isfinite(p.error)) continue;
+    named = std::min(named, p.error);
     if (question.other_error > 0 && p.error <= above_floor * question.other_error)
       ++dominated;
     else if (p.error <= above_floor * p.floor || p.error == 0)
       ++floored;
   }
   std::string out = fmt::format("{} of {} points usable, three are needed", left, points.size());
-  if (dominated)
-    out +=
-        fmt::format("; the error of {}, about {:.2g}, dominates {}", question.other, question.other_error, dominated);
+  if (dominated) out += fmt::format("; the error of {}, about {:.2g}, dominates {}", question.other, named, dominated);
   if (floored) out += fmt::format("; {} within 4 times the error floor", floored);
   return out;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <ricochet/measure/motion/orders.hpp>
 #include <set>
@@ -35,10 +34,9 @@ double size_of(const CaseRecord& record, const std::string& refined) {
 }
 
 // By how much the error of this case would still move if the other quantity were refined: to the finest of it, and by
-// what the last refinements say of the rest. An error that was measured bounds what is in it: `least` is the smallest
-// with the same other quantity.
+// what the last refinements say of the rest. The error of the finest case bounds what is in it.
 double other_error(const StudyResults& results, const CaseRecord& finest, const std::string& other,
-                   const std::string& error, double least) {
+                   const std::string& error) {
   const std::vector<std::string> columns = without(results.columns, other);
   const Row place = axes_of(finest, columns);
   std::vector<std::pair<double, double>> along;  // size, error
@@ -53,7 +51,7 @@ double other_error(const StudyResults& results, const CaseRecord& finest, const 
   const double change = std::abs(along[1].second - along[0].second);
   double fall = std::max(1.0, along[1].first / along[0].first);
   if (along.size() > 2 && change > 0) fall = std::max(fall, std::abs(along[2].second - along[1].second) / change - 1);
-  return std::min(least, std::abs(here - along.front().second) + change / fall);
+  return std::min(here, std::abs(here - along.front().second) + change / fall);
 }
 
 bool single_valued(const StudyResults& results, const std::string& column) {
@@ -131,11 +129,9 @@ Table orders_table(const StudyResults& results) {
       for (const std::string& name : errors_of(results)) {
         std::vector<OrderPoint> points;
         const CaseRecord* finest = nullptr;
-        double least = std::numeric_limits<double>::infinity();
         for (const CaseRecord* record : group)
           if (const auto value = measure(*record, "error." + name)) {
             points.push_back({size_of(*record, refined), *value, measure(*record, "floor." + name).value_or(0)});
-            least = std::min(least, *value);
             if (!finest || size_of(*record, refined) < size_of(*finest, refined)) finest = record;
           }
         if (!finest) continue;
@@ -143,7 +139,7 @@ Table orders_table(const StudyResults& results) {
         // A declared order is one in h; the two ends of an interval of time are no norm of the motion.
         if (refined == "step") question.declared = measure(*finest, "declared_order");
         question.refined = refined == "step" ? "step" : "element length";
-        question.other_error = other_error(results, *finest, other, "error." + name, least);
+        question.other_error = other_error(results, *finest, other, "error." + name);
         question.other = refined == "step" ? "the mesh" : "the step";
         // One mesh against a motion without a mesh (or one step): nothing tells how large its error is.
         question.other_unknown = single_valued(results, other) && meshed(results) &&
