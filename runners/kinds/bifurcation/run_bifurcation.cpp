@@ -318,7 +318,6 @@ class BifurcationRun {
       none_where(&OrbitExponents::untold, "", why_untold);
       none_where(&OrbitExponents::outlived, "", why_outlived);
       none_where(&OrbitExponents::superstable, "", why_superstable);
-      none_where(&OrbitExponents::rested, "", why_rested);
     }
     classify_all(all);
     write_tables(record_, all);

@@ -71,7 +71,7 @@ void serialize(Archive& archive, Interval& interval) {
 template <class Archive>
 void serialize(Archive& archive, OrbitExponents& exponents) {
   archive(exponents.values, exponents.twin, exponents.method, exponents.blind, exponents.saturated,
-          exponents.superstable, exponents.rested, exponents.outlived, exponents.untold);
+          exponents.superstable, exponents.outlived, exponents.untold);
 }
 
 }  // namespace ricochet

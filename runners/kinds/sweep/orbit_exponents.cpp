@@ -95,12 +95,10 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
         OrbitExponents& exponents = found[batch.orbits[b]];
         if (rates[b].end) continue;
-        const bool ends = columns > 0 && rates[b].told == 0;
-        exponents.superstable = ends && one.rounds[b] > 0;
-        exponents.rested = ends && !exponents.superstable;
-        exponents.untold = !ends && rates[b].untold > 0;
+        exponents.superstable = columns > 0 && rates[b].told == 0;
+        exponents.untold = !exponents.superstable && rates[b].untold > 0;
         if (exponents.superstable) exponents.method = "superstable";
-        if (ends || exponents.untold) continue;
+        if (exponents.superstable || exponents.untold) continue;
         // A column beyond what the state can tell apart has no growth to speak of.
         const auto& all = rates[b].rates;
         const auto last = std::find_if_not(all.begin(), all.begin() + rates[b].told, usable);
@@ -118,8 +116,7 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
       OrbitExponents& exponents = found[batch.orbits[b]];
       // Closer than a step's way, an orbit and its twin meet their stops at the same steps, as motions do not.
-      if (exponents.superstable || exponents.rested || rates[b].jumps > 0 || twin[b].end || !usable(twin[b].rates[0]))
-        continue;
+      if (exponents.superstable || rates[b].jumps > 0 || twin[b].end || !usable(twin[b].rates[0])) continue;
       if (saturates(twin[b])) {
         exponents.saturated = !tangents;
         continue;

@@ -20,8 +20,7 @@ struct OrbitExponents {
   std::string method;
   bool blind = false;        ///< none would see its impacts move: tangents_miss_impacts()
   bool saturated = false;    ///< there are no tangents, and the twin is soon as far away as orbits are
-  bool superstable = false;  ///< all points come to rest on their stops in an orbit that repeats
-  bool rested = false;       ///< the same of one that does not: its tangents end there
+  bool superstable = false;  ///< all points come to rest on their stops: LyapunovRates::told is none
   bool outlived = false;     ///< the orbit stays where its exponents would have it leave: outlives()
   bool untold = false;       ///< it has impacts whose jump is not known: LyapunovRates::untold
 };
@@ -37,9 +36,6 @@ constexpr const char* why_blind =
 constexpr const char* why_superstable =
     "superstable: the mass comes to rest on its stop and leaves it whatever was before, so neighbours become one orbit "
     "(exponents −∞)";
-constexpr const char* why_rested =
-    "the mass came to rest on its stop, where what was before is forgotten and tangents end, and the orbit does not "
-    "repeat within its kept periods: keep more of them";
 constexpr const char* why_outlived =
     "tangents grow along these orbits, which repeat all the same: what the step leaves open of their impacts does not "
     "grow; take more steps per period";

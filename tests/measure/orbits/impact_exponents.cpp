@@ -332,7 +332,7 @@ TEST_CASE("a structure keeps what its resting point does not hold: the columns a
     marcher.march(steps / 40, &jump);
     twin.march(steps / 40);
     rested = std::max(rested, jump.lost(0));
-    const bool closed = marcher.pushed_by(0)[1] || twin.pushed_by(0)[1];
+    const bool closed = marcher.closed(0)[1] || twin.closed(0)[1];
     if (closed || rested == 0 || restitution == 0) continue;
     const Eigen::VectorXd difference = (twin.position(0) - marcher.position(0)) / offset;
     const LaneState column = marcher.tangent(0, 0);
