@@ -15,6 +15,7 @@ std::string count_text(int n, const char* what) {
 }
 
 std::string exponent_text(const Interval& e) {
+  if (std::isinf(e.value)) return "superstable (exponent −∞)";
   return fmt::format("exponent {:.3g} 1/s in [{:.3g}, {:.3g}]", e.value, e.low, e.high);
 }
 

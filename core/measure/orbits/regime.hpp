@@ -9,11 +9,12 @@ namespace ricochet {
 
 /// What is known of one orbit over its kept periods.
 struct RegimeInput {
-  bool contact = false;              ///< whether any stop was touched
-  bool rests = false;                ///< whether the contact never opened
-  Recurrence recurrence;             ///< of its section
-  std::optional<Interval> exponent;  ///< largest Lyapunov exponent, 1/s; those owed to the scheme have been set apart
-  std::optional<double> zero_one;    ///< K
+  bool contact = false;   ///< whether any stop was touched
+  bool rests = false;     ///< whether the contact never opened
+  Recurrence recurrence;  ///< of its section
+  std::optional<Interval>
+      exponent;  ///< largest Lyapunov exponent, 1/s; −∞: superstable; those owed to the scheme are set apart
+  std::optional<double> zero_one;  ///< K
   double impacts_per_period = 0;
   bool settled = true;        ///< false: the transient was cut at its cap
   double tolerance = 0;       ///< of the recurrence, relative

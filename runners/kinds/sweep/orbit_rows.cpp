@@ -152,9 +152,11 @@ std::optional<EquivalentViscosity> numerical_viscosity(const ForcedScenes& scene
 
 void judge(OrbitView& view, const SectionPlan& plan) {
   if (!view.complete()) return;
-  const auto& exponents = view.exponents.values;
-  view.judged = judge(*view.orbit, plan, exponents.empty() ? std::nullopt : std::optional(exponents.front()));
-  if (view.exponents.superstable) view.judged.verdict.evidence += fmt::format("; {}", why_superstable);
+  std::optional<Interval> exponent;
+  if (!view.exponents.values.empty()) exponent = view.exponents.values.front();
+  constexpr double least = -std::numeric_limits<double>::infinity();
+  if (view.exponents.superstable) exponent = Interval{least, least, least};
+  view.judged = judge(*view.orbit, plan, exponent);
 }
 
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,

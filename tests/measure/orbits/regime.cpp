@@ -115,6 +115,19 @@ TEST_CASE("regime: without contact nothing else matters") {
   CHECK(says(classify(input), "no stop was touched"));
 }
 
+TEST_CASE("regime: a superstable orbit that is not seen to repeat has a longer period, whatever K says") {
+  constexpr double least = -std::numeric_limits<double>::infinity();
+  RegimeInput input = touched(third);
+  input.exponent = Interval{least, least, least};
+  input.zero_one = 0.99;
+  CHECK(classify(input).motion == MotionClass{Regime::periodic, 3});
+  CHECK(says(classify(input), "superstable"));
+  input.recurrence = touched().recurrence;
+  CHECK(classify(input).motion.regime == Regime::undecided);
+  CHECK(says(classify(input), "superstable"));
+  CHECK(says(classify(input), "the period may exceed the longest looked for"));
+}
+
 TEST_CASE("regime: a contact that never opens is rest, whatever repeats") {
   RegimeInput input = touched(third);
   input.rests = true;
