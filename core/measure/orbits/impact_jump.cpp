@@ -17,6 +17,12 @@ constexpr int clear_flight = 10;
 constexpr int longest_impact = 3;
 // hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
 constexpr double resolved_turn = 0.1;
+// e is read off a march of the plan: of none, round-off over h is left.
+constexpr double rebounds_above = 1e-6;
+
+bool no_rebound(const std::optional<double>& restitution) {
+  return restitution && std::abs(*restitution) < rebounds_above;
+}
 
 }  // namespace
 
@@ -177,7 +183,7 @@ int ImpactJump::lost(int lane) const {
   if (!needed_) return 0;
   const Lane& one = *lanes_[static_cast<std::size_t>(lane)];
   if (one.most_resting > 0) return 2 * one.most_resting;
-  return one.applied > 0 && restitution_ == 0.0 ? 1 : 0;
+  return one.applied > 0 && no_rebound(restitution_) ? 1 : 0;
 }
 
 int ImpactJump::untold(int lane) const {
@@ -286,7 +292,7 @@ void ImpactJump::hold(Marcher& marcher, Lane& lane, int index) {
   const Eigen::Index size = model.rows();
   const bool all = lane.resting >= size;
   // Without rebound the speed is lost at once, and what damping makes of that is not in the limit of chattering.
-  if (!all && (!inverse_mass_ || restitution_ == 0.0)) {
+  if (!all && (!inverse_mass_ || no_rebound(restitution_))) {
     ++lane.untold;
     return;
   }
