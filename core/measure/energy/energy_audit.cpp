@@ -113,6 +113,8 @@ bool EnergyAudit::asks(const Lane& state, long long step) const {
 }
 
 void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane& state) {
+  // A start rule that moves no time is no step.
+  state.since += state.step;
   state.step = {};
   state.touched = view.starting;
   const long long step = marcher.step() + 1;
@@ -245,6 +247,7 @@ void EnergyAudit::step_done(Marcher& marcher) {
     ++state.steps;
     const double worked = std::abs(state.step.loads) + std::abs(state.step.damping) + std::abs(state.step.contact) +
                           std::abs(state.step.scheme);
+    state.step = {};
     if (state.looking) look(marcher, lane);
     state.look_next = alarms(state, worked);
   }

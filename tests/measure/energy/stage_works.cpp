@@ -24,12 +24,15 @@ class DefinedLedger final : public StepObserver {
 
   void stage_solved(const Marcher& marcher, const StageView& view) override {
     if (view.plan->work || !view.starting) {
-      if (!begun_) start_ = energy(marcher);
+      if (!begun_) start_ = energy(marcher) - sums_.contact - sums_.loads;
       begun_ = true;
       for (const LossTerm& term : view.plan->loss)
         sums_.scheme += term.coefficient * form(term.matrix, combined(marcher, view, term.value));
     }
-    if (view.plan->work) add_work(marcher, view, *view.plan->work);
+    if (view.plan->work)
+      add_work(marcher, view, *view.plan->work);
+    else if (view.starting)
+      add_start(marcher, view);
     audit_.stage_solved(marcher, view);
   }
 
@@ -89,6 +92,27 @@ class DefinedLedger final : public StepObserver {
         if (view.effort[k]) effort += weights[k] * view.effort[k][j * marcher.width() + lane_];
       sums_.contact += effort * (model.measured().times(j, s.data()) + lift);
       sums_.loads -= effort * lift;
+    }
+  }
+
+  // What contact works in a start rule without work form: the momentum given within it, times the mean velocity.
+  void add_start(const Marcher& marcher, const StageView& view) {
+    if (!view.effort || view.plan->matrix.M == 0) return;
+    const MarchModel& model = *marcher.program().model;
+    const StepPlan& plan = marcher.program().plan;
+    double given = 0;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(M_.rows());
+    for (std::size_t j = 0; j < plan.velocity.slots.size(); ++j) {
+      const double weight = plan.velocity.slots[j];
+      given += weight * view.plan->update[j].z / view.plan->matrix.M;
+      mean += weight / 2 * (lane_of(marcher, view.slots[j]) + combined(marcher, view, view.plan->update[j]));
+    }
+    const double h = marcher.program().h;
+    const double lift = (marcher.support(lane_, view.time + h) - marcher.support(lane_, view.time)) / h;
+    for (int j = 0; j < model.problem().points(); ++j) {
+      const double impulse = given * view.effort[0][j * marcher.width() + lane_];
+      sums_.contact += impulse * (model.measured().times(j, mean.data()) + lift);
+      sums_.loads -= impulse * lift;
     }
   }
 
