@@ -79,7 +79,7 @@ inline StepPlan three_level_plan(double h, double e) {
   start.impact = ImpactMeasure{.value = first};
   if (e > 0) {
     start.impact->value = {.slots = {0, 1 / h}, .z = 0.5 / h};
-    start.impact->gate = VelocityGate{.predictor = first, .approach = begins, .restitution = e};
+    start.impact->gate = VelocityGate{first, {}, begins, {}, e};
   }
   start.at(Evaluation::averaged) = {first, {}, begins, {}, {1}};
   start.update = {first, {.slots = {0, 1}, .z = 0.5}};

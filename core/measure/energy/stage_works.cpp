@@ -31,7 +31,8 @@ StageWorks::StageWorks(const Marcher& marcher, const QuadraticForm& mass, const 
   first_ = CombinedForm(first, shape);
   const StepPlan& plan = marcher.program().plan;
   const double pulsation = model_.problem().support.pulsation, h = marcher.program().h;
-  for (const Stage& stage : plan.start) start_.push_back(describe_start(plan, stage, pulsation, h));
+  for (std::size_t k = 0; k < plan.start.size(); ++k)
+    start_.push_back(describe_start(plan, k, marcher.program().start[k].facts, pulsation, h));
   for (const Stage& stage : plan.stages) stages_.push_back(describe(stage, pulsation, h));
   if (T_ > 1 || marcher.program().load) return;
   squares_alone_ = stages_.size() == 1 && stages_.front().losses.empty();
@@ -84,8 +85,9 @@ StageWorks::StageTerms StageWorks::describe(const Stage& plan, double pulsation,
 }
 
 // The mean of the plan's velocities before and after the stage, as a combination of what is before it and z.
-StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, const Stage& stage, double pulsation,
-                                                  double h) const {
+StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, std::size_t index, const StageFacts& facts,
+                                                  double pulsation, double h) const {
+  const Stage& stage = plan.start[index];
   StageTerms terms = describe(stage, pulsation, h);
   if (stage.work) return terms;
   Combination mean;
@@ -99,7 +101,11 @@ StageWorks::StageTerms StageWorks::describe_start(const StepPlan& plan, const St
     mean.w += half * update.w;
   }
   terms.displacement = WeighedTerms(mean);
-  terms.support = PhaseWeights({{1, 1 / h}, {0, -1 / h}}, pulsation, h);
+  // The mean rate of the clamp over what the stage moves by, or around the instant at which it stands.
+  const bool moves = facts.to > facts.from;
+  const double from = moves ? facts.from : facts.from - 0.5, to = moves ? facts.to : facts.from + 0.5;
+  const double rate = 1 / ((to - from) * h);
+  terms.support = PhaseWeights({{to, rate}, {from, -rate}}, pulsation, h);
   terms.impulsive = true;
   return terms;
 }

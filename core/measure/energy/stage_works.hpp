@@ -26,7 +26,7 @@ struct Works {
 /// allocates when constructed; one lane at a time, each stage in turn.
 ///
 /// A start rule without work form is no step of the balance, which begins after it. What its contact works is added all
-/// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/h), v the plan's velocity before and after it, ω p the momentum given within it.
+/// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/Δt), v the plan's velocity before and after it, ω p the momentum given within it.
 class StageWorks {
  public:
   /// M and K in the coordinates of the march.
@@ -82,7 +82,8 @@ class StageWorks {
   };
   void ask_for_squares(const QuadraticForm& form, const double* shape, int width, StageTerms& stage) const;
   StageTerms describe(const Stage& plan, double pulsation, double h) const;
-  StageTerms describe_start(const StepPlan& plan, const Stage& stage, double pulsation, double h) const;
+  StageTerms describe_start(const StepPlan& plan, std::size_t index, const StageFacts& facts, double pulsation,
+                            double h) const;
   void add_all(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, bool losses,
                bool contact, Works& works);
   void add_contact(const Marcher& marcher, const StageView& view, const StageTerms& stage, int lane, const double* s,

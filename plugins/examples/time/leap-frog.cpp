@@ -88,7 +88,8 @@ class Scheme final : public TimeScheme {
     stage.impact = ImpactMeasure{.value = first};
     if (e_ > 0) {
       stage.impact->value = rate + 0.5 / h * z;
-      stage.impact->gate = VelocityGate{.predictor = first, .approach = rate, .restitution = e_};
+      stage.impact->gate = VelocityGate{
+          .predictor = first, .predictor_bound = {}, .approach = rate, .approach_bound = {}, .restitution = e_};
     }
     // Times of the stops may also be given: v₀ stands where the step begins.
     stage.at(Evaluation::implicit_end) = ComplianceMeasure{.displacement = first, .rate = rate, .rate_bound = at(0)};

@@ -107,8 +107,11 @@ class DefinedLedger final : public StepObserver {
       given += weight * view.plan->update[j].z / view.plan->matrix.M;
       mean += weight / 2 * (lane_of(marcher, view.slots[j]) + combined(marcher, view, view.plan->update[j]));
     }
-    const double h = marcher.program().h;
-    const double lift = (marcher.support(lane_, view.time + h) - marcher.support(lane_, view.time)) / h;
+    const StageFacts& facts = view.program->facts;
+    const bool moves = facts.to > facts.from;
+    const double h = marcher.program().h, from = view.time + h * (moves ? facts.from : facts.from - 0.5),
+                 to = view.time + h * (moves ? facts.to : facts.from + 0.5);
+    const double lift = (marcher.support(lane_, to) - marcher.support(lane_, from)) / (to - from);
     for (int j = 0; j < model.problem().points(); ++j) {
       const double impulse = given * view.effort[0][j * marcher.width() + lane_];
       sums_.contact += impulse * (model.measured().times(j, mean.data()) + lift);

@@ -301,7 +301,7 @@ TEST_CASE("a structure keeps what its resting point does not hold: the columns a
   scene.initial.displacement = Formula(0.0);
   scene.initial.velocity = Formula(0.0);
   constexpr int steps = 160000;
-  const double h = turn / 10 / steps, restitution = GENERATE(0.4, 0.6, 0.0);
+  const double h = turn / 10 / steps, restitution = GENERATE(0.4, 0.0);
   INFO("e = " << restitution);
   const Methods methods = with("newmark-dumont-paoli", restitution);
   Marcher marcher{program_of(scene, methods, h, 1)}, twin{program_of(scene, methods, h, 0)};
@@ -332,7 +332,7 @@ TEST_CASE("a structure keeps what its resting point does not hold: the columns a
     marcher.march(steps / 40, &jump);
     twin.march(steps / 40);
     rested = std::max(rested, jump.lost(0));
-    const bool closed = marcher.closed(0)[1] || twin.closed(0)[1];
+    const bool closed = marcher.pushed_by(0)[1] || twin.pushed_by(0)[1];
     if (closed || rested == 0 || restitution == 0) continue;
     const Eigen::VectorXd difference = (twin.position(0) - marcher.position(0)) / offset;
     const LaneState column = marcher.tangent(0, 0);

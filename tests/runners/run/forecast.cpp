@@ -149,5 +149,6 @@ TEST_CASE("forecast: orbits that begin in the state of the scene are planned fro
     "steps_per_period": 100, "start": ["state"], "transient": {"periods": 5, "at_most": 5}, "keep": 16})");
   CHECK(Planned(study).cases.front().plan.refusal.empty());
   study["start"] = Json::array({"rest"});
-  CHECK_FALSE(Planned(study).cases.front().plan.refusal.empty());
+  // At rest it would begin beyond its stop, at every value.
+  CHECK_THROWS_AS(Planned(study), InputError);
 }
