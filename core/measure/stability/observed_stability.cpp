@@ -65,11 +65,13 @@ class NormWatch final : public StepObserver {
       const double first = largest_[0][s], second = largest_[1][s], third = largest_[2][s];
       if (!grows_on(first, second, third)) continue;
       const double late = third / second, early = second / first;
-      // Linear growth of amplitudes: 2.25 and 4.
-      const bool linear = late < 3 && early > 1.3 * late;
+      // Amplitudes that grow like n^d: 1.5^2d and 2^2d, so ln 2/ln 1.5 = 1.71 between their logarithms, and d = 2 at
+      // most of a triple root. One that grows geometrically: 1.
+      const bool linear = late < 8 && std::log(early) > 1.35 * std::log(late);
       if (linear && cell.behaviour == Behaviour::stable) {
         cell.behaviour = Behaviour::linear_growth;
-        cell.cause = "amplitudes grow like the number of steps";
+        cell.cause = late < 3 ? "amplitudes grow like the number of steps"
+                              : "amplitudes grow like the square of the number of steps";
       } else if (!linear) {
         cell.behaviour = Behaviour::growing;
         cell.growth = std::max(cell.growth, std::expm1(1.5 * std::log(late) / static_cast<double>(steps_)));
