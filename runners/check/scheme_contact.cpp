@@ -232,7 +232,7 @@ Verdict start_at_a_stop(const Scheme& scheme) {
       return fails(fmt::format(
           "a start {}: the error is {:.2g} m at h = {:g} s and {:.2g} m at {:g} s, where it should vanish (e = {:g})",
           start.what, errors.front(), steps.front(), errors.back(), steps.back(), e));
-    if (!(last_lost <= std::max(round_off, 0.5 * first_lost) && last_lost <= 0.02))
+    if (!(last_lost <= std::max({round_off, way, 0.5 * first_lost}) && last_lost <= 0.02))
       return fails(
           fmt::format("a start {}: what stops and scheme take is wrong by {:.2g} J at h = {:g} s and {:.2g} J at {:g} "
                       "s, where it should tend to m v² (1 − e²)/2 (e = {:g})",
