@@ -154,6 +154,7 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
         one.scene_json = option.json;
         one.elements = finest;
         one.settings = settings;
+        one.starts_beyond = beyond;
         if (kind.marches_another(one)) {
           options.push_back(std::move(option));
           continue;

@@ -267,7 +267,7 @@ bool some_value_possible(const StudyCase& study_case) {
   const StudyCase one = as_it_starts(study_case);
   const auto possible = [&](const std::vector<std::pair<std::string, double>>& place) {
     try {
-      if (place.empty()) check_scene(one.scene, one.elements);
+      if (place.empty()) check_scene(one.scene, one.elements, one.starts_beyond ? anywhere_beyond() : ForceBeyond());
       with_parameters(one, place);
       return true;
     } catch (const InputError&) {
@@ -287,7 +287,7 @@ void check_values(const Study& study) {
     const Json& settings = one.settings;
     const bool strobe = settings.at("section") == "strobe";
     const std::vector<GridAxis> axes = swept_axes(settings);
-    std::string key = one.scene_json.dump() + std::to_string(one.elements);
+    std::string key = one.scene_json.dump() + std::to_string(one.elements) + (one.starts_beyond ? " beyond" : "");
     for (const GridAxis& axis : axes)
       if (!role_of(axis.pointer).empty()) key += one.mass.name + " " + one.contact.name + " " + one.time.name;
     if (!seen.insert(key).second) continue;
