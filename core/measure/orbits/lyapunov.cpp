@@ -116,6 +116,14 @@ class Rounds {
   std::vector<LaneState> start_;
 };
 
+// A growth over whole rounds of an orbit that repeats: a part of a round has a growth of its own.
+void keep_whole_rounds(std::vector<std::vector<double>>& rates, int round) {
+  for (auto& series : rates) {
+    const std::size_t size = series.size(), period = static_cast<std::size_t>(std::max(round, 1));
+    if (size >= period) series.resize(size - size % period);
+  }
+}
+
 LaneState random_column(const LaneState& like, std::mt19937_64& random) {
   LaneState column = like;
   std::normal_distribution<double> normal;
@@ -197,6 +205,7 @@ std::vector<LyapunovRates> lyapunov_rates(Program program, const std::vector<Lan
     found[lane].told = std::clamp(2 * marcher.program().model->rows() - jump.lost(number), 0, count);
     found[lane].untold = jump.untold(number) - untold[lane];
     found[lane].turning = rounds[lane].turning();
+    keep_whole_rounds(found[lane].rates, plan.round(lane));
   }
   return found;
 }
@@ -251,6 +260,7 @@ std::vector<LyapunovRates> twin_rates(Program program, const std::vector<LaneSta
       found[i].saturated += growth > std::log(far * std::sqrt(metric.product(orbit, orbit)));
     }
   }
+  for (std::size_t i = 0; i < found.size(); ++i) keep_whole_rounds(found[i].rates, plan.round(i));
   return found;
 }
 

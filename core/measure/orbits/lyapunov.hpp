@@ -23,7 +23,7 @@ struct LyapunovPlan {
 
 /// Growth of the tangent columns of one lane.
 struct LyapunovRates {
-  std::vector<std::vector<double>> rates;  ///< per column, per measured period: ln R_kk / T, 1/s
+  std::vector<std::vector<double>> rates;  ///< per column, per measured period of whole rounds: ln R_kk / T, 1/s
   LaneEnd end;                             ///< of a lane that stopped; none otherwise
   int jumps = 0;                           ///< impacts with inertia whose jump was applied
   int told = 0;    ///< columns, from the first on, that have a growth; none: the orbit is superstable (see below)

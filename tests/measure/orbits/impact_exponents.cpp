@@ -24,8 +24,8 @@ struct Oscillator {
   std::optional<double> lower, upper;
 
   double period() const { return turn / omega; }
-  /// Where it begins, at rest.
-  double start() const { return upper && *upper < 0 ? *upper - 0.5 : 0; }
+  /// Where it begins, at rest and away from its stop: `Exact` dates impacts and holds nothing.
+  double start() const { return upper && *upper <= 0 ? *upper - 0.5 : 0; }
   SceneSpec scene() const {
     SceneSpec made;
     made.structure = OscillatorSpec{mass, stiffness, 0, {force, omega, phase}};
@@ -56,17 +56,18 @@ class Exact {
     const double end = time_ + duration, look = one_.period() / 2000;
     while (time_ < end - 1e-14 * end) {
       const double step = std::min(look, end - time_);
+      // Only what moves outward strikes: round-off alone leaves a rebounding mass beyond its stop.
       const auto beyond = [&](double dt) {
-        const double x = flown(dt)[0];
-        return (one_.upper && x > *one_.upper) ? 1 : (one_.lower && x < *one_.lower) ? -1 : 0;
+        const Eigen::Vector2d at = flown(dt);
+        return (one_.upper && at[0] > *one_.upper && at[1] > 0) || (one_.lower && at[0] < *one_.lower && at[1] < 0);
       };
-      if (beyond(step) == 0) {
+      if (!beyond(step)) {
         fly(step);
         continue;
       }
       double inside = 0, outside = step;
-      for (int i = 0; i < 60; ++i) (beyond((inside + outside) / 2) == 0 ? inside : outside) = (inside + outside) / 2;
-      fly(inside);
+      for (int i = 0; i < 60; ++i) (beyond((inside + outside) / 2) ? outside : inside) = (inside + outside) / 2;
+      fly(outside);
       strike();
     }
   }
