@@ -5,7 +5,7 @@ say() { printf '%s\n' "$*"; }
 give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev
-libmuparser-dev libsqlite3-dev libsqlitecpp-dev libtbb-dev libfmt-dev libkainjow-mustache-dev
+libmuparser-dev libsqlite3-dev libsqlitecpp-dev libfmt-dev libkainjow-mustache-dev
 libcereal-dev"
 # command=package: the command may come from elsewhere than Debian.
 build_commands="g++=g++ cmake=cmake ninja=ninja-build git=git"

@@ -48,7 +48,7 @@ sub table {
     last if $3 eq '';
   }
   my $head = shift @rows || [];
-  my @keep = grep { $head->[$_] !~ /second/ } 0 .. $#$head;
+  my @keep = grep { $head->[$_] !~ /second|^timed_/ } 0 .. $#$head;
   @keep = grep { $head->[$_] !~ /^(low|high)$/ } @keep if $file =~ /work_precision\.csv$/;
   return map { join("\t", map { defined $_ ? $_ : '' } @$_[@keep]) } $head, @rows;
 }

@@ -91,7 +91,7 @@ std::string ledger_text(const Kind& kind, const Study& study, const CaseRecord& 
 /// The case as a run of its study marches it: references that the store keeps are not computed again.
 CaseRecord run_again(const OpenCase& open, const StoredStudy& stored, const StudyCase& study_case,
                      const std::atomic<bool>& stop) {
-  const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }, 1};
+  const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }};
   const CaseRunner runner = open.kind->start(context);
   MotionShelf shelf;
   shelf.find = [&](const std::string& key) { return read_motion(open.folder, key, arithmetic_digest()); };

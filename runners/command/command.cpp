@@ -114,11 +114,11 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 const std::vector<Subcommand>& subcommands() {
   static const std::vector<Subcommand> all = {
       {"run",
-       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--isolate|--threads]",
+       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--inline|--isolate]",
        "Run what is missing of a study; write results and report; print its answer.",
        1,
        1,
-       {"part", "out", "jobs", "fresh", "table", "isolate", "threads", "plugin"},
+       {"part", "out", "jobs", "fresh", "table", "inline", "isolate", "threads", "plugin"},
        command_run},
       {"plan",
        "STUDY.json [--cases] [--part K/N] [--workers N]",

@@ -41,10 +41,13 @@ int command_run(const Arguments& arguments, std::ostream&) {
     options.table = arguments.table;
     options.part = arguments.part;
     if (arguments.hosts) {
-      if (arguments.threads) throw UsageError("--threads is for one machine: the ranks of a job have workers");
+      if (arguments.here) throw UsageError("--inline is for one process: the ranks of a job have workers");
+      options.where = RunOptions::Where::workers;
       options.hosts = arguments.hosts(arguments.jobs);
+    } else if (!arguments.here) {
+      options.where = arguments.isolate || runs_foreign_code(open) ? RunOptions::Where::workers
+                                                                   : RunOptions::Where::here_if_short;
     }
-    options.isolate = arguments.isolate || arguments.hosts || (!arguments.threads && runs_foreign_code(open));
     options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);
   });

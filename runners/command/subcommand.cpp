@@ -32,7 +32,7 @@ po::options_description described(const Subcommand& command) {
     add("out", po::value<std::string>()->value_name("DIR"), "results folder (default: results/NAME)");
   if (has("jobs"))
     add("jobs", po::value<int>()->value_name("N"),
-        "cases that run at the same time (default: all processors that it may use)");
+        "worker processes (default: one for each processor that it may use)");
   if (has("fresh")) add("fresh", "forget earlier results in the folder");
   if (has("table")) add("table", command.name == "compare" ? "print all of it as CSV" : "print a line for every case");
   if (has("workers"))
@@ -45,11 +45,12 @@ po::options_description described(const Subcommand& command) {
   if (has("cpus"))
     add("cpus", po::value<int>()->value_name("N"), "processors of each machine (default: all, no other job beside)");
   if (has("cases")) add("cases", "also print a line for every case");
-  if (has("isolate"))
-    add("isolate",
-        "run in worker processes: a plugin that crashes costs what it had under way (where a plugin is not "
-        "Ricochet's own, this is the default)");
-  if (has("threads")) add("threads", "run in threads of this process, whoever wrote the plugins");
+  if (has("inline"))
+    add("inline",
+        "run in this process alone, without workers: for a debugger (the default where all cases take less than a "
+        "second and every plugin is Ricochet's own)");
+  if (has("isolate")) add("isolate", "run in worker processes, however short it is");
+  if (has("threads")) add("threads", "accepted for old scripts; changes nothing");
   if (has("part"))
     add("part", po::value<std::string>()->value_name("K/N"),
         command.name == "plan"
@@ -157,8 +158,8 @@ Arguments parse_arguments(const Subcommand& command, const std::vector<std::stri
   arguments.fresh = values.count("fresh") > 0;
   arguments.table = values.count("table") > 0;
   arguments.isolate = values.count("isolate") > 0;
-  arguments.threads = values.count("threads") > 0;
-  if (arguments.isolate && arguments.threads) throw UsageError("--isolate and --threads exclude each other");
+  arguments.here = values.count("inline") > 0;
+  if (arguments.isolate && arguments.here) throw UsageError("--inline and --isolate exclude each other");
   arguments.cases = values.count("cases") > 0;
   arguments.curves = values.count("curves") > 0;
   arguments.study = values.count("study") > 0;

@@ -34,7 +34,7 @@ struct Arguments {
   bool table = false;                            ///< --table
   bool cases = false;                            ///< --cases
   bool isolate = false;                          ///< --isolate
-  bool threads = false;                          ///< --threads
+  bool here = false;                             ///< --inline
   bool curves = false;                           ///< --curves
   bool study = false;                            ///< --study
   std::optional<double> parameter;               ///< --parameter

@@ -24,8 +24,12 @@ struct RunContext {
   const Study& study;
   const Registry& registry;
   std::function<std::string(const StudyCase&)> key;  ///< of a case and everything that its bits depend on
-  int jobs = 1;                                      ///< threads of the whole run
   BlockService* blocks = nullptr;                    ///< what marches blocks of a case elsewhere; null: nothing does
+};
+
+/// A case that was marched once more, alone, processor seconds.
+struct TimedMarch {
+  double marching = 0, processor = 0;  ///< of its steps; of all that it took
 };
 
 /// How the cases of one study run.
@@ -35,8 +39,8 @@ struct CaseRunner {
   /// Called once, when the store is open and before any case runs; throws InputError for what only shows then. May be
   /// empty.
   std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
-  /// Processor seconds of one case's marching, alone; empty: cases of this kind are not timed apart.
-  std::function<std::optional<double>(const StudyCase&, const std::atomic<bool>& stop)> time;
+  /// Marches one case alone; empty: cases of this kind are not timed apart.
+  std::function<std::optional<TimedMarch>(const StudyCase&, const std::atomic<bool>& stop)> time;
   /// Marches a block that a case of another process began by its BlockService, `so_far` being told what would be lost;
   /// returns the answer. Throws Interrupted where `stop` became true. Empty: cases are not cut into blocks.
   std::function<std::string(const StudyCase&, const std::string& order, const std::function<void(std::string)>& so_far,

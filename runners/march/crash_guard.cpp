@@ -9,7 +9,6 @@
 #include <cstring>
 #include <ricochet/contract/plugin_call.hpp>
 
-#include "runners/march/case_watch.hpp"
 #include "runners/march/crash_record.hpp"
 
 namespace ricochet {
@@ -30,7 +29,7 @@ constexpr int kSomeFailed = 3;
 // Everything below is read by signal handlers: nothing allocates, locks or has a destructor.
 std::array<struct sigaction, kEndings.size()> former;
 std::array<char, 4096> record_file{};
-std::atomic<bool> armed{false}, taken{false}, speaking{true};
+std::atomic<bool> armed{false}, taken{false};
 
 // Text put together and written without the heap.
 class Line {
@@ -58,25 +57,11 @@ Line& operator<<(Line& line, const PluginIdentity& plugin) {
   return plugin.file.empty() ? line : line << " (" << plugin.file.c_str() << ")";
 }
 
-void tell(const char* ended, const PluginCall& call, const CaseTicket* ticket) {
-  Line said;
-  if (::isatty(STDERR_FILENO) != 0) said << "\n";
-  said << "ricochet: ";
-  if (call.plugin) said << "plugin " << *call.plugin << ", " << call.function << "(): ";
-  said << "ended by " << ended;
-  const bool in_case = ticket && !ticket->id.empty();
-  if (in_case) said << " in case " << ticket->id.c_str();
-  if (!call.plugin) said << ", outside of any plugin's function";
-  if (in_case) said << "; run the same command again: that case is kept as failed and the others go on";
-  said << "\n";
-  said.write_to(STDERR_FILENO);
-}
-
-void record(const char* ended, const PluginCall& call, const CaseTicket* ticket) {
+void ended_by(const char* ended) {
+  const PluginCall call = current_plugin_call();
   const int descriptor = ::open(record_file.data(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) return;
   Line content;
-  if (ticket) content << "case\t" << ticket->id.c_str() << "\nfingerprint\t" << ticket->fingerprint.c_str() << "\n";
   if (call.plugin) {
     content << "plugin\t" << *call.plugin;
     content << "\nfunction\t" << call.function << "\n";
@@ -84,13 +69,6 @@ void record(const char* ended, const PluginCall& call, const CaseTicket* ticket)
   content << "ended\t" << ended << "\n";
   content.write_to(descriptor);
   ::close(descriptor);
-}
-
-void ended_by(const char* ended) {
-  const PluginCall call = current_plugin_call();
-  const CaseTicket* const ticket = ticket_in_handler();
-  record(ended, call, ticket);
-  if (speaking) tell(ended, call, ticket);
 }
 
 extern "C" void on_crash(int signal) {
@@ -117,18 +95,10 @@ void watch_exits() {
 
 }  // namespace
 
-CrashGuard::CrashGuard(const std::filesystem::path& folder)
-    : CrashGuard(crash_record_file(std::filesystem::absolute(folder)), true) {}
-
-std::unique_ptr<CrashGuard> CrashGuard::quiet(const std::filesystem::path& file) {
-  return std::unique_ptr<CrashGuard>(new CrashGuard(file, false));
-}
-
-CrashGuard::CrashGuard(const std::filesystem::path& file, bool speaks) {
+CrashGuard::CrashGuard(const std::filesystem::path& file) {
   const std::string name = file.string();
   record_file.fill('\0');
   std::memcpy(record_file.data(), name.data(), std::min(name.size(), record_file.size() - 1));
-  speaking = speaks;
   current_plugin_call();  // this thread's copy exists before a handler asks for it
   watch_exits();
   taken = false;

@@ -5,8 +5,6 @@
 #include <string>
 
 #include "runners/march/block_service.hpp"
-#include "runners/march/case_watch.hpp"
-#include "runners/march/thread_seats.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
@@ -19,10 +17,10 @@ struct MotionShelf {
   std::function<void(const std::string& key, const std::string& content)> keep;
   /// Shows what a case under way has so far; empty where nobody looks.
   std::function<void(const CaseRecord&)> show;
-  /// A case in whose stead something is computed that others need too: what its plugins do wrong is its own fault.
-  std::function<TicketPointer(const StudyCase&)> ticket;
   /// Whether a case has failed: nothing is computed with its methods for others.
   std::function<bool(const std::string& id)> failed;
+  /// Told which call of a plugin's function a case waits for, in words; "" once it no longer does.
+  std::function<void(const std::string& id, const std::string& call)> waiting = {};
 };
 
 /// What `read` makes of what is kept under the key; nothing where nothing is, or where it is not whole or of another
@@ -42,7 +40,6 @@ std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*re
 struct CaseDesk {
   MotionShelf shelf;               ///< bytes by key; empty bytes forget a key
   std::string key;                 ///< of this case and everything its bits depend on
-  ThreadSeats* seats = nullptr;    ///< of threads that may work for it; null: the one that runs it alone
   BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
 

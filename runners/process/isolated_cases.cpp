@@ -80,7 +80,7 @@ class IsolatedCases::Desk {
         of_all_(StudyIdentity(context.study, context.registry).of_all()),
         kind_(find_kind(context.study.kind)->start(context)),
         places_(options.hosts.empty()
-                    ? std::vector<std::shared_ptr<WorkerHost>>{std::make_shared<LocalHost>(context.jobs)}
+                    ? std::vector<std::shared_ptr<WorkerHost>>{std::make_shared<LocalHost>(options.jobs)}
                     : options.hosts),
         pool_(places_.width(), [this](const BlockPool::Block& block, const std::function<bool()>& stopping) {
           march(block, stopping);
@@ -119,7 +119,8 @@ class IsolatedCases::Desk {
     for (int attempt = 1;;) {
       const Taken taken = take(place_of(word), stopping);
       Reply reply =
-          talk_of_case(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})}, stopping);
+          talk_of_case(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})}, study_case.id,
+                       stopping);
       if (!reply.lost && reply.message.word == Word::interrupted) {
         places_.give_back(taken.member);
         throw Interrupted{};
@@ -163,13 +164,14 @@ class IsolatedCases::Desk {
   };
 
   /// talk(), and what the worker claimed or began for its case is let go, however it ends.
-  Reply talk_of_case(const MemberPointer& member, Message order, const std::function<bool()>& stopping) {
+  Reply talk_of_case(const MemberPointer& member, Message order, const std::string& id,
+                     const std::function<bool()>& stopping) {
     const auto let_go = [this](const MemberPointer* one) {
       claims_.release((*one)->number);
       pool_.forget((*one)->number);
     };
     const std::unique_ptr<const MemberPointer, decltype(let_go)> in_work(&member, let_go);
-    return talk(member, std::move(order), stopping, 2 * after_stop);
+    return talk(member, std::move(order), id, stopping, 2 * after_stop);
   }
 
   /// Workers for each case that is left.
@@ -207,7 +209,7 @@ class IsolatedCases::Desk {
       Reply reply;
       do {
         const Taken taken = take(Where::anywhere, stopping);
-        reply = talk(taken.member, {Word::block, to_bytes(request)}, stopping, after_stop, block.tell);
+        reply = talk(taken.member, {Word::block, to_bytes(request)}, request.id, stopping, after_stop, block.tell);
         if (auto news = answer_in<BlockNews>(reply, {Word::block_news}, *taken.member->worker)) {
           places_.give_back(taken.member);
           return block.tell(std::move(*news));
@@ -240,7 +242,7 @@ class IsolatedCases::Desk {
       taken.member->worker = taken.member->host->start();
       WorkerStudy opening = opening_;
       opening.memory = taken.member->host->memory();
-      Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, stopping, after_stop);
+      Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, "", stopping, after_stop);
       if (const auto ready = answer_in<WorkerReady>(reply, {Word::ready}, *taken.member->worker)) {
         check(*ready, name);
         return taken;
@@ -263,9 +265,10 @@ class IsolatedCases::Desk {
     if (ready.arithmetic != opening_.arithmetic) throw std::runtime_error(other_arithmetic(host));
   }
 
-  /// Sends an order and serves the worker until it is done with it. `patience`: s for coming back after `stopping`.
-  Reply talk(const MemberPointer& member, Message order, const std::function<bool()>& stopping, double patience,
-             const std::function<void(BlockNews)>& so_far = {}) {
+  /// Sends an order for a case and serves the worker until it is done with it. `patience`: s for coming back after
+  /// `stopping`.
+  Reply talk(const MemberPointer& member, Message order, const std::string& id, const std::function<bool()>& stopping,
+             double patience, const std::function<void(BlockNews)>& so_far = {}) {
     order.about = 1;
     Worker& worker = *member->worker;
     Reply reply;
@@ -273,7 +276,12 @@ class IsolatedCases::Desk {
     std::optional<Clock::time_point> told_to_stop;
     Clock::time_point looked = Clock::now();
     double quiet = 0;  // s, of those in which this process was not stopped itself
-    bool silent = false;
+    bool silent = false, waits = false;
+    // Which call of a plugin's function the worker waits for, "" for none.
+    const auto waiting = [&](const std::string& call) {
+      if (shelf_.waiting && (waits || !call.empty())) shelf_.waiting(id, call);
+      waits = !call.empty();
+    };
     Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
     while (state != Channel::Heard::gone) {
       state = worker.receive(reply.message, look_up);
@@ -297,7 +305,10 @@ class IsolatedCases::Desk {
           auto news = message_from<BlockNews>(reply.message.content);
           if (news.what != BlockNews::What::so_far) return reply;
           if (so_far) so_far(std::move(news));
-        } else if (reply.message.word != Word::alive && !serve(member, reply.message, stopping)) {
+        } else if (reply.message.word == Word::alive) {
+          waiting(reply.message.content);
+        } else if (!serve(member, reply.message, stopping)) {
+          waiting("");
           return reply;
         }
       } catch (const NoMessage&) {
@@ -305,6 +316,7 @@ class IsolatedCases::Desk {
         return reply;
       }
     }
+    waiting("");
     reply.lost = Lost{worker.end(), given_up};
     reply.lost->end.silent = silent;
     return reply;
@@ -378,7 +390,7 @@ CaseRunner IsolatedCases::runner() {
     runner.time = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
       const CaseAnswer answer = desk->ask(Word::time, study_case, stop);
       if (!answer.error.empty()) throw std::runtime_error(answer.error);
-      return answer.found ? std::optional(answer.seconds) : std::nullopt;
+      return answer.found ? std::optional(TimedMarch{answer.seconds, answer.processor}) : std::nullopt;
     };
   return runner;
 }

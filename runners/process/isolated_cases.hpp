@@ -11,15 +11,16 @@ namespace ricochet {
 
 /// What worker processes are given.
 struct IsolationOptions {
+  int jobs = 1;                                ///< workers that march at one time, where no hosts are given
   std::vector<std::filesystem::path> plugins;  ///< libraries beside the program's own
-  /// The machines that they are on, this one first; none: this one alone, with as many as the run has jobs.
+  /// The machines that they are on, this one first; none: this one alone.
   std::vector<std::shared_ptr<WorkerHost>> hosts = {};
 };
 
 /// Cases whose code runs in processes of their own: a plugin that crashes, aborts, takes all memory or never returns
 /// costs what its process had under way. A case goes on once from what it had kept; where its process ends again it is
 /// `failed`, with the signal, the plugin and the function, and the last lines of stderr. All other cases are, to the
-/// last bit, what they are in threads of this process.
+/// last bit, what they are in one process.
 class IsolatedCases {
  public:
   IsolatedCases(const RunContext& context, const IsolationOptions& options);

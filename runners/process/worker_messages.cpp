@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-constexpr const char* message_mark = "message 1";
+constexpr const char* message_mark = "message 2";
 
 }  // namespace
 
@@ -109,7 +109,7 @@ void serialize(Archive& archive, BlockNews& message) {
 
 template <class Archive>
 void serialize(Archive& archive, CaseAnswer& message) {
-  archive(message.record, message.seconds, message.found, message.error, message.pointer);
+  archive(message.record, message.seconds, message.processor, message.found, message.error, message.pointer);
 }
 
 template <class Archive>

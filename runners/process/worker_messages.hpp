@@ -42,6 +42,7 @@ struct BlockRequest {
 struct CaseAnswer {
   CaseRecord record;           ///< of a run, without axes
   double seconds = 0;          ///< predicted or timed
+  double processor = 0;        ///< s that the timing took in all
   bool found = false;          ///< whether there is a time
   std::string error, pointer;  ///< of an exception; `record` is then empty
 };

@@ -3,7 +3,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
-#include <oneapi/tbb/version.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
 
@@ -71,7 +70,6 @@ std::string libraries() {
       fmt::format("fmt {}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100),
       fmt::format("nlohmann-json {}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
                   NLOHMANN_JSON_VERSION_PATCH),
-      fmt::format("oneTBB {}", TBB_runtime_version()),
       fmt::format("SQLite {}", sqlite3_libversion()),
       fmt::format("SQLiteCpp {}", SQLITECPP_VERSION),
       fmt::format("glibc {}", ::gnu_get_libc_version()),

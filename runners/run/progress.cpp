@@ -146,9 +146,12 @@ void Progress::note(const std::string& line) {
   draw();
 }
 
-void Progress::waiting(std::map<std::string, std::string> calls) {
+void Progress::waiting(const std::string& id, const std::string& call) {
   const std::lock_guard guard(mutex_);
-  calls_ = std::move(calls);
+  if (call.empty())
+    calls_.erase(id);
+  else
+    calls_[id] = call;
 }
 
 // The case that is most beyond what was predicted of it, "" where none is by far.

@@ -56,8 +56,8 @@ class Progress {
 
   void started(const std::string& id, double predicted_seconds);
   void finished(const std::string& id);
-  /// Cases that sit in a plugin's function, and in which: said where they take far longer than predicted.
-  void waiting(std::map<std::string, std::string> calls);
+  /// The call of a plugin's function that a case waits for, "" for none: said where it takes far longer than predicted.
+  void waiting(const std::string& id, const std::string& call);
   /// A line of its own, the bar below it.
   void note(const std::string& line);
 

@@ -1,12 +1,15 @@
 #include "runners/run/run_study.hpp"
 
+#include <map>
 #include <optional>
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
+#include "runners/run/alike_cases.hpp"
 #include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
@@ -19,6 +22,26 @@ std::string render(const StudyResults& results) {
   return render_report(results, page_of(results.kind));
 }
 
+constexpr double short_run = 1;        // s
+constexpr double of_each_case = 1.6e-3;  // s for its row, its curve, its share of tables and page
+
+/// Whether all cases together are predicted to take less than a second. References are not foreseen.
+bool is_short(const Study& study, const Registry& registry) {
+  const Kind& kind = *find_kind(study.kind);
+  if (kind.beside) return false;
+  const double begun = thread_seconds();
+  double seconds = of_each_case * static_cast<double>(study.cases.size());
+  std::map<std::string, double> known;  // of cases that cost the same
+  for (const StudyCase& one : study.cases) {
+    if (seconds + thread_seconds() - begun > short_run) return false;
+    if (one.excluded) continue;
+    const auto [found, fresh] = known.try_emplace(cost_key(one), 0);
+    if (fresh) found->second = kind.plan(one, registry).predicted_seconds;
+    seconds += found->second;
+  }
+  return seconds < short_run;
+}
+
 }  // namespace
 
 CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Registry& registry) {
@@ -29,27 +52,29 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   StudyRunner runner;
   runner.libraries = [&](const StudyCase& study_case) { return libraries_of(study_case, registry); };
   StudyIdentity identity(study, registry);
-  const RunContext context{study, registry, [&](const StudyCase& one) { return identity.of(one); },
-                           options.jobs > 0 ? options.jobs : allowed_processors().count};
-  std::optional<IsolatedCases> isolated;
-  if (options.isolate) {
-    isolated.emplace(context, IsolationOptions{options.plugins, options.hosts});
-    runner.cases = isolated->runner();
-    runner.crew = isolated->crew();
-    runner.plan = [&](const StudyCase& study_case) {
-      CasePlan plan;
-      plan.predicted_seconds = isolated->predicted_seconds(study_case);
-      return plan;
-    };
-  } else {
+  const RunContext context{study, registry, [&](const StudyCase& one) { return identity.of(one); }};
+  RunOptions shared = options;
+  std::optional<IsolatedCases> workers;
+  if (options.where == RunOptions::Where::here ||
+      (options.where == RunOptions::Where::here_if_short && is_short(study, registry))) {
+    shared.jobs = 1;
     runner.cases = find_kind(study.kind)->start(context);
     runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
+  } else {
+    const int jobs = options.jobs > 0 ? options.jobs : allowed_processors().count;
+    workers.emplace(context, IsolationOptions{jobs, options.plugins, options.hosts});
+    shared.jobs = workers->cases_at_once();
+    runner.cases = workers->runner();
+    runner.workers = workers->crew();
+    runner.plan = [&](const StudyCase& study_case) {
+      CasePlan plan;
+      plan.predicted_seconds = workers->predicted_seconds(study_case);
+      return plan;
+    };
   }
   runner.arithmetic = arithmetic_digest();
   runner.environment = [&] { return describe_environment(catalogue.opened()); };
   runner.render = render;
-  RunOptions shared = options;
-  if (isolated) shared.jobs = isolated->cases_at_once();
   return run_study_with(runner, study, shared);
 }
 

@@ -14,10 +14,12 @@ namespace ricochet {
 
 struct RunOptions {
   std::filesystem::path out;                            ///< results folder; empty: default_folder()
-  int jobs = 0;                                         ///< 0: all processors that it may use
+  int jobs = 0;                                         ///< workers; 0: as many as processors that it may use
   bool fresh = false;                                   ///< forget what the folder holds
   bool table = false;                                   ///< print a line for every case
-  bool isolate = false;                                 ///< cases run in worker processes
+  /// Where cases run: in worker processes, in this one alone, or in this one where all of them are predicted to take
+  /// less than a second.
+  enum class Where { workers, here, here_if_short } where = Where::here;
   std::vector<std::filesystem::path> plugins = {};      ///< libraries beside the program's own, for workers
   std::vector<std::shared_ptr<WorkerHost>> hosts = {};  ///< where workers run; none: this machine alone
   StudyPart part = {};                                  ///< the cases that run, and that the folder has
@@ -29,7 +31,7 @@ CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Re
 /// Where the results of a run go that is not told: results/NAME, results/NAME-part-3-of-64.
 std::filesystem::path default_folder(const std::string& study, const StudyPart& part);
 
-/// Runs what is missing, case by case in parallel, writes every finished case at once, then cases.csv, curves/,
+/// Runs what is missing, so many cases at once, writes every finished case at once, then cases.csv, curves/,
 /// study.json and report.html, and prints the answer. Returns the exit code of design §5 (0, 3, 5, 130); throws
 /// PartRefused (part_cases.hpp).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);

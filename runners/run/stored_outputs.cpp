@@ -1,7 +1,6 @@
 /// What is made of a folder's store alone: its report and tables anew, or the tables elsewhere.
 #include <fmt/format.h>
 
-#include "runners/march/crash_record.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/say.hpp"
 #include "runners/run/study_runner.hpp"
@@ -31,9 +30,6 @@ int rebuild_report_with(const RenderReport& render, const std::filesystem::path&
   return unless_unusable([&] {
     const StudyResults results = with_tables(read_store(folder));
     write_outputs(folder, results, render);
-    if (const auto crash = read_crash_record(folder))
-      say(stderr, fmt::format("case {}: {}; run the study again: that case is kept as failed and the others go on\n",
-                              crash->case_id, crash->reason()));
     say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
   });
 }

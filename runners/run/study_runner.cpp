@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 
-#include "runners/march/crash_record.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/run/allowed_processors.hpp"
@@ -53,12 +52,9 @@ class FolderRun {
         folder_(std::move(folder)),
         stop_(signals_.requested()),
         store_(folder_, options.fresh),
-        guard_(folder_),
         part_(options.part),
         table_(options.table),
-        jobs_(options.jobs > 0 ? options.jobs : allowed_processors().count) {
-    if (options.fresh) remove_crash_record(folder_);
-  }
+        jobs_(options.jobs > 0 ? options.jobs : allowed_processors().count) {}
 
   int run() {
     if (const auto held = store_.part(); held && *held != part_)
@@ -72,7 +68,7 @@ class FolderRun {
     say(runner_.messages, versions_text(store_));
     take_over();
     announce();
-    if (runner_.cases.open) open();
+    if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
     if (stop_) return interrupted();
     if (!run_missing()) return interrupted();
     if (runner_.cases.time && !time()) return interrupted();
@@ -91,10 +87,7 @@ class FolderRun {
     std::vector<CaseRecord> excluded;
     std::vector<PendingCase> all;
     find_missing(cases_, fingerprints_, {}, excluded, all);
-    // One whose plan ended the program costs nothing.
-    if (const auto crash = read_crash_record(folder_))
-      std::erase_if(all, [&](const PendingCase& one) { return one.fingerprint == crash->fingerprint; });
-    unplanned_ = predict_cases(runner_, all, jobs_, stop_, planning());
+    predict_cases(runner_, all, jobs_, stop_);
     for (const PendingCase& one : all) predicted_[one.study_case->id] = one.predicted_seconds;
     cases_ = cases_of_part(study_, part_, predicted_);
     return !stop_;
@@ -106,48 +99,23 @@ class FolderRun {
     return cases;
   }
 
-  /// The case of this run with this id; null where there is none.
-  const StudyCase* find_own(const std::string& id) const {
-    const auto found = std::find_if(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
-    return found == cases_.end() ? nullptr : *found;
-  }
-
-  /// The row of a case that was not run to its end; of another part's it is enough to know that it failed.
-  void settle(const CaseRecord& record) {
-    if (!find_own(record.id)) return note_failure(record);
-    store_.save({&record, 1});
-    settled_.insert(record.id);
-    fresh_.insert(record.id);
-    note_failure(record);
-    tell(fmt::format("case {} is kept as failed: {}", record.id, record.reason));
-  }
   void note_failure(const CaseRecord& record) {
     const std::lock_guard guard(failed_mutex_);
     if (record.status == "failed") failed_.insert(record.id);
   }
 
-  /// What the last run left: a case that ended the program is failed; one that was killed runs again.
+  /// What the last run left: a case that was under way when it was killed runs again.
   void take_over() {
     failed_ = store_.failed();
-    const auto crash = read_crash_record(folder_);
-    const StudyCase* const found = crash ? find_case(study_, crash->case_id) : nullptr;
-    if (found && fingerprints_.at(found->id) == crash->fingerprint) {
-      CaseRecord record;
-      record.id = found->id;
-      record.axes = found->axes;
-      record.status = "failed";
-      record.reason = crash->reason();
-      settle(record);
-    } else if (crash && crash->case_id.empty()) {
-      tell(crash->reason() + ", before any case");
-    }
     std::vector<std::string> left = store_.left_under_way();
-    std::erase_if(left, [&](const std::string& id) { return settled_.count(id) != 0 || !find_own(id); });
+    std::erase_if(left, [&](const std::string& id) {
+      return settled_.count(id) != 0 ||
+             std::none_of(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
+    });
     if (!left.empty())
       tell(fmt::format("an earlier run ended while {} {} under way: run again", fmt::join(left, ", "),
                        left.size() == 1 ? "was" : "were"));
     store_.nothing_under_way();
-    remove_crash_record(folder_);
   }
 
   /// Before any code of a plugin runs: from now on the cost of these cases is predicted, and what they share computed.
@@ -158,86 +126,26 @@ class FolderRun {
     if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
   }
 
-  TicketPointer ticket(const StudyCase& one) const {
-    return std::make_shared<CaseTicket>(one.id, fingerprints_.at(one.id), budget_of(one));
-  }
-
   MotionShelf shelf() {
     MotionShelf shelf;
-    shelf.find = [this](const std::string& key) {
-      const auto turn = store_turn();
-      return store_.motion(key);
-    };
-    shelf.keep = [this](const std::string& key, const std::string& content) {
-      const auto turn = store_turn();
-      store_.save_motion(key, content);
-    };
-    shelf.show = [this](const CaseRecord& record) {
-      const auto turn = store_turn();
-      show_partial(runner_, store_, folder_, record);
-    };
-    shelf.ticket = [this](const StudyCase& one) {
-      const auto turn = store_turn();
-      return ticket(one);
-    };
+    shelf.find = [this](const std::string& key) { return store_.motion(key); };
+    shelf.keep = [this](const std::string& key, const std::string& content) { store_.save_motion(key, content); };
+    shelf.show = [this](const CaseRecord& record) { show_partial(runner_, store_, folder_, record); };
     shelf.failed = [this](const std::string& id) {
-      const auto turn = store_turn();
       const std::lock_guard guard(failed_mutex_);
       return failed_.count(id) != 0;
     };
+    shelf.waiting = [this](const std::string& id, const std::string& call) { say_waiting(id, call); };
     return shelf;
   }
 
-  /// Runs `body` on one watched thread; where a case is given up in it, that case fails and `body` begins anew.
-  void on_one_thread(const std::function<void()>& body) {
-    const auto failure = std::make_shared<std::exception_ptr>();
-    WatchHooks hooks;
-    hooks.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
-    hooks.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
-    hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
-      try {
-        if (const StudyCase* one = find_case(study_, call.ticket->id)) settle(given_up_record(*one, call));
-      } catch (...) {
-        *failure = std::current_exception();
-        stop_ = true;
-      }
-    };
-    run_watched(
-        1,
-        [body, failure] {
-          const auto own =
-              std::make_shared<CaseTicket>(std::string(), std::string(), std::numeric_limits<double>::infinity());
-          const CaseScope scope(own);
-          std::exception_ptr thrown;
-          try {
-            body();
-          } catch (const Interrupted&) {
-          } catch (...) {
-            thrown = std::current_exception();
-          }
-          const auto turn = own->turn();
-          if (thrown && !*failure) *failure = thrown;
-        },
-        stop_, hooks);
-    if (*failure) std::rethrow_exception(*failure);
-  }
-
-  void open() {
-    on_one_thread([this] { runner_.cases.open(shelf(), stop_); });
-  }
-
-  void say_waiting(const std::vector<LongCall>& calls) {
+  void say_waiting(const std::string& id, const std::string& call) {
     constexpr double every = 10;
-    for (const LongCall& call : calls)
-      if (call.seconds > every / 2 && seconds_since(said_waiting_) > every) {
-        said_waiting_ = std::chrono::steady_clock::now();
-        tell(fmt::format("waiting{}: {}", call.ticket->id.empty() ? "" : " for case " + call.ticket->id, call.text()));
-      }
-  }
-  void say_left_behind(const std::vector<LongCall>& calls) {
-    for (const LongCall& call : calls)
-      tell(fmt::format("{}left where it is: {}", call.ticket->id.empty() ? "" : "case " + call.ticket->id + " is ",
-                       call.text()));
+    const std::lock_guard guard(waiting_mutex_);
+    if (progress_) return progress_->waiting(id, call);
+    if (call.empty() || seconds_since(said_waiting_) < every) return;
+    said_waiting_ = std::chrono::steady_clock::now();
+    tell(fmt::format("waiting{}: {}", id.empty() ? "" : " for case " + id, call));
   }
 
   /// False: interrupted.
@@ -253,32 +161,18 @@ class FolderRun {
     const std::size_t running = pending.size();
     tell(fmt::format("{}{}: {} case{}, {} finished before, {} to run{}", study_.name,
                      part_.whole() ? "" : ", " + part_.text(), cases_.size(), cases_.size() == 1 ? "" : "s",
-                     settled_.size(), running, running > 0 ? " on " + crew() : ""));
+                     settled_.size(), running, running > 0 ? " " + workers() : ""));
     if (running == 0) return true;
-    store_.save_progress("planning, on " + crew());
+    store_.save_progress("planning, " + workers());
     if (part_.whole())
-      unplanned_ = predict_cases(runner_, pending, jobs_, stop_, planning());
+      predict_cases(runner_, pending, jobs_, stop_);
     else
       for (PendingCase& one : pending) one.predicted_seconds = predicted_[one.study_case->id];
-    for (const CaseRecord& record : unplanned_) {
-      std::erase_if(pending, [&](const PendingCase& one) { return one.study_case->id == record.id; });
-      if (settled_.count(record.id) == 0) settle(record);
-    }
     if (stop_) return false;
     return pending.empty() || run_pending(std::move(pending));
   }
 
-  /// What is heard while cases are planned.
-  CaseEvents planning() {
-    CaseEvents events;
-    events.waiting = [this](const std::vector<LongCall>& calls) { say_waiting(calls); };
-    events.left_behind = [this](const std::vector<LongCall>& calls) { say_left_behind(calls); };
-    return events;
-  }
-
-  std::string crew() const {
-    return runner_.crew.empty() ? fmt::format("{} thread{}", jobs_, jobs_ == 1 ? "" : "s") : runner_.crew;
-  }
+  std::string workers() const { return runner_.workers.empty() ? "in this process" : "on " + runner_.workers; }
 
   bool run_pending(std::vector<PendingCase> pending) {
     const int running = static_cast<int>(pending.size());
@@ -287,7 +181,7 @@ class FolderRun {
     Progress progress(runner_.messages, ::isatty(::fileno(runner_.messages)) != 0, running, work, stop_,
                       [this](const std::string& text) {
                         try {
-                          store_.save_progress(text + ", on " + crew());
+                          store_.save_progress(text + ", " + workers());
                         } catch (const StoreError&) {
                           // The next result that cannot be kept says so.
                         }
@@ -303,31 +197,22 @@ class FolderRun {
       progress.finished(record.id);
       if (next) progress.started(next->study_case->id, next->predicted_seconds);
     };
-    events.waiting = [&](const std::vector<LongCall>& calls) {
-      std::map<std::string, std::string> texts;
-      for (const LongCall& call : calls) texts[call.ticket->id] = call.text();
-      progress.waiting(std::move(texts));
+    const auto shown = [&](Progress* one) {
+      const std::lock_guard guard(waiting_mutex_);
+      progress_ = one;
     };
-    events.left_behind = [&](const std::vector<LongCall>& calls) {
-      for (const LongCall& call : calls)
-        progress.note(fmt::format("case {} is left where it is: {}", call.ticket->id, call.text()));
-    };
+    const auto hide = [&](Progress*) { shown(nullptr); };
+    const std::unique_ptr<Progress, decltype(hide)> told((shown(&progress), &progress), hide);
     return run_cases(runner_, std::move(pending), jobs_, stop_, events) == running;
   }
 
   bool time() {
     store_.save_progress("timing, one case at a time");
-    const auto timed = std::make_shared<std::vector<CaseRecord>>();
-    on_one_thread([this, timed] {
-      std::vector<CaseRecord> records = time_cases(
-          runner_, study_, store_.load(), study_.resolved.value("repeats", 1),
-          [this](const StudyCase& one) { return ticket(one); }, stop_);
-      const auto turn = store_turn();
-      *timed = std::move(records);
-    });
+    const std::vector<CaseRecord> timed =
+        time_cases(runner_, study_, store_.load(), study_.resolved.value("repeats", 1), stop_);
     if (stop_) return false;
-    store_.save(*timed);
-    for (const CaseRecord& record : *timed) fresh_.insert(record.id);
+    store_.save(timed);
+    for (const CaseRecord& record : timed) fresh_.insert(record.id);
     return true;
   }
 
@@ -352,28 +237,20 @@ class FolderRun {
   const StopSignal signals_;
   std::atomic<bool>& stop_;
   Store store_;
-  const CrashGuard guard_;
   const StudyPart part_;
   const bool table_;
   const int jobs_;
   std::vector<const StudyCase*> cases_;  // of this run
   std::map<std::string, std::string> fingerprints_;
   std::map<std::string, double> predicted_;  // seconds, where cases were dealt
-  std::vector<CaseRecord> unplanned_;        // whose plan was given up
   std::set<std::string> kept_, settled_;     // rows that were there; and those that need no run any more
   std::set<std::string> fresh_;              // rows that this run made
   std::mutex failed_mutex_;
   std::set<std::string> failed_;
+  std::mutex waiting_mutex_;
+  Progress* progress_ = nullptr;  // while cases run
   std::chrono::steady_clock::time_point said_waiting_;
 };
-
-/// With threads that sit in a plugin's function for ever, a program has one way to end.
-int ended(int code) {
-  if (threads_left_behind() == 0) return code;
-  std::fflush(stdout);
-  std::fflush(stderr);
-  ::_exit(code);
-}
 
 }  // namespace
 
@@ -386,13 +263,12 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
   const std::filesystem::path folder = options.out.empty() ? default_folder(study.name, options.part) : options.out;
   try {
     if (!options.part.whole()) check_part(study, options.part);
-    const int code = FolderRun(runner, study, options, folder).run();
-    return ended(code);
+    return FolderRun(runner, study, options, folder).run();
   } catch (const Interrupted&) {
-    return ended(kInterrupted);
+    return kInterrupted;
   } catch (const StoreError& error) {
     say(runner.messages, fmt::format("ricochet: {}\n", error.what()));
-    return ended(kStoreUnusable);
+    return kStoreUnusable;
   }
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/march/watched_threads.hpp"
 #include "runners/run/outputs.hpp"
 #include "runners/run/run_study.hpp"
 
@@ -19,7 +18,7 @@ struct StudyRunner {
   std::function<std::vector<std::filesystem::path>(const StudyCase&)>
       libraries;  ///< of its three methods; "" when in-process
   std::function<Environment()> environment;
-  std::string crew;        ///< who marches: "4 workers on 2 machines"; "": so many threads
+  std::string workers;     ///< who marches: "4 workers on 2 machines"; "": this process
   std::string arithmetic;  ///< digest of this process's, kept with each case; "": not known
   RenderReport render;
   std::FILE* out = stdout;       ///< the summary
@@ -43,36 +42,28 @@ struct PendingCase {
   std::string fingerprint;
 };
 
-/// The row of a case that was given up: failed, with the plugin and the function that did not return.
-CaseRecord given_up_record(const StudyCase& study_case, const LongCall& call);
-
 /// What run_cases() reports.
 struct CaseEvents {
   /// A case begins: before any of its code runs, in the thread that will run it. Not for one that `finished` named.
   std::function<void(const PendingCase&)> begins;
-  /// A case ended, in the thread that made its record or in the watching one; `next`, where not null, begins now.
+  /// A case ended, in the thread that ran it; `next`, where not null, begins now.
   std::function<void(const CaseRecord&, const PendingCase* next)> finished;
-  /// See WatchHooks.
-  std::function<void(const std::vector<LongCall>&)> waiting, left_behind;
 };
 
-/// Times the finished cases that have no time yet, one at a time on this thread, `repeats` rounds in turn: measures
-/// timed_seconds (median), timed_low and timed_high (smallest and largest), and a note when other programs took the
-/// processor meanwhile. Ends early when `stop` becomes true, then without any time. Returns the records to save.
-/// `ticket`: the case as it is watched.
+/// Times the finished cases that have no time yet, one at a time, `repeats` rounds in turn: measures timed_seconds
+/// (median), timed_low and timed_high (smallest and largest), and a note when other programs took the processor
+/// meanwhile. Ends early when `stop` becomes true, then without any time. Returns the records to save.
 std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
-                                   int repeats, const std::function<TicketPointer(const StudyCase&)>& ticket,
-                                   const std::atomic<bool>& stop);
+                                   int repeats, const std::atomic<bool>& stop);
 
-/// Runs the cases on `jobs` threads, longest predicted first so that all threads end together. A case that is given up
-/// (see run_watched) is failed, and the others go on. Ends early when `stop` becomes true. An exception of an event
-/// sets `stop` and is thrown once all threads are back. Returns the number of cases that finished.
-int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int jobs, std::atomic<bool>& stop,
+/// Runs the cases, so many at once, longest predicted first so that all end together. Ends early when `stop` becomes
+/// true. An exception of an event sets `stop` and is thrown once all cases under way are back. Returns the number of
+/// cases that finished.
+int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int at_once, std::atomic<bool>& stop,
               const CaseEvents& events);
 
-/// Predicts the cost of the cases, on as many threads, watched in the same way. Returns the records of those whose
-/// prediction had to be given up; they are no longer pending.
-std::vector<CaseRecord> predict_cases(const StudyRunner& runner, std::vector<PendingCase>& pending, int jobs,
-                                      const std::atomic<bool>& stop, const CaseEvents& events);
+/// Predicts the cost of the cases.
+void predict_cases(const StudyRunner& runner, std::vector<PendingCase>& pending, int at_once,
+                   const std::atomic<bool>& stop);
 
 }  // namespace ricochet

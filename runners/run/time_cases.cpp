@@ -21,8 +21,7 @@ bool timed(const CaseRecord& record) {
 }  // namespace
 
 std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study, const StudyResults& results,
-                                   int repeats, const std::function<TicketPointer(const StudyCase&)>& ticket,
-                                   const std::atomic<bool>& stop) {
+                                   int repeats, const std::atomic<bool>& stop) {
   std::map<std::string, const StudyCase*> cases;
   for (const StudyCase& one : study.cases) cases[one.id] = &one;
   std::vector<CaseRecord> records;
@@ -35,24 +34,26 @@ std::vector<CaseRecord> time_cases(const StudyRunner& runner, const Study& study
                                    expected * repeats));
 
   std::vector<std::vector<double>> seconds(records.size());
-  const double processor = thread_seconds();
+  double busy = 0;
   const auto wall = std::chrono::steady_clock::now();
   for (int round = 0; round < repeats; ++round)
     for (std::size_t i = 0; i < records.size(); ++i) {
       if (stop) return {};
       const StudyCase& one = *cases.at(records[i].id);
-      const CaseScope scope(ticket(one));
       try {
-        if (const auto time = runner.cases.time(one, stop)) seconds[i].push_back(*time);
+        if (const auto time = runner.cases.time(one, stop)) {
+          seconds[i].push_back(time->marching);
+          busy += time->processor;
+        }
       } catch (const Interrupted&) {
         return {};
       } catch (...) {
         // It ran before: what fails now is its time alone.
       }
     }
-  // One busy thread of ours: the rest of the wall time went to others.
+  // One of ours is busy at a time: the rest of the wall time went to others.
   const double passed = seconds_since(wall);
-  const double share = passed > 0 ? 1 - (thread_seconds() - processor) / passed : 0;
+  const double share = passed > 0 ? 1 - busy / passed : 0;
   constexpr double loaded = 0.1;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (seconds[i].empty()) continue;

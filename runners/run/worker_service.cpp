@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <future>
@@ -19,9 +20,10 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/call_watch.hpp"
 #include "runners/march/crash_record.hpp"
+#include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
-#include "runners/march/watched_threads.hpp"
 #include "runners/process/channel.hpp"
 #include "runners/process/worker_environment.hpp"
 #include "runners/process/worker_messages.hpp"
@@ -36,7 +38,10 @@ namespace {
 
 using Word = Message::Word;
 
-constexpr auto kAliveEvery = std::chrono::seconds(1);
+constexpr auto kLookEvery = std::chrono::milliseconds(250);
+constexpr int kLooksPerAlive = 4;
+constexpr double kLeast = 2;       // s that any call of a plugin's function may take
+constexpr double kAfterStop = 3;   // s for coming back
 constexpr int kGaveUp = 1;
 
 // What a plugin asks for beyond the limit ends this process: the coordinator then knows which orbits asked.
@@ -66,9 +71,10 @@ class WorkerService : public BlockService {
   int run() {
     std::thread reader([this] { read(); });
     std::thread heart([this] {
-      for (;;) {
-        std::this_thread::sleep_for(kAliveEvery);
-        tell({Word::alive});
+      for (int looks = 1;; ++looks) {
+        std::this_thread::sleep_for(kLookEvery);
+        const std::string waiting = look();
+        if (looks % kLooksPerAlive == 0) tell({Word::alive, waiting});
       }
     });
     reader.detach();
@@ -161,7 +167,7 @@ class WorkerService : public BlockService {
     share_ = request.share;
     CaseAnswer answer;
     const Caught caught =
-        watched(request.id, request.budget, order.about, [&] { answer = answer_to(order.word, study_case); });
+        watched(request.budget, order.about, [&] { answer = answer_to(order.word, study_case); });
     if (caught.interrupted) return tell({Word::interrupted, "", order.about});
     answer.error = caught.error;
     answer.pointer = caught.pointer;
@@ -177,7 +183,7 @@ class WorkerService : public BlockService {
       tell({Word::block_news, to_bytes(BlockNews{what, std::move(content)}), about});
     };
     std::string answer;
-    const Caught caught = watched(request.id, request.budget, about, [&] {
+    const Caught caught = watched(request.budget, about, [&] {
       answer = runner_.cases.block(
           study_case, request.order, [&](std::string bytes) { news(BlockNews::What::so_far, std::move(bytes)); },
           stop_);
@@ -193,39 +199,43 @@ class WorkerService : public BlockService {
     std::string error, pointer;
   };
 
-  /// Works for a case on a thread of its own, watched: a plugin's function that does not come back ends this process.
-  Caught watched(const std::string& case_id, double budget, std::uint32_t about, const std::function<void()>& work) {
-    const auto ticket = std::make_shared<CaseTicket>(case_id, "", budget);
+  /// Works for a case; a call of a plugin's function that takes longer than `budget` ends this process (look()).
+  Caught watched(double budget, std::uint32_t about, const std::function<void()>& work) {
     Caught caught;
-    WatchHooks hooks;
-    hooks.given_up = [&](const LongCall& call, const TicketPointer&) {
-      tell({Word::given_up, to_bytes(GivenUp{call.plugin, call.function, budget}), about});
-      ::_exit(kGaveUp);
-    };
-    hooks.left_behind = [](const std::vector<LongCall>&) { ::_exit(kGaveUp); };
-    run_watched(
-        1,
-        [&] {
-          const CaseScope scope(ticket);
-          try {
-            work();
-          } catch (const Interrupted&) {
-            caught.interrupted = true;
-          } catch (const InputError& error) {
-            caught.error = error.what();
-            caught.pointer = error.pointer();
-          } catch (const Refusal& refusal) {
-            caught.error = refusal.sentence;
-          } catch (const std::exception& error) {
-            caught.error = error.what();
-          } catch (...) {
-            caught.error = "an exception that carries no message";
-          }
-          const auto turn = ticket->turn();
-          ticket->close();
-        },
-        stop_, hooks);
+    about_ = about;
+    budget_ = budget;
+    try {
+      work();
+    } catch (const Interrupted&) {
+      caught.interrupted = true;
+    } catch (const InputError& error) {
+      caught.error = error.what();
+      caught.pointer = error.pointer();
+    } catch (const Refusal& refusal) {
+      caught.error = refusal.sentence;
+    } catch (const std::exception& error) {
+      caught.error = error.what();
+    } catch (...) {
+      caught.error = "an exception that carries no message";
+    }
+    budget_ = std::numeric_limits<double>::infinity();
     return caught;
+  }
+
+  /// Ends the process where a call has lasted too long, or does not come back after a stop. Returns what is said of a
+  /// call that takes long; "" of others. A reference's own functions have no budget.
+  std::string look() {
+    const std::optional<LongCall> call = calls_.look();
+    if (stop_ && !stopped_) stopped_ = std::chrono::steady_clock::now();
+    if (!stop_) stopped_.reset();
+    if (!call || call->seconds <= kLeast) return "";
+    const double budget = budget_;
+    if (std::isfinite(budget) && call->role != "reference" && call->counted_seconds > std::max(kLeast, budget)) {
+      tell({Word::given_up, to_bytes(GivenUp{call->plugin, call->function, budget}), about_});
+      ::_exit(kGaveUp);
+    }
+    if (stopped_ && seconds_since(*stopped_) > kAfterStop) ::_exit(kGaveUp);
+    return call->text();
   }
 
   CaseAnswer answer_to(Word word, const StudyCase& study_case) {
@@ -233,9 +243,9 @@ class WorkerService : public BlockService {
     if (word == Word::plan) {
       answer.seconds = plan_for(study_->kind, study_case, registry_).predicted_seconds;
     } else if (word == Word::time) {
-      const auto seconds = runner_.cases.time(study_case, stop_);
-      answer.found = seconds.has_value();
-      answer.seconds = seconds.value_or(0);
+      const auto timed = runner_.cases.time(study_case, stop_);
+      answer.found = timed.has_value();
+      if (timed) answer.seconds = timed->marching, answer.processor = timed->processor;
     } else {
       answer.record = run_guarded(runner_, study_case, stop_);
     }
@@ -253,7 +263,7 @@ class WorkerService : public BlockService {
       width_ = wanted.width;
       runner_.cases =
           find_kind(study_->kind)
-              ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, 1, this});
+              ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, this});
       if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
       ready.identity = identity_->of_all();
       ready.arithmetic = arithmetic_digest();
@@ -276,15 +286,16 @@ class WorkerService : public BlockService {
       ask(Word::keep, to_bytes(ShelfMessage{key, content}));
     };
     shelf.show = [this](const CaseRecord& record) { tell({Word::show, to_bytes(record)}); };
-    shelf.ticket = [](const StudyCase& one) {
-      return std::make_shared<CaseTicket>(one.id, "", std::numeric_limits<double>::infinity());
-    };
     shelf.failed = [this](const std::string& id) { return !ask(Word::failed, id).empty(); };
     return shelf;
   }
 
   Channel channel_;
+  CallWatch calls_;  // of the thread that serves
   std::atomic<bool> stop_{false};
+  std::optional<std::chrono::steady_clock::time_point> stopped_;  // of the watching thread
+  std::atomic<double> budget_{std::numeric_limits<double>::infinity()};
+  std::atomic<std::uint32_t> about_{0};
   std::optional<Catalogue> catalogue_;
   Registry registry_;
   std::optional<Study> study_;
@@ -307,7 +318,8 @@ int serve_as_worker() {
   // Held back until now: a plugin finds a mask as usual.
   const sigset_t ignored = coordinator_signals();
   ::pthread_sigmask(SIG_UNBLOCK, &ignored, nullptr);
-  const auto guard = CrashGuard::quiet("/proc/self/fd/" + std::to_string(kWorkerCrashRecord));
+  const HandlerStack handler_stack;
+  const CrashGuard guard("/proc/self/fd/" + std::to_string(kWorkerCrashRecord));
   return WorkerService().run();
 }
 

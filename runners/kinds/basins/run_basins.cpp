@@ -78,7 +78,7 @@ class BasinsRun {
   // Batches that are marched together: enough that those who march wait little for the longest orbit of them.
   std::size_t at_once() const {
     constexpr int rounds = 32, lanes = 8, most = 16;
-    const int marching = desk_.blocks ? desk_.blocks->width() : desk_.seats ? desk_.seats->count() : 1;
+    const int marching = desk_.blocks ? desk_.blocks->width() : 1;
     return static_cast<std::size_t>(std::clamp(rounds * lanes * marching / static_cast<int>(largest_batch), 1, most));
   }
 
@@ -117,7 +117,6 @@ class BasinsRun {
     if (tasks.empty()) return;
     describe_methods();
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
-                                                .seats = desk_.seats,
                                                 .budget = budget_of(case_) - record_.run_seconds,
                                                 .ends_only = true,
                                                 .blocks = desk_.blocks,

@@ -52,7 +52,6 @@ class BifurcationRun {
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
     OrbitScheduler scheduler(scenes_, {.section = section_,
-                                       .seats = desk_.seats,
                                        .budget = budget_of(case_),
                                        .blocks = desk_.blocks,
                                        .case_id = case_.id});
@@ -289,7 +288,6 @@ class BifurcationRun {
     if (exponents() > 0 && !places.empty()) {
       for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
       task.count = exponents();
-      task.seats = desk_.seats;
       task.blocks = desk_.blocks;
       task.case_id = case_.id;
       task.lost = [this](const std::string& cause) {

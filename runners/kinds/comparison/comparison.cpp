@@ -32,8 +32,6 @@ void require_reference(const Study& study, References& references, const MotionS
     if (one.excluded) continue;
     if (marches_itself(one)) return;
     if (shelf.failed && shelf.failed(one.id)) return;
-    std::optional<CaseScope> named;
-    if (shelf.ticket) named.emplace(shelf.ticket(one));
     try {
       const ReferenceSet set = references.of(one, stop);
       if (!set.applicable.empty()) return;
@@ -67,7 +65,7 @@ Json comparison_settings(const Json& resolved) {
 }
 
 CaseRunner compare_cases(const RunContext& context) {
-  // Made when the store is open, and shared by all threads of the run.
+  // Made when the store is open.
   const auto references = std::make_shared<std::unique_ptr<References>>();
   CaseRunner runner;
   runner.open = [references, &study = context.study, &registry = context.registry](MotionShelf shelf,

@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <ricochet/measure/motion/motion_errors.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
@@ -91,34 +90,19 @@ References::References(const Study& study, const Registry& registry, MotionShelf
 }
 
 template <class Value>
-Value References::once(std::map<std::string, Promised<Value>>& known, const std::string& key,
-                       const std::atomic<bool>& stop, const std::function<Value()>& make) {
-  constexpr auto look_every = std::chrono::milliseconds(100), at_once = std::chrono::milliseconds(0);
-  std::promise<Value> promise;
-  for (;;) {
-    std::shared_future<Value> future;
-    {
-      const std::lock_guard guard(mutex_);
-      const auto [found, fresh] = known.try_emplace(key);
-      Promised<Value>& entry = found->second;
-      // The thread of a case that was given up does not come back with its answer.
-      const bool lost = !fresh && entry.owner && entry.owner->given_up() &&
-                        entry.value.wait_for(at_once) != std::future_status::ready;
-      if (fresh || lost) {
-        entry = {promise.get_future().share(), current_ticket()};
-        break;
-      }
-      future = entry.value;
-    }
-    if (future.wait_for(look_every) == std::future_status::ready) return future.get();
-    if (stop) throw Interrupted{};
-  }
+Value References::once(std::map<std::string, Known<Value>>& known, const std::string& key,
+                       const std::function<Value()>& make) {
+  const auto found = known.find(key);
+  if (found != known.end() && found->second.failure) std::rethrow_exception(found->second.failure);
+  if (found != known.end()) return *found->second.value;
   try {
     Value value = make();
-    promise.set_value(value);
+    known[key].value = value;
     return value;
+  } catch (const Interrupted&) {
+    throw;
   } catch (...) {
-    promise.set_exception(std::current_exception());
+    known[key].failure = std::current_exception();
     throw;
   }
 }
@@ -237,7 +221,7 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
 ReferencePointer References::find(const StudyCase& study_case, const MethodChoice& choice,
                                   const std::atomic<bool>& stop) {
   const std::string name = key(study_case, choice);
-  return once<ReferencePointer>(known_, name, stop, [&]() -> ReferencePointer {
+  return once<ReferencePointer>(known_, name, [&]() -> ReferencePointer {
     if (auto stored = recall(shelf_, name, motion_from_bytes)) {
       const bool marched = choice.name == marched_reference;
       const bool mesh =
@@ -254,14 +238,12 @@ References::Twin References::twin_horizon(const StudyCase& study_case, const std
   // One pair of nearby runs per scene and mesh: of the first case of them that marches to its end and whose impacts
   // move with its motion, at its own step.
   const Json name = {{"scene", study_case.scene_json}, {"elements", study_case.elements}};
-  return once<Twin>(twins_, name.dump(), stop, [&]() -> Twin {
+  return once<Twin>(twins_, name.dump(), [&]() -> Twin {
     bool blind = false;
     for (const StudyCase& chosen : study_.cases) {
       if (chosen.excluded || chosen.scene_json != study_case.scene_json || chosen.elements != study_case.elements ||
           (shelf_.failed && shelf_.failed(chosen.id)))
         continue;
-      std::optional<CaseScope> blamed;
-      if (shelf_.ticket && chosen.id != study_case.id) blamed.emplace(shelf_.ticket(chosen));
       if (const auto twin = twin_of(chosen, blind, stop)) return *twin;
     }
     return {study_case.duration, blind ? not_seen : to_the_end};

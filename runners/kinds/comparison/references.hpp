@@ -1,10 +1,9 @@
 #pragma once
 #include <atomic>
+#include <exception>
 #include <functional>
-#include <future>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/contract/registry.hpp>
@@ -12,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/march/case_watch.hpp"
 #include "runners/march/motion_shelf.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
@@ -84,24 +82,23 @@ class References {
   /// Of this case's own methods; nothing where they do not march to the end, or where they are blind: impacts at whole
   /// steps do not move with the motion.
   std::optional<Twin> twin_of(const StudyCase& chosen, bool& blind, const std::atomic<bool>& stop) const;
-  /// What one thread computes and the others wait for; `owner`: the case of that thread.
+  /// What was computed once, or why it could not be.
   template <class Value>
-  struct Promised {
-    std::shared_future<Value> value;
-    TicketPointer owner;
+  struct Known {
+    std::optional<Value> value;
+    std::exception_ptr failure;
   };
   template <class Value>
-  Value once(std::map<std::string, Promised<Value>>& known, const std::string& key, const std::atomic<bool>& stop,
-             const std::function<Value()>& make);
+  static Value once(std::map<std::string, Known<Value>>& known, const std::string& key,
+                    const std::function<Value()>& make);
 
   const Study& study_;
   const Registry& registry_;
   MotionShelf shelf_;
   double smallest_step_ = 0;
   int coarsest_ = 0, finest_ = 0;  // elements
-  std::mutex mutex_;
-  std::map<std::string, Promised<ReferencePointer>> known_;
-  std::map<std::string, Promised<Twin>> twins_;
+  std::map<std::string, Known<ReferencePointer>> known_;
+  std::map<std::string, Known<Twin>> twins_;
 };
 
 /// The grid on which a study's motions are compared: `samples` + 1 times from 0 to `duration`, 128 places.

@@ -10,9 +10,9 @@
 #include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
-#include "runners/kinds/sweep/case_workers.hpp"
 #include "runners/kinds/sweep/distributed_exponents.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/seconds.hpp"
 
 namespace ricochet {
 namespace {
@@ -147,17 +147,13 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
     measure_elsewhere(scenes, task, plan, unknown, found, seconds, keep_batch, stop);
     return found;
   }
-  std::atomic<std::size_t> next{0};
-  CaseWorkers workers(task.seats);
-  seconds += workers.run([&](CaseWorker& worker) {
-    for (std::size_t i = next++; i < batches.size() && !stop; i = next++) {
-      if (recall_batch(i)) continue;
-      workers.call(static_cast<int>(batches.size() - i) - 1);
-      measure(batches[i]);
-      keep_batch(i);
-      if (worker.gives_way()) return;
-    }
-  });
+  const double begun = thread_seconds();
+  for (std::size_t i = 0; i < batches.size() && !stop; ++i) {
+    if (recall_batch(i)) continue;
+    measure(batches[i]);
+    keep_batch(i);
+  }
+  seconds += thread_seconds() - begun;
   if (stop) throw Interrupted{};
   return found;
 }

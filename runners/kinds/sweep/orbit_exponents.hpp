@@ -8,7 +8,6 @@
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/march/block_service.hpp"
-#include "runners/march/thread_seats.hpp"
 
 namespace ricochet {
 
@@ -57,8 +56,7 @@ struct ExponentTask {
   std::vector<int> rounds;         ///< of each orbit, the periods after which it repeats; 0: not known
   std::vector<bool> sawtooth;      ///< per group: see MarginalRoots
   int count = 1;                   ///< exponents
-  ThreadSeats* seats = nullptr;    ///< of threads that may measure; null: the caller alone
-  BlockService* blocks = nullptr;  ///< other processes that measure; null: threads of this one
+  BlockService* blocks = nullptr;  ///< other processes that measure; null: the caller itself
   std::string case_id = {};        ///< for them
   std::vector<int> scenes = {};    ///< of each orbit, for them
   /// Told why an orbit has none: what ended the processes that measured it.

@@ -25,13 +25,11 @@ Kind sweep_kind(RunSweep run) {
   kind.format.check_cases = check_values;
   kind.start = [run](const RunContext& context) {
     const auto shelf = std::make_shared<MotionShelf>();
-    const auto seats = std::make_shared<ThreadSeats>(context.jobs);
     CaseRunner runner;
     runner.open = [shelf](MotionShelf opened, const std::atomic<bool>&) { *shelf = std::move(opened); };
-    runner.run = [run, shelf, seats, blocks = context.blocks, key = context.key, &registry = context.registry](
+    runner.run = [run, shelf, blocks = context.blocks, key = context.key, &registry = context.registry](
                      const StudyCase& study_case, const std::atomic<bool>& stop) {
-      const ThreadSeats::Seat seat(*seats);
-      CaseRecord record = run(study_case, registry, CaseDesk{*shelf, key(study_case), seats.get(), blocks}, stop);
+      CaseRecord record = run(study_case, registry, CaseDesk{*shelf, key(study_case), blocks}, stop);
       if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
         add_doubts(record,
                    load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,

@@ -31,8 +31,12 @@ Kind work_precision_kind() {
   kind.march = run_case;
   kind.start = [](const RunContext& context) {
     CaseRunner runner = compare_cases(context);
-    runner.time = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
-      return time_case(study_case, registry, stop);
+    runner.time = [&registry = context.registry](const StudyCase& study_case,
+                                                 const std::atomic<bool>& stop) -> std::optional<TimedMarch> {
+      const double begun = thread_seconds();
+      const auto marching = time_case(study_case, registry, stop);
+      if (!marching) return std::nullopt;
+      return TimedMarch{*marching, thread_seconds() - begun};
     };
     return runner;
   };

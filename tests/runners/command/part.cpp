@@ -46,15 +46,15 @@ std::set<std::string> planned_ids(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("part: threads, workers and a plan deal alike") {
+TEST_CASE("part: one process, workers and a plan deal alike") {
   const ScratchFolder here;
   write_text(here / "study.json", dealt_study());
   std::set<std::string> all;
   for (const std::string number : {"1", "2", "3"}) {
     const std::string part = " --part " + number + "/3";
-    const Said threads = say(here, "run study.json --threads" + part);
-    INFO(threads.err);
-    REQUIRE(threads.code == 0);
+    const Said alone = say(here, "run study.json --inline" + part);
+    INFO(alone.err);
+    REQUIRE(alone.code == 0);
     const auto ids = ids_in(here / ("results/dealt-part-" + number + "-of-3"));
     CHECK(ids.size() == 2);
     REQUIRE(say(here, "run study.json --isolate --out workers/" + number + part).code == 0);

@@ -83,7 +83,7 @@ double time_of(const Victims& victims, const ScratchFolder& scratch, const std::
 void kill_at_random(const Victims& victims, bool survives) {
   const ScratchFolder scratch;
   const Json study = sweep();
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline")).code == 0);
   const double lasts = time_of(victims, scratch, ranks(2, run_words(scratch, study, "undisturbed")));
   int killed = 0;
   for (int i = 0; i < kills(); ++i) {
@@ -110,7 +110,7 @@ void kill_at_random(const Victims& victims, bool survives) {
       ended.code = again.code;
     }
     CHECK(ended.code == 0);
-    check_same(scratch / "threads", scratch / "out");
+    check_same(scratch / "here", scratch / "out");
     check_no_failed_row(scratch / "out");
   }
   CHECK(killed > kills() / 3);
@@ -139,7 +139,7 @@ TEST_CASE("kills: of two starts of one job on one folder the later one has it, t
   // The first start must still be under way when the second one has come up, on a machine that others use as well.
   Json study = quick_studies::longer();
   study["parameter"]["count"] = 25;
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline")).code == 0);
   const std::string words = ranks_program() + " " + run_words(scratch, study, "out");
   // Said behind mpirun, which asks Slurm for nodes where it sees a job of it.
   const auto start = [&](int restart) {
@@ -158,6 +158,6 @@ TEST_CASE("kills: of two starts of one job on one folder the later one has it, t
   INFO(ended.messages);
   CHECK(ended.code == 5);
   CHECK(ended.told("another run took this folder over") == 1);
-  check_same(scratch / "threads", scratch / "out");
+  check_same(scratch / "here", scratch / "out");
   CHECK_FALSE(fs::exists(scratch / "out/results.lock"));
 }

@@ -1,4 +1,4 @@
-/// One study on the ranks of mpirun, all on this machine: the tables that threads make, one message for one mistake.
+/// One study on the ranks of mpirun, all on this machine: the tables that one process makes, one message for one mistake.
 #include <signal.h>
 #include <unistd.h>
 
@@ -19,16 +19,16 @@ using quick_studies::stumbling;
 using same_tables::check_same;
 namespace fs = std::filesystem;
 
-TEST_CASE("ranks: every kind of study has on one and on three ranks the tables that it has in threads") {
+TEST_CASE("ranks: every kind of study has on one and on three ranks the tables that it has in one process") {
   if (without_mpi()) return;
   const std::string kind =
       GENERATE("trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins");
   CAPTURE(kind);
   const ScratchFolder scratch;
   const Json study = study_of(kind);
-  const Ended threads = to_its_end(scratch, program(run_words(scratch, study, "threads")));
-  INFO(threads.messages);
-  REQUIRE(threads.code == 0);
+  const Ended here = to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline"));
+  INFO(here.messages);
+  REQUIRE(here.code == 0);
   for (const int count : {1, 3}) {
     CAPTURE(count);
     const std::string out = "ranks-" + std::to_string(count);
@@ -38,7 +38,7 @@ TEST_CASE("ranks: every kind of study has on one and on three ranks the tables t
     CHECK_THAT(ended.out, Contains("report: "));
     CHECK_THAT(ended.messages, Contains(std::to_string(2 * count) + " workers on 1 machine, " + std::to_string(count) +
                                         (count == 1 ? " rank" : " ranks")));
-    check_same(scratch / "threads", scratch / out, kind == "work-precision");
+    check_same(scratch / "here", scratch / out, kind == "work-precision");
   }
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("ranks: what is wrong is said once, by rank 0, with the exit code of t
       {"run '" + (scratch / "none.json").string() + "'", "none.json", 2},
       {run_words(scratch, wrong, "wrong"), "did you mean \"signorini\"", 2},
       {"run", "Usage: ricochet run", 2},
-      {run_words(scratch, study_of("trajectory"), "threads") + " --threads", "--threads is for one machine", 2},
+      {run_words(scratch, study_of("trajectory"), "here") + " --inline", "--inline is for one process", 2},
       {"plan x.json", "ricochet-mpi expects the command run", 2},
       {"", "ricochet-mpi expects the command run", 2},
   };
@@ -67,7 +67,7 @@ TEST_CASE("ranks: what is wrong is said once, by rank 0, with the exit code of t
     CHECK(ended.told(one.sentence) == 1);
     CHECK(ended.out == "");
   }
-  for (const char* folder : {"wrong", "threads", "results"}) CHECK_FALSE(fs::exists(scratch / folder));
+  for (const char* folder : {"wrong", "here", "results"}) CHECK_FALSE(fs::exists(scratch / folder));
 }
 
 TEST_CASE(
@@ -134,7 +134,7 @@ TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, 
   if (without_mpi()) return;
   const ScratchFolder scratch;
   const Json study = longer();
-  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "threads"))).code == 0);
+  REQUIRE(to_its_end(scratch, program(run_words(scratch, study, "here") + " --inline")).code == 0);
   {
     UnderWay run(scratch, ranks(3, run_words(scratch, study, "out")));
     constexpr int tries = 2000;
@@ -156,5 +156,5 @@ TEST_CASE("ranks: a run that USR1 stops ends with 130, leaves no worker behind, 
   const Ended again = to_its_end(scratch, ranks(2, run_words(scratch, study, "out")));
   INFO(again.messages);
   CHECK(again.code == 0);
-  check_same(scratch / "threads", scratch / "out");
+  check_same(scratch / "here", scratch / "out");
 }

@@ -80,8 +80,8 @@ std::map<std::string, std::string> expected_rows(const Study& study) {
 void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHost>> hosts, Kept& kept,
                  std::atomic<bool>& stop) {
   const Registry registry;
-  const RunContext context{study, registry, [](const StudyCase& one) { return one.id; }, 1};
-  IsolatedCases isolated(context, {{}, std::move(hosts)});
+  const RunContext context{study, registry, [](const StudyCase& one) { return one.id; }};
+  IsolatedCases isolated(context, {1, {}, std::move(hosts)});
   StudyRunner runner;
   runner.cases = isolated.runner();
   try {

@@ -1,4 +1,4 @@
-/// Cases in worker processes: the same results as in threads, whatever a plugin or a stranger does to the workers.
+/// Cases in worker processes: the same results as in one process, whatever a plugin or a stranger does to the workers.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -51,19 +51,19 @@ Ended run(const ScratchFolder& scratch, const Json& study, const std::string& ou
 
 }  // namespace
 
-TEST_CASE("workers: every kind of study has in them the tables that it has in threads") {
+TEST_CASE("workers: every kind of study has in them the tables that it has in one process") {
   const std::string kind =
       GENERATE("trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins");
   CAPTURE(kind);
   const ScratchFolder scratch;
   const Json study = study_of(kind);
-  const Ended threads = run(scratch, study, "threads", "");
-  INFO(threads.messages);
-  REQUIRE(threads.code == 0);
+  const Ended here = run(scratch, study, "here", "--inline");
+  INFO(here.messages);
+  REQUIRE(here.code == 0);
   const Ended workers = run(scratch, study, "workers", "--isolate");
   INFO(workers.messages);
   CHECK(workers.code == 0);
-  check_same(scratch / "threads", scratch / "workers", kind == "work-precision");
+  check_same(scratch / "here", scratch / "workers", kind == "work-precision");
 }
 
 TEST_CASE("workers: an orbit that ends its process twice is a failed row with the reason, and no other row changes") {
@@ -106,7 +106,35 @@ TEST_CASE("workers: an orbit that ends its process twice is a failed row with th
   CHECK(failed < before.size() / 2);
 }
 
-TEST_CASE("workers: a call that never returns costs its case the budget, in a worker as in a thread") {
+TEST_CASE("workers: a case that ends its process twice is failed, and the others are done, in every run") {
+  const auto [how, cause] = GENERATE(table<std::string, std::string>({{"segv", "signal 11 (segmentation fault)"},
+                                                                      {"overflow", "signal 11 (segmentation fault)"},
+                                                                      {"leave", "a call of exit()"}}));
+  CAPTURE(how);
+  if (how == "overflow" && sanitized) return;
+  const ScratchFolder scratch;
+  Json study = study_of("trajectory");
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "beyond": 0}])");
+  study["methods"]["contact"][1]["how"] = how;
+  const Ended first = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  INFO(first.messages << first.out);
+  CHECK(first.code == 3);
+  const Rows rows = rows_of(scratch / "out/cases.csv");
+  REQUIRE(rows.size() == 4);
+  for (const auto& row : rows) {
+    const bool bad = row.at("contact") == "stumbles";
+    CHECK(row.at("status") == (bad ? "failed" : "done"));
+    if (bad)
+      CHECK_THAT(row.at("reason"), Contains("plugin contact 'stumbles'") &&
+                                       Contains("solve(): its process was ended twice by " + cause));
+  }
+  const Ended second = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  CHECK(second.code == 3);
+  CHECK_THAT(second.messages, Contains("0 to run"));
+}
+
+TEST_CASE("workers: a call that never returns costs its case the budget") {
   const ScratchFolder scratch;
   Json study = stumbling("sleep", 7e-3);
   study["budget"] = 1;
@@ -123,8 +151,10 @@ namespace {
 /// A run in a process of its own.
 class Running {
  public:
-  Running(const ScratchFolder& scratch, const Json& study, const std::string& out) : out_(scratch / out) {
-    const std::string line = "exec env RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, "--isolate");
+  Running(const ScratchFolder& scratch, const Json& study, const std::string& out,
+          const std::string& options = "--isolate")
+      : out_(scratch / out) {
+    const std::string line = "exec env RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, options);
     process_ = ::fork();
     if (process_ != 0) return;
     ::setpgid(0, 0);
@@ -170,10 +200,24 @@ class Running {
 
 }  // namespace
 
+TEST_CASE("workers: a call that never returns is told by case, plugin and function, and Ctrl-C ends the run") {
+  const ScratchFolder scratch;
+  Json study = study_of("trajectory");
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "how": "sleep", "beyond": 0}])");
+  Running running(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  constexpr int tries = 6000;
+  const auto told = [&] { return read_text(scratch / "told"); };
+  for (int i = 0; i < tries && told().find("solve() has not returned for") == std::string::npos; ++i) ::usleep(10000);
+  CHECK_THAT(told(), Contains("waiting for case") && Contains("plugin contact 'stumbles'"));
+  CHECK(running.finish(SIGINT) == 130);
+  CHECK_THAT(told(), Contains("interrupted: 2 of 4"));
+}
+
 TEST_CASE("workers: one that a stranger kills costs nothing but time") {
   const ScratchFolder scratch;
   const Json study = longer();
-  REQUIRE(run(scratch, study, "threads", "").code == 0);
+  REQUIRE(run(scratch, study, "here", "--inline").code == 0);
   for (int moment = 1; moment <= 4; ++moment) {
     CAPTURE(moment);
     const std::string out = "killed-" + std::to_string(moment);
@@ -182,7 +226,7 @@ TEST_CASE("workers: one that a stranger kills costs nothing but time") {
     const std::vector<pid_t> children = running.children();
     if (!children.empty()) ::kill(children[static_cast<std::size_t>(moment) % children.size()], SIGKILL);
     CHECK(running.finish() == 0);
-    check_same(scratch / "threads", scratch / out);
+    check_same(scratch / "here", scratch / out);
   }
 }
 
@@ -213,7 +257,7 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   const Json study = longer();
   // For all signals once.
   static const ScratchFolder undisturbed;
-  if (!fs::exists(undisturbed / "threads")) REQUIRE(run(undisturbed, study, "threads", "").code == 0);
+  if (!fs::exists(undisturbed / "here")) REQUIRE(run(undisturbed, study, "here", "--inline").code == 0);
   std::vector<pid_t> children;
   {
     Running running(scratch, study, "out");
@@ -235,8 +279,8 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   const Ended again = run(scratch, study, "out", "--isolate");
   INFO(again.messages);
   CHECK(again.code == 0);
-  check_same(undisturbed / "threads", scratch / "out");
-  // And threads go on from where workers were.
-  const Ended kept = run(scratch, study, "out", "");
+  if (signal == SIGKILL) CHECK_THAT(again.messages, Matches("[^]*an earlier run ended while .* under way: run again[^]*"));
+  check_same(undisturbed / "here", scratch / "out");
+  const Ended kept = run(scratch, study, "out", "--inline");
   CHECK_THAT(kept.messages, Contains("0 to run"));
 }

@@ -126,7 +126,7 @@ TEST_CASE("forecast: a part of a sweep, and of a range of steps, costs as much m
     const Kind& kind = *find_kind(planned.study.kind);
     const double ratio = kind.rehearse(one, planned.registry);
     REQUIRE(ratio > 0);
-    const CaseRunner runner = kind.start({planned.study, planned.registry, [](const StudyCase&) { return ""; }, 1});
+    const CaseRunner runner = kind.start({planned.study, planned.registry, [](const StudyCase&) { return ""; }});
     const std::atomic<bool> stop = false;
     if (runner.open) runner.open({}, stop);
     const CaseRecord record = runner.run(one, stop);

@@ -141,10 +141,6 @@ TEST_CASE("parts: a case of another part whose cost cannot be told, or whose met
     plan.predicted_seconds = 1;
     return plan;
   };
-  // What is marched for all cases together may be marched with the methods of any, and blamed on it.
-  run.runner.cases.open = [](const MotionShelf& shelf, const std::atomic<bool>&) {
-    for (const StudyCase& one : fake_study(4).cases) shelf.ticket(one);
-  };
   std::set<std::string> met;
   for (int number = 1; number <= 2; ++number) {
     RunOptions options{scratch / std::to_string(number), 1};

@@ -11,8 +11,10 @@
 #include "runners/study/load_study.hpp"
 #include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/runners/kinds/sweep/block_threads.hpp"
 
 using namespace ricochet;
+using ricochet::testing::BlockThreads;
 using Catch::Matchers::Contains;
 
 namespace {
@@ -186,15 +188,14 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   text["keep"] = 16;
   const Opened opened(text);
   const std::string wanted = bits(opened.run());
-  // So many seats that three batches are marched at once.
-  ThreadSeats seats(64);
-  const ThreadSeats::Seat seat(seats);
-  CHECK((bits(opened.run({{}, "key", &seats})) == wanted));
+  // So many workers that three batches are marched at once.
+  BlockThreads workers(opened.study.cases.front(), opened.registry, 64);
+  CHECK((bits(opened.run({{}, "key", &workers})) == wanted));
 
   // Stopped with all three under way, and gone on with one at a time: what was kept is of no batch or of whole ones.
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
-  CaseDesk desk{{}, "key", &seats};
+  CaseDesk desk{{}, "key", &workers};
   desk.shelf.find = [&](const std::string& key) {
     stop = key.starts_with("orbits/");  // looked for when the march begins
     return kept.count(key) ? kept[key] : "";
@@ -203,18 +204,17 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   CHECK_THROWS_AS(run_basins(opened.study.cases.front(), opened.registry, desk, stop), Interrupted);
   CHECK_FALSE(kept.empty());
   stop = false;
-  desk.seats = nullptr;
+  desk.blocks = nullptr;
   desk.shelf.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
   CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, desk, stop)) == wanted));
 }
 
-TEST_CASE("Threads, interruptions and damage to what was stored do not change the bits of basins") {
+TEST_CASE("Workers, interruptions and damage to what was stored do not change the bits of basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());
   for (int run = 0; run < 3; ++run) {
-    ThreadSeats seats(2);
-    const ThreadSeats::Seat seat(seats);
-    CHECK((bits(opened.run({{}, "key", &seats})) == wanted));
+    BlockThreads workers(opened.study.cases.front(), opened.registry, 2);
+    CHECK((bits(opened.run({{}, "key", &workers})) == wanted));
   }
 
   std::map<std::string, std::string> kept;

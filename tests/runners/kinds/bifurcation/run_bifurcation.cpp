@@ -28,9 +28,9 @@ std::string tables_of(CaseRecord record) {
 
 }  // namespace
 
-TEST_CASE("bifurcation: neither threads nor the number of exponents asked for change an orbit") {
+TEST_CASE("bifurcation: neither workers nor the number of exponents asked for change an orbit") {
   Json text = beam_sweep({0.05, 0.08, 0.086, 0.09});
-  const CaseRecord one = run_sweep(text, 1), three = run_sweep(text, 3);
+  const CaseRecord one = run_sweep(text), three = run_sweep(text, 3);
   REQUIRE(one.status == "done");
   CHECK(bits_of(one) == bits_of(three));
   text["exponents"] = 2;

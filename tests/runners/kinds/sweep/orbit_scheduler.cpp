@@ -1,9 +1,6 @@
 // Marching of sets of orbits: what they are does not depend on how they were marched.
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
-#include <chrono>
-#include <thread>
-
 #include "runners/kinds/sweep/orbit_bytes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -28,6 +25,10 @@ class Sweep {
   }
 
   OrbitTask task(int scene, int after = -1) const { return {scene, scenes[scene].lane, after, -1}; }
+  /// None: the scheduler marches itself.
+  std::unique_ptr<BlockThreads> workers(int count) const {
+    return count > 0 ? std::make_unique<BlockThreads>(opened_.first(), *opened_.registry, count) : nullptr;
+  }
 
  private:
   OpenedSweep opened_;
@@ -87,9 +88,8 @@ const std::function<void(const MarchedOrbits&)> nowhere = [](const MarchedOrbits
 
 std::vector<std::string> marched(const Sweep& sweep, int workers, int lanes) {
   ScheduleOptions options = sweep.options;
-  ThreadSeats seats(workers);
-  const ThreadSeats::Seat seat(seats);
-  options.seats = &seats;
+  const std::unique_ptr<BlockThreads> blocks = sweep.workers(workers);
+  options.blocks = blocks.get();
   options.lanes = lanes;
   OrbitScheduler scheduler(sweep.scenes, options);
   add_all(scheduler, sweep);
@@ -104,9 +104,8 @@ std::vector<std::string> interrupted(const Sweep& sweep, int workers, int lanes,
   stops = 0;
   for (;;) {
     ScheduleOptions options = sweep.options;
-    ThreadSeats seats(workers);
-    const ThreadSeats::Seat seat(seats);
-    options.seats = &seats;
+    const std::unique_ptr<BlockThreads> blocks = sweep.workers(workers);
+    options.blocks = blocks.get();
     options.lanes = lanes;
     options.interval = 0;  // after every period of any block
     OrbitScheduler scheduler(sweep.scenes, options);
@@ -138,7 +137,7 @@ Json spring_diagram() {
 
 }  // namespace
 
-TEST_CASE("orbits do not depend on threads nor on lanes") {
+TEST_CASE("orbits do not depend on who marches them nor on lanes") {
   Json text = beam_sweep({0.05, 0.076, 0.08, 0.085, 0.09, 0.095});
   SECTION("rigid, at the tip") {}
   SECTION("rigid, at all nodes") {
@@ -160,58 +159,12 @@ TEST_CASE("orbits do not depend on threads nor on lanes") {
     text["methods"]["time"] = {{"name", "moreau-jean"}, {"restitution", 0.5}};
   }
   const Sweep sweep(text);
-  const auto reference = marched(sweep, 1, 1);
+  const auto reference = marched(sweep, 0, 1);
   for (const std::string& one : reference) CHECK_FALSE(one.empty());
-  CHECK(difference(marched(sweep, 1, 2), reference) == "");
+  CHECK(difference(marched(sweep, 0, 2), reference) == "");
+  CHECK(difference(marched(sweep, 0, 8), reference) == "");
   CHECK(difference(marched(sweep, 1, 8), reference) == "");
-  CHECK(difference(marched(sweep, 2, 8), reference) == "");
   CHECK(difference(marched(sweep, 3, 2), reference) == "");
-}
-
-TEST_CASE("seats: no more are taken than there are, but by cases, for which others give way") {
-  ThreadSeats seats(2);
-  CHECK(seats.take());
-  CHECK(seats.take());
-  CHECK_FALSE(seats.take());
-  CHECK_FALSE(seats.give_way());
-  {
-    const ThreadSeats::Seat of_a_case(seats);
-    CHECK(seats.free() == 0);
-    CHECK(seats.give_way());
-    CHECK_FALSE(seats.give_way());
-  }
-  CHECK(seats.free() == 1);
-  seats.leave();
-  CHECK(seats.free() == 2);
-}
-
-TEST_CASE("orbits do not depend on threads that come and go with the cases beside theirs") {
-  const Sweep sweep(beam_sweep({0.05, 0.06, 0.07, 0.076, 0.078, 0.08, 0.082, 0.085, 0.087, 0.09, 0.095}));
-  const auto reference = marched(sweep, 1, 8);
-  ScheduleOptions options = sweep.options;
-  ThreadSeats seats(3);
-  const ThreadSeats::Seat seat(seats);
-  options.seats = &seats;
-  OrbitScheduler scheduler(sweep.scenes, options);
-  add_all(scheduler, sweep);
-  const std::atomic<bool> stop = false;
-  // Two cases beside it, which begin and end all the time.
-  std::atomic<bool> over = false;
-  std::thread others([&] {
-    while (!over) {
-      const ThreadSeats::Seat one(seats), other(seats);
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      seats.leave();
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      seats.sit();
-    }
-  });
-  scheduler.run(stop, nowhere);
-  over = true;
-  others.join();
-  CHECK(difference(bits(scheduler), reference) == "");
-  // All that joined have left.
-  CHECK(seats.free() == 2);
 }
 
 TEST_CASE("a sweep that is stopped at any moment goes on with the same bits") {
@@ -231,11 +184,11 @@ TEST_CASE("a sweep that is stopped at any moment goes on with the same bits") {
     text["parameter"] = {{"pointer", "/scene/support/pulsation"}, {"values", {9, 10, 11}}};
   }
   const Sweep sweep(text);
-  const auto reference = marched(sweep, 1, 8);
+  const auto reference = marched(sweep, 0, 8);
   int stops = 0;
-  CHECK(difference(interrupted(sweep, 1, 8, 1, stops), reference) == "");
+  CHECK(difference(interrupted(sweep, 0, 8, 1, stops), reference) == "");
   CHECK(stops > 20);
-  CHECK(difference(interrupted(sweep, 1, 1, 7, stops), reference) == "");
+  CHECK(difference(interrupted(sweep, 0, 1, 7, stops), reference) == "");
   CHECK(stops > 2);
   CHECK(difference(interrupted(sweep, 2, 2, 3, stops), reference) == "");
 }
@@ -247,9 +200,9 @@ TEST_CASE("an orbit that diverges is the same whoever marches beside it") {
   text["methods"]["time"] = {{"name", "newmark-dumont-paoli"}, {"beta", 0.0}};
   text["scene"]["structure"]["damping"]["stiffness"] = 0;
   const Sweep sweep(text);
-  const auto reference = marched(sweep, 1, 1);
-  CHECK(difference(marched(sweep, 1, 8), reference) == "");
-  CHECK(difference(marched(sweep, 2, 2), reference) == "");
+  const auto reference = marched(sweep, 0, 1);
+  CHECK(difference(marched(sweep, 0, 8), reference) == "");
+  CHECK(difference(marched(sweep, 0, 2), reference) == "");
 }
 
 TEST_CASE("a chain goes over an orbit that stops, from what that orbit began with") {

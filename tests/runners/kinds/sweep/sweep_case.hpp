@@ -9,6 +9,7 @@
 #include "runners/study/load_study.hpp"
 #include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "tests/runners/kinds/sweep/block_threads.hpp"
 
 /// \file
 /// Small studies of kind `bifurcation`, from their text to what a case of them leaves.
@@ -117,12 +118,12 @@ inline std::string bits_of(const CaseRecord& record) {
   return text;
 }
 
-inline CaseRecord run_sweep(const Json& text, int workers = 1) {
+/// `workers`: 0: the case marches itself.
+inline CaseRecord run_sweep(const Json& text, int workers = 0) {
   const OpenedSweep opened = opened_sweep(text);
+  BlockThreads blocks(opened.first(), *opened.registry, workers);
   CaseDesk desk;
-  ThreadSeats seats(workers);
-  const ThreadSeats::Seat seat(seats);
-  desk.seats = &seats;
+  if (workers > 0) desk.blocks = &blocks;
   const std::atomic<bool> stop = false;
   return run_bifurcation(opened.first(), *opened.registry, desk, stop);
 }

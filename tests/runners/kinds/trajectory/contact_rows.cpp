@@ -163,7 +163,7 @@ TEST_CASE("a study that compares lists its impacts too, and one without contact 
   Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
   Registry registry;
   const Study study = parse_study(text.dump(1), catalogue, registry);
-  CaseRunner runner = find_kind("convergence")->start({study, registry, {}, 1});
+  CaseRunner runner = find_kind("convergence")->start({study, registry, {}});
   runner.open({}, goes_on);
   const CaseRecord record = runner.run(study.cases.front(), goes_on);
   REQUIRE(record.status == "done");

@@ -14,12 +14,20 @@ using namespace ricochet;
 
 namespace {
 
+[[gnu::noinline]] int overflow(int depth) {
+  volatile int room[1000] = {};
+  room[depth % 1000] = depth;
+  return depth < 0 ? 0 : overflow(depth + 1) + room[7];
+}
+
 void misbehave(const std::string& how) {
   if (how == "none") return;
   std::fputs("too deep for me\n", stderr);
   if (how == "segv") ::raise(SIGSEGV);
   if (how == "abort") std::abort();
   if (how == "exit") ::_exit(7);
+  if (how == "leave") std::exit(0);
+  if (how == "overflow") static_cast<void>(overflow(1));
   if (how == "kill") ::kill(::getpid(), SIGKILL);
   if (how == "greedy") {
     constexpr std::size_t piece = std::size_t{1} << 28;
@@ -55,7 +63,7 @@ void register_all(Registry& registry) {
        .summary = "a rigid law that stumbles",
        .text = "It keeps one point within its stops, as long as it is not asked for too much.",
        .source = "none",
-       .parameters = {word_parameter("how", {"none", "segv", "abort", "exit", "kill", "greedy", "sleep"}, "none",
+       .parameters = {word_parameter("how", {"none", "segv", "abort", "exit", "leave", "overflow", "kill", "greedy", "sleep"}, "none",
                                      "what it does that no plugin may do"),
                       real_parameter("beyond", "m", 1e9, {.low = 0}, "the depth of a step from which it does so")}},
       [](const Parameters& p) { return std::make_unique<Stumbles>(p.word("how"), p.real("beyond")); });

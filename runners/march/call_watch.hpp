@@ -1,0 +1,55 @@
+#pragma once
+#include <pthread.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace ricochet {
+
+/// A call of a plugin's function that has not returned yet.
+struct LongCall {
+  std::string role, plugin, function;  ///< "contact", "contact 'x' (file)", "solve"
+  double seconds = 0;                  ///< since it was first seen
+  double counted_seconds = 0;          ///< processor time of its thread, at least a tenth of `seconds`
+  /// "plugin contact 'x' (file), solve() has not returned for 12 s".
+  std::string text() const;
+};
+
+/// Watches the calls of plugins' functions that the thread makes which constructs it; one per process. look() is asked
+/// by another thread: the watched one answers in a signal handler (SIGURG).
+class CallWatch {
+ public:
+  CallWatch();
+  ~CallWatch();
+  CallWatch(const CallWatch&) = delete;
+  CallWatch& operator=(const CallWatch&) = delete;
+
+  /// The call under way; none between calls. What the thread said last stands until it answers again.
+  std::optional<LongCall> look();
+
+ private:
+  struct Answer;
+
+  const std::unique_ptr<Answer> answer_;
+  const pthread_t thread_;
+  unsigned long long serial_ = 0;
+  std::chrono::steady_clock::time_point seen_;
+  double processor_ = 0;  // of the thread, when the call was first seen
+};
+
+/// Room for this thread's signal handlers where its own stack has run out.
+class HandlerStack {
+ public:
+  HandlerStack();
+  ~HandlerStack();
+  HandlerStack(const HandlerStack&) = delete;
+  HandlerStack& operator=(const HandlerStack&) = delete;
+
+ private:
+  std::unique_ptr<char[]> memory_;
+};
+
+}  // namespace ricochet
