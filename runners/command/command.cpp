@@ -10,8 +10,8 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/part_cases.hpp"
-#include "runners/run/worker_service.hpp"
 #include "runners/store/store_error.hpp"
+#include "runners/workers/worker_service.hpp"
 
 namespace ricochet {
 namespace {

@@ -9,12 +9,12 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/index_page.hpp"
-#include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/league.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/store.hpp"
+#include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {
 
@@ -45,8 +45,8 @@ int command_run(const Arguments& arguments, std::ostream&) {
       options.where = RunOptions::Where::workers;
       options.hosts = arguments.hosts(arguments.jobs);
     } else if (!arguments.here) {
-      options.where = arguments.isolate || runs_foreign_code(open) ? RunOptions::Where::workers
-                                                                   : RunOptions::Where::here_if_short;
+      options.where =
+          arguments.isolate || runs_foreign_code(open) ? RunOptions::Where::workers : RunOptions::Where::here_if_short;
     }
     options.plugins = arguments.plugins;
     return run_study(open.study, open.catalogue, open.registry, options);

@@ -48,6 +48,10 @@ struct CaseRunner {
       block;
 };
 
+/// Runs one case and makes a record of whatever happens: what it throws becomes status `failed`. Only Interrupted goes
+/// through.
+CaseRecord run_guarded(const CaseRunner& cases, const StudyCase& study_case, const std::atomic<bool>& stop);
+
 /// One point of a stored study that is to be marched again.
 struct PointRequest {
   std::string case_id;                         ///< or the beginning of one

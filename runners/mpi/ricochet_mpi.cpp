@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
-#include "runners/command/ranks.hpp"
-#include "runners/process/host_messages.hpp"
-#include "runners/process/transport.hpp"
-#include "runners/process/worker_environment.hpp"
+#include "runners/mpi/ranks.hpp"
+#include "runners/workers/host_messages.hpp"
+#include "runners/workers/transport.hpp"
+#include "runners/workers/worker_environment.hpp"
 
 namespace ricochet {
 namespace {

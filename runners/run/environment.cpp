@@ -17,11 +17,11 @@
 #endif
 
 #include "runners/march/arithmetic_digest.hpp"
-#include "runners/run/allowed_processors.hpp"
 #include "runners/run/build_facts.hpp"
 #include "runners/store/arithmetics.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/run_identity.hpp"
+#include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {
 namespace {

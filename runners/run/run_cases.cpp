@@ -27,33 +27,6 @@ void on_threads(int threads, const std::function<void()>& body) {
 
 }  // namespace
 
-CaseRecord run_guarded(const StudyRunner& runner, const StudyCase& study_case, const std::atomic<bool>& stop) {
-  CaseRecord record;
-  const auto fail = [&](std::string reason) {
-    record = CaseRecord{};
-    record.status = "failed";
-    record.reason = std::move(reason);
-  };
-  try {
-    record = runner.cases.run(study_case, stop);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const InputError& error) {
-    fail(error.pointer().empty() ? error.what() : fmt::format("at {}: {}", error.pointer(), error.what()));
-  } catch (const std::bad_alloc&) {
-    fail("not enough memory");
-  } catch (const std::exception& error) {
-    fail(error.what());
-  } catch (const Refusal& refusal) {
-    fail(refusal.sentence);
-  } catch (...) {
-    fail("an exception that carries no message");
-  }
-  record.id = study_case.id;
-  record.axes = study_case.axes;
-  return record;
-}
-
 int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int at_once, std::atomic<bool>& stop,
               const CaseEvents& events) {
   // Of very many cases those that cost the same run in the order of their ids: the store keeps them in it, and what
@@ -76,7 +49,7 @@ int run_cases(const StudyRunner& runner, std::vector<PendingCase> pending, int a
       const PendingCase* one = take();
       if (one) events.begins(*one);
       while (one) {
-        const CaseRecord record = run_guarded(runner, *one->study_case, stop);
+        const CaseRecord record = run_guarded(runner.cases, *one->study_case, stop);
         one = take();
         events.finished(record, one);
         ++finished;

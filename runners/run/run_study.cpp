@@ -7,13 +7,13 @@
 #include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
-#include "runners/process/isolated_cases.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/alike_cases.hpp"
-#include "runners/run/allowed_processors.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
+#include "runners/workers/allowed_processors.hpp"
+#include "runners/workers/isolated_cases.hpp"
 
 namespace ricochet {
 namespace {
@@ -22,7 +22,7 @@ std::string render(const StudyResults& results) {
   return render_report(results, page_of(results.kind));
 }
 
-constexpr double short_run = 1;        // s
+constexpr double short_run = 1;          // s
 constexpr double of_each_case = 1.6e-3;  // s for its row, its curve, its share of tables and page
 
 /// Whether all cases together are predicted to take less than a second. References are not foreseen.

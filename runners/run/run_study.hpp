@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/process/worker.hpp"
 #include "runners/study/study.hpp"
 #include "runners/study/study_part.hpp"
+#include "runners/workers/worker.hpp"
 
 namespace ricochet {
 
 struct RunOptions {
-  std::filesystem::path out;                            ///< results folder; empty: default_folder()
-  int jobs = 0;                                         ///< workers; 0: as many as processors that it may use
-  bool fresh = false;                                   ///< forget what the folder holds
-  bool table = false;                                   ///< print a line for every case
+  std::filesystem::path out;  ///< results folder; empty: default_folder()
+  int jobs = 0;               ///< workers; 0: as many as processors that it may use
+  bool fresh = false;         ///< forget what the folder holds
+  bool table = false;         ///< print a line for every case
   /// Where cases run: in worker processes, in this one alone, or in this one where all of them are predicted to take
   /// less than a second.
   enum class Where { workers, here, here_if_short } where = Where::here;

@@ -11,7 +11,6 @@
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
-#include "runners/run/allowed_processors.hpp"
 #include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/finish_run.hpp"
@@ -27,6 +26,7 @@
 #include "runners/store/store.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/table/plain_text.hpp"
+#include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {
 namespace {

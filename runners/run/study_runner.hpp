@@ -31,10 +31,6 @@ int run_study_with(const StudyRunner& runner, const Study& study, const RunOptio
 /// rebuild_report() with the report's author given.
 int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder);
 
-/// Runs one case and makes a record of whatever happens: what it throws becomes status `failed`. Only Interrupted goes
-/// through.
-CaseRecord run_guarded(const StudyRunner& runner, const StudyCase& study_case, const std::atomic<bool>& stop);
-
 /// A pending case, its predicted cost, and what tells whether it is still the same in a later run.
 struct PendingCase {
   const StudyCase* study_case = nullptr;

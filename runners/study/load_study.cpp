@@ -136,12 +136,16 @@ std::vector<SceneOption> expand_scenes(const Json& scene, const std::vector<Axis
   Product product;
   for (const Axis& axis : axes) product.add(axis.values.size());
   product.refuse_above(largest_study, "/scene");
+  std::vector<Json::json_pointer> places;
+  for (const Axis& axis : axes) places.emplace_back(axis.pointer.substr(std::string("/scene").size()));
+  Json without = scene;  // the lists: each option would copy them
+  for (const Json::json_pointer& place : places) without[place] = nullptr;
   for (; !product.ended(); product.next()) {
     SceneOption option;
-    option.json = scene;
+    option.json = without;
     for (std::size_t a = 0; a < axes.size(); ++a) {
       const Json& value = axes[a].values[product[a]];
-      option.json[Json::json_pointer(axes[a].pointer.substr(std::string("/scene").size()))] = value;
+      option.json[places[a]] = value;
       option.axes.emplace_back(column_of(axes[a].pointer), value);
     }
     try {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/runners/process/quick_studies.hpp"
 #include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/workers/quick_studies.hpp"
 
 /// \file
 /// Programs that are started as a person starts them, and runs of one study in every way that there is.

@@ -39,6 +39,26 @@ TEST_CASE("bifurcation: neither workers nor the number of exponents asked for ch
         column_of(numbers_of(measured, "points"), "tip_velocity"));
 }
 
+TEST_CASE("bifurcation: a start beyond a stop is for the laws that push it back, and costs the others their rows") {
+  Json text = oscillator_sweep({2.0, 2.4}, 0.5);
+  text["scene"]["stops"] = {{"lower", 0.01}, {"at", "tip"}};
+  text["transient"] = {{"periods", 5}, {"at_most", 10}};
+  const Json rigid = "signorini", spring = {{"name", "penalty"}, {"stiffness", 100}};
+  text["methods"]["time"] = "newmark-dumont-paoli";
+  text["methods"]["contact"] = GENERATE_COPY(Json::array({rigid, spring}), Json::array({spring, rigid}));
+  const OpenedSweep opened = opened_sweep(text);
+  REQUIRE(opened.study.cases.size() == 2);
+  const std::atomic<bool> stop = false;
+  for (const StudyCase& one : opened.study.cases) {
+    const CaseRecord record = run_bifurcation(one, *opened.registry, {}, stop);
+    INFO(record.reason);
+    CHECK(record.status == (one.contact.name == "penalty" ? "done" : "refused"));
+    if (record.status == "refused")
+      CHECK_THAT(record.reason, Catch::Matchers::Contains("beyond the lower stop at 0.01 m") &&
+                                    Catch::Matchers::Contains("a compliant law"));
+  }
+}
+
 TEST_CASE("bifurcation: what was stored and is damaged is marched again, to the same bits") {
   Json text = beam_sweep({0.05, 0.08, 0.086}, Json::array({"rest", "up"}));
   text["exponents"] = 1;

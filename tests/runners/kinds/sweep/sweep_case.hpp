@@ -71,7 +71,7 @@ inline OpenedSweep opened_sweep(const Json& text) {
   OpenedSweep opened;
   opened.study = parse_study(text.dump(1), catalogue, registry);
   opened.registry = &registry;
-  REQUIRE(opened.study.cases.size() == 1);
+  REQUIRE_FALSE(opened.study.cases.empty());
   return opened;
 }
 

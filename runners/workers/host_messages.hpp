@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "runners/workers/worker.hpp"
+
+/// \file
+/// What the coordinator (rank 0) and the agents of the other machines send each other, as bytes of this kind of
+/// machine.
+namespace ricochet {
+
+/// Each side says that it is alive so often, and takes the other for lost after such a silence, s.
+constexpr double alive_every = 2, lost_after = 60;
+
+/// The machine of an agent, told once, before anything else.
+struct HostFacts {
+  std::string name;
+  int rank = 0;
+  int processors = 1, online = 1;   ///< that it may keep busy, and that the machine has
+  std::string limit;                ///< what allows fewer, "" where nothing does
+  double memory = 0;                ///< bytes free; 0: nobody says
+  std::string program, arithmetic;  ///< hash and digest
+  std::string failure;              ///< why it cannot serve; "" where it can
+};
+
+/// One thing said about one worker of an agent's machine, or about the machine.
+struct HostMessage {
+  enum class What : char {
+    facts = 'f',    ///< agent: HostFacts
+    alive = '.',    ///< either: now and then
+    start = 's',    ///< coordinator: starts the worker of that number
+    message = 'm',  ///< either: a Message to or from a worker
+    kill = 'k',     ///< coordinator
+    ended = 'e',    ///< agent: WorkerEnd
+    leave = 'l',    ///< coordinator: ends the agent; its last word to it
+    gone = 'g',     ///< agent: it has heard so, and its workers are no more; its last word
+  };
+  What what = What::alive;
+  std::uint32_t worker = 0;
+  Message message = {};  ///< content: bytes of what it carries
+};
+
+std::string to_bytes(const HostMessage& message);
+std::string to_bytes(const HostFacts& facts);
+std::string to_bytes(const WorkerEnd& end);
+/// Throw std::runtime_error for other bytes. What a Message carries is not looked at.
+HostMessage host_message(const std::string& bytes);
+HostFacts host_facts(const std::string& bytes);
+WorkerEnd worker_end(const std::string& bytes);
+
+}  // namespace ricochet

@@ -1,0 +1,404 @@
+#include "runners/workers/isolated_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <initializer_list>
+#include <mutex>
+#include <optional>
+#include <ricochet/contract/errors.hpp>
+
+#include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/prepare_case.hpp"
+#include "runners/march/seconds.hpp"
+#include "runners/march/study_identity.hpp"
+#include "runners/workers/block_pool.hpp"
+#include "runners/workers/key_claims.hpp"
+#include "runners/workers/worker_messages.hpp"
+#include "runners/workers/worker_places.hpp"
+#include "runners/workers/worker_process.hpp"
+
+namespace ricochet {
+namespace {
+
+using Word = Message::Word;
+using Clock = std::chrono::steady_clock;
+
+constexpr double look_up = 0.25;        // s between two looks at `stop`
+constexpr double longest_silence = 60;  // s; a worker says every second that it is there
+constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
+constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
+constexpr int attempts = 2;
+
+std::string other_arithmetic(const std::string& host) {
+  return fmt::format(
+      "{} computes other last digits than this machine (another processor or C library): a study's results come from "
+      "one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
+      host);
+}
+
+/// A worker ended, or gave up.
+struct Lost {
+  WorkerEnd end;
+  std::optional<GivenUp> given_up;
+};
+
+/// What a worker said in the end, or how it was lost.
+struct Reply {
+  Message message;
+  std::optional<Lost> lost;
+};
+
+/// One that says what is no message is ended, and lost.
+Lost ended_for_nonsense(Worker& worker) {
+  worker.kill();
+  Lost lost{worker.end(), {}};
+  if (!lost.end.host_lost) lost.end.cause = "this program: what it said was no message";
+  return lost;
+}
+
+/// What a worker answered; nothing where it was lost, as it is where it says something else.
+template <class T>
+std::optional<T> answer_in(Reply& reply, std::initializer_list<Word> words, Worker& worker) {
+  if (reply.lost) return std::nullopt;
+  if (std::find(words.begin(), words.end(), reply.message.word) != words.end()) try {
+      return message_from<T>(reply.message.content);
+    } catch (const NoMessage&) {
+    }
+  reply.lost = ended_for_nonsense(worker);
+  return std::nullopt;
+}
+
+}  // namespace
+
+class IsolatedCases::Desk {
+ public:
+  Desk(const RunContext& context, const IsolationOptions& options)
+      : context_(context),
+        of_all_(StudyIdentity(context.study, context.registry).of_all()),
+        kind_(find_kind(context.study.kind)->start(context)),
+        places_(options.hosts.empty()
+                    ? std::vector<std::shared_ptr<WorkerHost>>{std::make_shared<LocalHost>(options.jobs)}
+                    : options.hosts),
+        pool_(places_.width(), [this](const BlockPool::Block& block, const std::function<bool()>& stopping) {
+          march(block, stopping);
+        }) {
+    opening_.study = context.study.resolved.dump();
+    for (const auto& plugin : options.plugins) opening_.plugins.push_back(std::filesystem::absolute(plugin).string());
+    opening_.width = places_.width();
+    opening_.arithmetic = arithmetic_digest();
+  }
+
+  /// A first worker is there, and what only shows where a study is opened has shown.
+  void open(MotionShelf shelf, const std::atomic<bool>& stop) {
+    shelf_ = std::move(shelf);
+    places_.give_back(take(Where::here, [&] { return stop.load(); }).member);
+  }
+
+  std::string crew() const {
+    const int workers = places_.width(), machines = places_.machines();
+    return fmt::format("{} worker{}{}", workers, workers == 1 ? "" : "s",
+                       machines > 1 ? fmt::format(" on {} machines", machines) : "");
+  }
+  int cases_at_once() const {
+    constexpr int held = 4;  // of each of its own workers: a case that waits for its blocks takes memory, not time
+    const int all = places_.width();
+    return kind_.block ? std::min(all, std::max(held * places_.width_here(), 2 * held)) : all;
+  }
+
+  bool times() const { return static_cast<bool>(kind_.time); }
+
+  CaseAnswer ask(Word word, const StudyCase& study_case, const std::atomic<bool>& stop) {
+    const Limit limit = limit_of(study_case);
+    const auto stopping = [&] { return stop.load(); };
+    // Each pending case was planned before the first one ran.
+    if (word == Word::plan) ++open_;
+    const OpenCase open(open_, word == Word::run);
+    for (int attempt = 1;;) {
+      const Taken taken = take(place_of(word), stopping);
+      Reply reply = talk_of_case(taken.member, {word, to_bytes(CaseOrder{study_case.id, limit.seconds, share()})},
+                                 study_case.id, stopping);
+      if (!reply.lost && reply.message.word == Word::interrupted) {
+        places_.give_back(taken.member);
+        throw Interrupted{};
+      }
+      if (auto answer = answer_in<CaseAnswer>(reply, {Word::planned, Word::ran, Word::timed}, *taken.member->worker)) {
+        places_.give_back(taken.member);
+        return std::move(*answer);
+      }
+      if (stop) throw Interrupted{};
+      if (reply.lost->end.host_lost) continue;
+      if (reply.lost->given_up && !limit.ours) throw std::runtime_error(over_budget(*reply.lost->given_up));
+      if (attempt++ < attempts) continue;
+      throw std::runtime_error(sentence(*reply.lost));
+    }
+  }
+
+ private:
+  using Where = WorkerPlaces::Where;
+  using Taken = WorkerPlaces::Taken;
+  using MemberPointer = WorkerPlaces::MemberPointer;
+
+  /// A case whose blocks others march keeps what they made, and waits: beside the store. What is timed is timed on one
+  /// machine.
+  Where place_of(Word word) const {
+    return word == Word::time || (word == Word::run && kind_.block) ? Where::here : Where::anywhere;
+  }
+
+  /// A case that runs is open until it has.
+  class OpenCase {
+   public:
+    OpenCase(std::atomic<int>& open, bool counts) : open_(open), counts_(counts) {}
+    ~OpenCase() {
+      if (counts_) --open_;
+    }
+    OpenCase(const OpenCase&) = delete;
+    OpenCase& operator=(const OpenCase&) = delete;
+
+   private:
+    std::atomic<int>& open_;
+    const bool counts_;
+  };
+
+  /// talk(), and what the worker claimed or began for its case is let go, however it ends.
+  Reply talk_of_case(const MemberPointer& member, Message order, const std::string& id,
+                     const std::function<bool()>& stopping) {
+    const auto let_go = [this](const MemberPointer* one) {
+      claims_.release((*one)->number);
+      pool_.forget((*one)->number);
+    };
+    const std::unique_ptr<const MemberPointer, decltype(let_go)> in_work(&member, let_go);
+    return talk(member, std::move(order), id, stopping, 2 * after_stop);
+  }
+
+  /// Workers for each case that is left.
+  int share() const {
+    const int width = places_.width();
+    return width / std::clamp(open_.load(), 1, width);
+  }
+
+  /// How long a call of a plugin's function may last for a case.
+  struct Limit {
+    double seconds = 0;
+    bool ours = false;  ///< the case has no budget
+  };
+  static Limit limit_of(const StudyCase& study_case) {
+    const double budget = budget_of(study_case);
+    return std::isfinite(budget) ? Limit{budget, false} : Limit{longest_call, true};
+  }
+
+  static std::string over_budget(const GivenUp& call) {
+    return fmt::format("plugin {} did not return from {}() within the budget of {:g} s", call.plugin, call.function,
+                       call.budget);
+  }
+
+  /// Has a block marched by a worker, for the one that asked.
+  void march(const BlockPool::Block& block, const std::function<bool()>& stopping) {
+    const auto tell = [&](BlockNews::What what, std::string content) {
+      block.tell(BlockNews{what, std::move(content)});
+    };
+    try {
+      BlockRequest request = block.request;
+      const StudyCase* const study_case = find_case(context_.study, request.id);
+      if (!study_case) throw std::runtime_error("a block of no case");
+      const Limit limit = limit_of(*study_case);
+      request.budget = limit.seconds;
+      Reply reply;
+      do {
+        const Taken taken = take(Where::anywhere, stopping);
+        reply = talk(taken.member, {Word::block, to_bytes(request)}, request.id, stopping, after_stop, block.tell);
+        if (auto news = answer_in<BlockNews>(reply, {Word::block_news}, *taken.member->worker)) {
+          places_.give_back(taken.member);
+          return block.tell(std::move(*news));
+        }
+      } while (reply.lost->end.host_lost && !stopping());
+      if (stopping()) return tell(BlockNews::What::interrupted, "");
+      if (reply.lost->given_up && !limit.ours)
+        return tell(BlockNews::What::gave_up, over_budget(*reply.lost->given_up));
+      tell(BlockNews::What::lost, sentence(*reply.lost));
+    } catch (const Interrupted&) {
+      tell(BlockNews::What::interrupted, "");
+    } catch (const std::exception& error) {
+      tell(BlockNews::What::failed, error.what());
+    }
+  }
+
+  static std::string sentence(const Lost& lost) {
+    if (lost.given_up)
+      return fmt::format("plugin {} did not return from {}() within {:g} s; its process was ended twice",
+                         lost.given_up->plugin, lost.given_up->function, lost.given_up->budget);
+    return lost.end.sentence("twice");
+  }
+
+  /// A worker that has opened the study.
+  Taken take(Where where, const std::function<bool()>& stopping) {
+    for (int attempt = 1;;) {
+      Taken taken = places_.take(where);
+      if (taken.member->worker) return taken;
+      const std::string name = taken.member->host->name();
+      taken.member->worker = taken.member->host->start();
+      WorkerStudy opening = opening_;
+      opening.memory = taken.member->host->memory();
+      Reply reply = talk(taken.member, {Word::study, to_bytes(opening)}, "", stopping, after_stop);
+      if (const auto ready = answer_in<WorkerReady>(reply, {Word::ready}, *taken.member->worker)) {
+        check(*ready, name);
+        return taken;
+      }
+      if (stopping()) throw Interrupted{};
+      if (reply.lost->end.host_lost) continue;
+      if (attempt++ == attempts)
+        throw std::runtime_error(
+            fmt::format("no worker on {} opens the study: {}", name, reply.lost->end.sentence("twice")));
+    }
+  }
+
+  void check(const WorkerReady& ready, const std::string& host) const {
+    if (!ready.failure.empty() && !ready.pointer.empty()) throw InputError(ready.pointer, ready.failure);
+    if (!ready.failure.empty())
+      throw std::runtime_error(fmt::format("a worker on {} did not open the study: {}", host, ready.failure));
+    if (ready.identity != of_all_)
+      throw std::runtime_error(
+          fmt::format("a worker on {} has another program or other plugins than this process", host));
+    if (ready.arithmetic != opening_.arithmetic) throw std::runtime_error(other_arithmetic(host));
+  }
+
+  /// Sends an order for a case and serves the worker until it is done with it. `patience`: s for coming back after
+  /// `stopping`.
+  Reply talk(const MemberPointer& member, Message order, const std::string& id, const std::function<bool()>& stopping,
+             double patience, const std::function<void(BlockNews)>& so_far = {}) {
+    order.about = 1;
+    Worker& worker = *member->worker;
+    Reply reply;
+    std::optional<GivenUp> given_up;
+    std::optional<Clock::time_point> told_to_stop;
+    Clock::time_point looked = Clock::now();
+    double quiet = 0;  // s, of those in which this process was not stopped itself
+    bool silent = false, waits = false;
+    // Which call of a plugin's function the worker waits for, "" for none.
+    const auto waiting = [&](const std::string& call) {
+      if (shelf_.waiting && (waits || !call.empty())) shelf_.waiting(id, call);
+      waits = !call.empty();
+    };
+    Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
+    while (state != Channel::Heard::gone) {
+      state = worker.receive(reply.message, look_up);
+      if (!told_to_stop && stopping()) {
+        told_to_stop = Clock::now();
+        worker.send({Word::stop});
+      }
+      if (told_to_stop && seconds_since(*told_to_stop) > patience) worker.kill();
+      quiet += std::min(seconds_since(looked), 2 * look_up);
+      looked = Clock::now();
+      if (state == Channel::Heard::silence) {
+        silent = quiet > longest_silence;
+        if (silent) worker.kill();
+      }
+      if (state != Channel::Heard::message) continue;
+      quiet = 0;
+      try {
+        if (reply.message.word == Word::given_up) {
+          given_up = message_from<GivenUp>(reply.message.content);
+        } else if (reply.message.word == Word::block_news) {
+          auto news = message_from<BlockNews>(reply.message.content);
+          if (news.what != BlockNews::What::so_far) return reply;
+          if (so_far) so_far(std::move(news));
+        } else if (reply.message.word == Word::alive) {
+          waiting(reply.message.content);
+        } else if (!serve(member, reply.message, stopping)) {
+          waiting("");
+          return reply;
+        }
+      } catch (const NoMessage&) {
+        reply.lost = ended_for_nonsense(worker);
+        return reply;
+      }
+    }
+    waiting("");
+    reply.lost = Lost{worker.end(), given_up};
+    reply.lost->end.silent = silent;
+    return reply;
+  }
+
+  /// Answers what a worker asks for; false where the message is what it was asked for.
+  bool serve(const MemberPointer& member, const Message& message, const std::function<bool()>& stopping) {
+    const auto answer = [&](std::string content) {
+      member->worker->send({Word::answer, std::move(content), message.about});
+    };
+    if (message.word == Word::find) {
+      answer(claims_.find(
+          member->number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stopping));
+    } else if (message.word == Word::keep) {
+      const auto kept = message_from<ShelfMessage>(message.content);
+      if (shelf_.keep) shelf_.keep(kept.key, kept.content);
+      claims_.kept(kept.key);
+      answer("");
+    } else if (message.word == Word::failed) {
+      answer(shelf_.failed && shelf_.failed(message.content) ? "failed" : "");
+    } else if (message.word == Word::show) {
+      CaseRecord record = message_from<CaseRecord>(message.content);
+      if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
+      if (shelf_.show) shelf_.show(record);
+    } else if (message.word == Word::march) {
+      pool_.begin({message_from<BlockRequest>(message.content), member->number, message.about,
+                   [this, member, about = message.about](BlockNews news) {
+                     news.share = share();
+                     member->worker->send({Word::block_news, to_bytes(news), about});
+                   }});
+    } else if (message.word == Word::cancel) {
+      pool_.stop(member->number, message.about);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  const RunContext context_;
+  const std::string of_all_;
+  const CaseRunner kind_;  // what this kind's cases are asked for; nothing of it runs here
+  WorkerStudy opening_;
+  MotionShelf shelf_;
+  KeyClaims claims_;
+  std::atomic<int> open_{0};  // cases that were planned and have not run to their end
+  WorkerPlaces places_;
+  BlockPool pool_;  // last: its threads use all of the above
+};
+
+IsolatedCases::IsolatedCases(const RunContext& context, const IsolationOptions& options)
+    : desk_(std::make_shared<Desk>(context, options)) {}
+IsolatedCases::~IsolatedCases() = default;
+
+std::string IsolatedCases::crew() const {
+  return desk_->crew();
+}
+
+int IsolatedCases::cases_at_once() const {
+  return desk_->cases_at_once();
+}
+
+CaseRunner IsolatedCases::runner() {
+  CaseRunner runner;
+  runner.open = [desk = desk_](MotionShelf shelf, const std::atomic<bool>& stop) {
+    desk->open(std::move(shelf), stop);
+  };
+  runner.run = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
+    return desk->ask(Word::run, study_case, stop).record;
+  };
+  if (desk_->times())
+    runner.time = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      const CaseAnswer answer = desk->ask(Word::time, study_case, stop);
+      if (!answer.error.empty()) throw std::runtime_error(answer.error);
+      return answer.found ? std::optional(TimedMarch{answer.seconds, answer.processor}) : std::nullopt;
+    };
+  return runner;
+}
+
+double IsolatedCases::predicted_seconds(const StudyCase& study_case) {
+  static const std::atomic<bool> never{false};
+  const CaseAnswer answer = desk_->ask(Word::plan, study_case, never);
+  if (!answer.error.empty()) throw std::runtime_error(answer.error);
+  return answer.seconds;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,121 @@
+#include "runners/workers/machines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ricochet/contract/errors.hpp>
+
+#include "runners/march/arithmetic_digest.hpp"
+#include "runners/store/fingerprint.hpp"
+#include "runners/workers/allowed_processors.hpp"
+#include "runners/workers/worker_process.hpp"
+
+namespace ricochet {
+namespace {
+
+std::string place(const HostFacts& one) {
+  return fmt::format("rank {} on {}", one.rank, one.name);
+}
+
+}  // namespace
+
+HostFacts facts_of_this_machine(int rank) {
+  HostFacts facts;
+  facts.rank = rank;
+  try {
+    facts.name = machine_name();
+    const AllowedProcessors processors = allowed_processors();
+    facts.processors = processors.count;
+    facts.online = processors.online;
+    facts.limit = processors.limit;
+    facts.memory = free_memory();
+    facts.program = program_hash();
+    facts.arithmetic = arithmetic_digest();
+  } catch (const std::exception& error) {
+    facts.failure = error.what();
+  }
+  return facts;
+}
+
+std::vector<int> workers_of(const std::vector<HostFacts>& machines) {
+  std::map<std::string, int> asked;
+  for (const HostFacts& one : machines) asked[one.name] += one.processors;
+  std::vector<int> workers;
+  for (const HostFacts& one : machines) {
+    const int all = asked[one.name];
+    workers.push_back(all <= one.online ? one.processors : std::max(1, one.processors * one.online / all));
+  }
+  return workers;
+}
+
+std::string objections(const std::vector<HostFacts>& machines) {
+  std::string text;
+  const HostFacts& own = machines.front();
+  for (const HostFacts& one : machines) {
+    if (!one.failure.empty())
+      text += fmt::format("{}: {}\n", place(one), one.failure);
+    else if (one.program != own.program)
+      text +=
+          fmt::format("{} has another program than {}: all ranks must start the same build\n", place(one), own.name);
+    else if (one.arithmetic != own.arithmetic)
+      text += fmt::format(
+          "{} computes other last digits than {} (another processor or C library): a study's results come from one "
+          "arithmetic; ask for nodes of one kind (Slurm: --constraint)\n",
+          place(one), own.name);
+  }
+  return text;
+}
+
+std::string oddities(const std::vector<HostFacts>& machines, const std::vector<int>& workers) {
+  std::map<std::string, int> together;
+  for (std::size_t i = 0; i < machines.size(); ++i) together[machines[i].name] += workers[i];
+  std::string text;
+  for (const HostFacts& one : machines)
+    if (one.processors < one.online && one.limit.find("affinity") != std::string::npos &&
+        together[one.name] < one.online)
+      text += fmt::format(
+          "{} may use {} of {} processors ({}); mpirun binds its ranks: start it with --bind-to none, one rank for "
+          "each "
+          "machine\n",
+          place(one), one.processors, one.online, one.limit);
+  return text;
+}
+
+std::string words_of(const std::vector<HostFacts>& machines, const std::vector<int>& workers) {
+  std::map<std::string, int> together;
+  std::vector<std::string> names;
+  int all = 0;
+  for (std::size_t i = 0; i < machines.size(); ++i) {
+    if (together.count(machines[i].name) == 0) names.push_back(machines[i].name);
+    together[machines[i].name] += workers[i];
+    all += workers[i];
+  }
+  constexpr std::size_t named = 6;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(named, names.size()); ++i)
+    list += fmt::format("{}{} {}", i == 0 ? "" : ", ", names[i], together[names[i]]);
+  if (names.size() > named) list += ", …";
+  return fmt::format("{} worker{} on {} machine{}, {} rank{}: {}", all, all == 1 ? "" : "s", names.size(),
+                     names.size() == 1 ? "" : "s", machines.size(), machines.size() == 1 ? "" : "s", list);
+}
+
+std::vector<std::shared_ptr<WorkerHost>> hosts_of(RemoteHosts& remote, const std::vector<HostFacts>& machines,
+                                                  int jobs) {
+  std::map<std::string, int> together;
+  const std::vector<int> found = workers_of(machines);
+  const auto width = [&](std::size_t i) { return jobs > 0 ? jobs : found[i]; };
+  for (std::size_t i = 0; i < machines.size(); ++i) together[machines[i].name] += width(i);
+  std::vector<std::shared_ptr<WorkerHost>> hosts;
+  for (std::size_t i = 0; i < machines.size(); ++i) {
+    const double memory = memory_for_each(machines[i].memory, together[machines[i].name]);
+    if (i == 0)
+      hosts.push_back(std::make_shared<LocalHost>(width(i), memory));
+    else
+      hosts.push_back(remote.host(machines[i].rank, width(i), memory));
+  }
+  return hosts;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,172 @@
+#include "runners/workers/worker_messages.hpp"
+
+#include <cereal/types/utility.hpp>
+
+#include "runners/march/bytes.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* message_mark = "message 2";
+
+}  // namespace
+
+template <class Archive>
+void save(Archive& archive, const Cell& cell) {
+  cell.visit([&](const auto& content) {
+    using Content = std::decay_t<decltype(content)>;
+    if constexpr (std::is_same_v<Content, std::monostate>)
+      archive('n');
+    else if constexpr (std::is_same_v<Content, bool>)
+      archive('b', content);
+    else if constexpr (std::is_same_v<Content, std::int64_t>)
+      archive('i', content);
+    else if constexpr (std::is_same_v<Content, double>)
+      archive('d', content);
+    else
+      archive('s', content);
+  });
+}
+
+template <class T, class Archive>
+Cell cell_of(Archive& archive) {
+  T content{};
+  archive(content);
+  return Cell(std::move(content));
+}
+
+template <class Archive>
+void load(Archive& archive, Cell& cell) {
+  char kind = 'n';
+  archive(kind);
+  if (kind == 'b') cell = cell_of<bool>(archive);
+  if (kind == 'i') cell = cell_of<std::int64_t>(archive);
+  if (kind == 'd') cell = cell_of<double>(archive);
+  if (kind == 's') cell = cell_of<std::string>(archive);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Column& column) {
+  archive(column.name, column.unit, column.text);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Table& table) {
+  archive(table.name, table.text, table.columns, table.rows);
+}
+
+template <class Archive>
+void save(Archive& archive, const Series& series) {
+  archive(series.get());
+}
+
+template <class Archive>
+void load(Archive& archive, Series& series) {
+  archive(series.own());
+}
+
+template <class Archive>
+void serialize(Archive& archive, NumberTable& table) {
+  archive(table.name, table.columns, table.values, table.words, table.exported, table.text);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Curve& curve) {
+  archive(curve.names, curve.columns);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CaseRecord& record) {
+  archive(record.id, record.status, record.reason, record.steps, record.setup_seconds, record.run_seconds,
+          record.measures, record.left_out, record.notes, record.operator_name, record.curve, record.tables,
+          record.numbers, record.partial);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WorkerStudy& message) {
+  archive(message.study, message.plugins, message.memory, message.width, message.arithmetic);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WorkerReady& message) {
+  archive(message.identity, message.arithmetic, message.failure, message.pointer);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CaseOrder& message) {
+  archive(message.id, message.budget, message.share);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockRequest& message) {
+  archive(message.id, message.order, message.budget);
+}
+
+template <class Archive>
+void serialize(Archive& archive, BlockNews& message) {
+  archive(message.what, message.content, message.share);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CaseAnswer& message) {
+  archive(message.record, message.seconds, message.processor, message.found, message.error, message.pointer);
+}
+
+template <class Archive>
+void serialize(Archive& archive, GivenUp& message) {
+  archive(message.plugin, message.function, message.budget);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ShelfMessage& message) {
+  archive(message.key, message.content);
+}
+
+std::string to_bytes(const WorkerStudy& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const WorkerReady& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const CaseOrder& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const BlockRequest& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const BlockNews& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const CaseAnswer& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const GivenUp& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const ShelfMessage& message) {
+  return packed(message, message_mark);
+}
+std::string to_bytes(const CaseRecord& record) {
+  return packed(record, message_mark);
+}
+
+template <class T>
+T message_from(const std::string& bytes) {
+  try {
+    return unpacked<T>(bytes, message_mark);
+  } catch (const std::exception& error) {
+    // A length that is wrong asks for more memory than there is.
+    throw NoMessage(error.what());
+  }
+}
+template WorkerStudy message_from(const std::string&);
+template WorkerReady message_from(const std::string&);
+template CaseOrder message_from(const std::string&);
+template BlockRequest message_from(const std::string&);
+template BlockNews message_from(const std::string&);
+template CaseAnswer message_from(const std::string&);
+template GivenUp message_from(const std::string&);
+template ShelfMessage message_from(const std::string&);
+template CaseRecord message_from(const std::string&);
+
+}  // namespace ricochet

@@ -1,0 +1,188 @@
+#include "runners/workers/worker_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ricochet/engine/available_memory.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "runners/workers/crash_record.hpp"
+#include "runners/workers/worker_environment.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t kept_of_stderr = 2000;
+
+[[noreturn]] void fail(const char* what) {
+  throw std::runtime_error(fmt::format("no worker process can be started: {}: {}", what, std::strerror(errno)));
+}
+
+std::string content_of_descriptor(int descriptor) {
+  std::string content;
+  std::array<char, 4096> part{};
+  ::lseek(descriptor, 0, SEEK_SET);
+  for (ssize_t got = 0; (got = ::read(descriptor, part.data(), part.size())) > 0;)
+    content.append(part.data(), static_cast<std::size_t>(got));
+  return content;
+}
+
+std::string ended_by(int status) {
+  if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
+  const int number = WTERMSIG(status);
+  return fmt::format("signal {} ({})", number, number == SIGKILL ? "killed" : ::strsignal(number));
+}
+
+}  // namespace
+
+std::string machine_name() {
+  std::array<char, 256> text{};
+  return ::gethostname(text.data(), text.size() - 1) == 0 ? text.data() : "?";
+}
+
+double free_memory() {
+  const double free = available_memory();
+  return std::isfinite(free) ? free : 0;
+}
+
+double memory_for_each(double free, int workers) {
+  constexpr double least = 2.0 * (1 << 30);
+  return free > 0 ? std::max(least, free / workers) : 0;
+}
+
+std::string WorkerEnd::sentence(const std::string& times) const {
+  std::string text;
+  const std::string often = times.empty() ? "" : " " + times;
+  if (!plugin.empty()) text += fmt::format("plugin {}, {}(): ", plugin, function);
+  text += silent ? fmt::format("its process did not answer any more and was killed{}", often)
+                 : fmt::format("its process was ended{} by {}", often, cause);
+  if (!last_lines.empty()) text += fmt::format("; it wrote: {}", last_lines);
+  return text;
+}
+
+WorkerProcess::WorkerProcess() {
+  std::array<int, 2> sockets{}, errors{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) fail("socketpair");
+  channel_ = std::make_unique<Channel>(sockets[0]);
+  if (::pipe2(errors.data(), O_CLOEXEC) != 0) {
+    ::close(sockets[1]);
+    fail("pipe");
+  }
+  crash_record_ = ::memfd_create("ricochet-crash", MFD_CLOEXEC);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  // Their numbers may be those that the worker expects: moved out of the way first.
+  constexpr int aside = 100;
+  ::posix_spawn_file_actions_adddup2(&actions, sockets[1], aside);
+  ::posix_spawn_file_actions_adddup2(&actions, crash_record_, aside + 1);
+  ::posix_spawn_file_actions_adddup2(&actions, errors[1], STDERR_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, aside, kWorkerChannel);
+  ::posix_spawn_file_actions_adddup2(&actions, aside + 1, kWorkerCrashRecord);
+  ::posix_spawn_file_actions_addclose(&actions, aside);
+  ::posix_spawn_file_actions_addclose(&actions, aside + 1);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  // A worker has nothing to say on stdout; what a plugin prints there joins its stderr.
+  ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  // Ctrl-C in a terminal is for this process, which tells its workers to stop.
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+  ::posix_spawnattr_setpgroup(&attributes, 0);
+  const sigset_t not_for_it = coordinator_signals();
+  ::posix_spawnattr_setsigmask(&attributes, &not_for_it);
+  std::string name = "ricochet", command = "worker";
+  std::array<char*, 3> arguments = {name.data(), command.data(), nullptr};
+  std::vector<std::string> variables = worker_environment();
+  std::vector<char*> environment;
+  for (std::string& one : variables) environment.push_back(one.data());
+  environment.push_back(nullptr);
+  const int error =
+      ::posix_spawn(&pid_, worker_program().c_str(), &actions, &attributes, arguments.data(), environment.data());
+  ::posix_spawn_file_actions_destroy(&actions);
+  ::posix_spawnattr_destroy(&attributes);
+  ::close(sockets[1]);
+  ::close(errors[1]);
+  if (error != 0) {
+    ::close(errors[0]);
+    ::close(crash_record_);
+    pid_ = -1;
+    ended_ = true;
+    errno = error;
+    fail(worker_program().c_str());
+  }
+  listener_ = std::thread([this, descriptor = errors[0]] { pass_on_stderr(descriptor); });
+}
+
+WorkerProcess::~WorkerProcess() {
+  if (!ended_) {
+    kill();
+    end();
+  }
+}
+
+void WorkerProcess::kill() {
+  const std::lock_guard guard(mutex_);
+  if (!ended_) ::kill(pid_, SIGKILL);
+}
+
+WorkerEnd WorkerProcess::end() {
+  WorkerEnd found;
+  int status = 0;
+  siginfo_t info{};
+  while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+  }
+  {
+    // From here on its number may be another process's.
+    const std::lock_guard guard(mutex_);
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    ended_ = true;
+  }
+  listener_.join();
+  found.cause = ended_by(status);
+  if (const auto crash = parse_crash_record(content_of_descriptor(crash_record_))) {
+    found.cause = crash->ended;
+    found.plugin = crash->plugin;
+    found.function = crash->function;
+  }
+  ::close(crash_record_);
+  const std::lock_guard guard(mutex_);
+  found.last_lines = last_lines_;
+  while (found.last_lines.ends_with('\n')) found.last_lines.pop_back();
+  std::replace(found.last_lines.begin(), found.last_lines.end(), '\n', '|');
+  return found;
+}
+
+void WorkerProcess::pass_on_stderr(int descriptor) {
+  std::array<char, 4096> part{};
+  for (ssize_t got = 0;;) {
+    got = ::read(descriptor, part.data(), part.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    const std::string_view text(part.data(), static_cast<std::size_t>(got));
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    const std::lock_guard guard(mutex_);
+    last_lines_ += text;
+    if (last_lines_.size() > kept_of_stderr) {
+      last_lines_.erase(0, last_lines_.size() - kept_of_stderr);
+      // Whole lines, where there are any.
+      if (const std::size_t line = last_lines_.find('\n'); line + 1 < last_lines_.size())
+        last_lines_.erase(0, line + 1);
+    }
+  }
+  ::close(descriptor);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,72 @@
+#pragma once
+#include <sys/types.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "runners/workers/worker.hpp"
+
+namespace ricochet {
+
+/// `ricochet worker` as a child of this process: the same program, with a channel to it. What it writes to stderr goes
+/// on to this process's, and its end is kept.
+class WorkerProcess : public Worker {
+ public:
+  /// Throws std::runtime_error where no process can be had.
+  WorkerProcess();
+  /// Ends it.
+  ~WorkerProcess() override;
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  bool send(const Message& message) override { return channel_->send(message); }
+  Channel::Heard receive(Message& message, double seconds) override { return channel_->receive(message, seconds); }
+  void kill() override;
+  WorkerEnd end() override;
+
+ private:
+  void pass_on_stderr(int descriptor);
+
+  pid_t pid_ = -1;
+  std::unique_ptr<Channel> channel_;
+  int crash_record_ = -1;  // a file without a name, which the worker writes when it crashes
+  std::thread listener_;
+  std::mutex mutex_;
+  std::string last_lines_;
+  bool ended_ = false;
+};
+
+/// The name of this machine, "?" where it has none.
+std::string machine_name();
+
+/// Bytes that its processes may still take; 0 where nobody says.
+double free_memory();
+
+/// The address space of each of so many workers where so much is free: an equal share, and never less than 2 GiB; 0 (no
+/// limit) where it is not known.
+double memory_for_each(double free, int workers);
+
+/// This machine.
+class LocalHost : public WorkerHost {
+ public:
+  /// `memory`: bytes of address space for each worker.
+  LocalHost(int width, double memory) : width_(width), memory_(memory) {}
+  explicit LocalHost(int width) : LocalHost(width, memory_for_each(free_memory(), width)) {}
+
+  std::string name() const override { return machine_name(); }
+  int width() const override { return width_; }
+  double memory() const override { return memory_; }
+  bool there() const override { return true; }
+  std::unique_ptr<Worker> start() override { return std::make_unique<WorkerProcess>(); }
+
+ private:
+  const int width_;
+  const double memory_;
+};
+
+/// Descriptors that a worker is born with.
+inline constexpr int kWorkerChannel = 3, kWorkerCrashRecord = 4;
+
+}  // namespace ricochet

@@ -1,0 +1,287 @@
+/// Cases in worker processes: the same results as in one process, whatever a plugin or a stranger does to the workers.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/runners/same_tables.hpp"
+#include "tests/runners/scratch_folder.hpp"
+#include "tests/runners/workers/quick_studies.hpp"
+
+using namespace quick_studies;
+using namespace same_tables;
+using Catch::Contains;
+using Catch::Matchers::Matches;
+namespace fs = std::filesystem;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
+struct Ended {
+  int code = 0;
+  std::string out, messages;
+};
+
+std::string command_line(const ScratchFolder& scratch, const Json& study, const std::string& out,
+                         const std::string& options) {
+  write_text(scratch / (out + ".json"), study.dump());
+  return "'" RICOCHET_COMMAND "' run '" + (scratch / (out + ".json")).string() + "' --jobs 2 --out '" +
+         (scratch / out).string() + "' " + options + " >'" + (scratch / "said").string() + "' 2>'" +
+         (scratch / "told").string() + "' </dev/null";
+}
+
+Ended run(const ScratchFolder& scratch, const Json& study, const std::string& out, const std::string& options) {
+  const int status = std::system(("RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, options)).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(scratch / "said"), read_text(scratch / "told")};
+}
+
+}  // namespace
+
+TEST_CASE("workers: every kind of study has in them the tables that it has in one process") {
+  const std::string kind =
+      GENERATE("trajectory", "convergence", "work-precision", "stability", "bifurcation", "basins");
+  CAPTURE(kind);
+  const ScratchFolder scratch;
+  const Json study = study_of(kind);
+  const Ended here = run(scratch, study, "here", "--inline");
+  INFO(here.messages);
+  REQUIRE(here.code == 0);
+  const Ended workers = run(scratch, study, "workers", "--isolate");
+  INFO(workers.messages);
+  CHECK(workers.code == 0);
+  check_same(scratch / "here", scratch / "workers", kind == "work-precision");
+}
+
+TEST_CASE("workers: an orbit that ends its process twice is a failed row with the reason, and no other row changes") {
+  const auto [how, cause] = GENERATE(table<std::string, std::string>({
+      {"segv", "solve\\(\\): its process was ended twice by signal 11 \\(segmentation fault\\); it wrote: too deep.*"},
+      {"abort", "solve\\(\\): its process was ended twice by signal 6 \\(abort\\); it wrote: too deep for me"},
+      {"exit", "its process was ended twice by exit code 7; it wrote: too deep for me"},
+      {"kill", "its process was ended twice by signal 9 \\(killed\\); it wrote: too deep for me"},
+      {"greedy",
+       "solve\\(\\): its process was ended twice by signal 6 \\(abort\\); it wrote: too deep for me\\|the memory.*"},
+  }));
+  CAPTURE(how);
+  // The sanitizer's own memory goes beyond any limit: workers have none under it.
+  if (how == "greedy" && sanitized) return;
+  const ScratchFolder scratch;
+  const std::string options = "--isolate --plugin '" RICOCHET_STUMBLING "'";
+  const Ended sound = run(scratch, stumbling("none", 7e-3), "sound", options);
+  INFO(sound.messages);
+  REQUIRE(sound.code == 0);
+  const Ended ended = run(scratch, stumbling(how, 7e-3), "ended", options);
+  INFO(ended.messages << ended.out);
+  CHECK(ended.code == 3);
+  CHECK_THAT(ended.out, Contains("the process of an orbit ended"));
+  const Rows before = rows_of(scratch / "sound/values.csv"), after = rows_of(scratch / "ended/values.csv");
+  REQUIRE(before.size() == after.size());
+  std::size_t failed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    std::map<std::string, std::string> was = before[i], is = after[i];
+    for (const char* column : {"case", "contact.how"}) was[column] = is[column];
+    if (is["status"] != "failed") {
+      CHECK(was == is);
+      continue;
+    }
+    ++failed;
+    CHECK(is["start"] == was["start"]);
+    CHECK_THAT(is["reason"], Matches("period [0-9]+: .*" + cause));
+  }
+  // Hard impacts are rare here: some orbits ended, most did not.
+  CHECK(failed > 0);
+  CHECK(failed < before.size() / 2);
+}
+
+TEST_CASE("workers: a case that ends its process twice is failed, and the others are done, in every run") {
+  const auto [how, cause] = GENERATE(table<std::string, std::string>({{"segv", "signal 11 (segmentation fault)"},
+                                                                      {"overflow", "signal 11 (segmentation fault)"},
+                                                                      {"leave", "a call of exit()"}}));
+  CAPTURE(how);
+  if (how == "overflow" && sanitized) return;
+  const ScratchFolder scratch;
+  Json study = study_of("trajectory");
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "beyond": 0}])");
+  study["methods"]["contact"][1]["how"] = how;
+  const Ended first = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  INFO(first.messages << first.out);
+  CHECK(first.code == 3);
+  const Rows rows = rows_of(scratch / "out/cases.csv");
+  REQUIRE(rows.size() == 4);
+  for (const auto& row : rows) {
+    const bool bad = row.at("contact") == "stumbles";
+    CHECK(row.at("status") == (bad ? "failed" : "done"));
+    if (bad)
+      CHECK_THAT(row.at("reason"),
+                 Contains("plugin contact 'stumbles'") && Contains("solve(): its process was ended twice by " + cause));
+  }
+  const Ended second = run(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  CHECK(second.code == 3);
+  CHECK_THAT(second.messages, Contains("0 to run"));
+}
+
+TEST_CASE("workers: a call that never returns costs its case the budget") {
+  const ScratchFolder scratch;
+  Json study = stumbling("sleep", 7e-3);
+  study["budget"] = 1;
+  const Ended ended = run(scratch, study, "out", "--isolate --plugin '" RICOCHET_STUMBLING "'");
+  INFO(ended.messages);
+  CHECK(ended.code == 3);
+  const Rows rows = rows_of(scratch / "out/cases.csv");
+  REQUIRE(rows.size() == 1);
+  CHECK_THAT(rows[0].at("reason"), Contains("did not return from solve() within the budget of 1 s"));
+}
+
+namespace {
+
+/// A run in a process of its own.
+class Running {
+ public:
+  Running(const ScratchFolder& scratch, const Json& study, const std::string& out,
+          const std::string& options = "--isolate")
+      : out_(scratch / out) {
+    const std::string line = "exec env RICOCHET_PLUGIN_PATH= " + command_line(scratch, study, out, options);
+    process_ = ::fork();
+    if (process_ != 0) return;
+    ::setpgid(0, 0);
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    ::_exit(127);
+  }
+  ~Running() {
+    if (process_ > 0) finish(SIGKILL);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  bool ended() { return process_ < 0 || ::waitpid(process_, &status_, WNOHANG) == process_; }
+  pid_t process() const { return process_; }
+  /// Its workers.
+  std::vector<pid_t> children() const {
+    std::istringstream text(
+        read_text("/proc/" + std::to_string(process_) + "/task/" + std::to_string(process_) + "/children"));
+    std::vector<pid_t> all;
+    for (pid_t one = 0; text >> one;) all.push_back(one);
+    // Those that threads of it began.
+    std::error_code gone;
+    for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process_) + "/task", gone)) {
+      std::istringstream more(read_text(thread.path() / "children"));
+      for (pid_t one = 0; more >> one;)
+        if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+    }
+    return all;
+  }
+  /// Sends a signal and waits; the exit code, or minus the signal.
+  int finish(int signal = 0) {
+    if (signal != 0) ::kill(process_, signal);
+    ::waitpid(process_, &status_, 0);
+    process_ = -1;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  }
+
+ private:
+  fs::path out_;
+  pid_t process_ = -1;
+  int status_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("workers: a call that never returns is told by case, plugin and function, and Ctrl-C ends the run") {
+  const ScratchFolder scratch;
+  Json study = study_of("trajectory");
+  study["methods"]["mass"] = "consistent";
+  study["methods"]["contact"] = Json::parse(R"(["signorini", {"name": "stumbles", "how": "sleep", "beyond": 0}])");
+  Running running(scratch, study, "out", "--plugin '" RICOCHET_STUMBLING "'");
+  constexpr int tries = 6000;
+  const auto told = [&] { return read_text(scratch / "told"); };
+  for (int i = 0; i < tries && told().find("solve() has not returned for") == std::string::npos; ++i) ::usleep(10000);
+  CHECK_THAT(told(), Contains("waiting for case") && Contains("plugin contact 'stumbles'"));
+  CHECK(running.finish(SIGINT) == 130);
+  CHECK_THAT(told(), Contains("interrupted: 2 of 4"));
+}
+
+TEST_CASE("workers: one that a stranger kills costs nothing but time") {
+  const ScratchFolder scratch;
+  const Json study = longer();
+  REQUIRE(run(scratch, study, "here", "--inline").code == 0);
+  for (int moment = 1; moment <= 4; ++moment) {
+    CAPTURE(moment);
+    const std::string out = "killed-" + std::to_string(moment);
+    Running running(scratch, study, out);
+    ::usleep(static_cast<useconds_t>(150000 * moment));
+    const std::vector<pid_t> children = running.children();
+    if (!children.empty()) ::kill(children[static_cast<std::size_t>(moment) % children.size()], SIGKILL);
+    CHECK(running.finish() == 0);
+    check_same(scratch / "here", scratch / out);
+  }
+}
+
+TEST_CASE("workers: a scheduler's warning reaches them as well, from their first moment on, and ends none of them") {
+  const int signal = GENERATE(SIGUSR1, SIGTERM, SIGINT, SIGHUP);
+  CAPTURE(signal);
+  const ScratchFolder scratch;
+  Running running(scratch, longer(), "out");
+  std::set<pid_t> warned;
+  constexpr int looks = 400;
+  for (int look = 0; look < looks && !running.ended(); look += warned.empty() ? 0 : 1) {
+    for (const pid_t one : running.children())
+      if (::kill(one, signal) == 0) warned.insert(one);
+    ::usleep(500);
+  }
+  REQUIRE_FALSE(running.ended());
+  ::usleep(50000);
+  // One that is lost would have another in its place.
+  for (const pid_t one : running.children()) warned.erase(one);
+  CHECK(warned.empty());
+  CHECK(running.finish() == 0);
+}
+
+TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, and leaves no worker behind") {
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGUSR1, SIGKILL);
+  CAPTURE(signal);
+  const ScratchFolder scratch;
+  const Json study = longer();
+  // For all signals once.
+  static const ScratchFolder undisturbed;
+  if (!fs::exists(undisturbed / "here")) REQUIRE(run(undisturbed, study, "here", "--inline").code == 0);
+  std::vector<pid_t> children;
+  {
+    Running running(scratch, study, "out");
+    // A busy machine takes its time to start workers; then they march for a while.
+    constexpr int tries = 3000;
+    for (int i = 0; i < tries && !running.ended() && running.children().empty(); ++i) ::usleep(10000);
+    ::usleep(600000);
+    REQUIRE_FALSE(running.ended());
+    children = running.children();
+    CHECK(running.finish(signal) == (signal == SIGKILL ? -SIGKILL : 130));
+  }
+  CHECK_FALSE(children.empty());
+  const auto any_left = [&] {
+    return std::any_of(children.begin(), children.end(), [](pid_t one) { return ::kill(one, 0) == 0; });
+  };
+  constexpr int tries = 500;
+  for (int i = 0; i < tries && any_left(); ++i) ::usleep(10000);
+  CHECK_FALSE(any_left());
+  const Ended again = run(scratch, study, "out", "--isolate");
+  INFO(again.messages);
+  CHECK(again.code == 0);
+  if (signal == SIGKILL)
+    CHECK_THAT(again.messages, Matches("[^]*an earlier run ended while .* under way: run again[^]*"));
+  check_same(undisturbed / "here", scratch / "out");
+  const Ended kept = run(scratch, study, "out", "--inline");
+  CHECK_THAT(kept.messages, Contains("0 to run"));
+}
