@@ -3,8 +3,8 @@
 #include <ostream>
 
 #include "runners/check/checks.hpp"
-#include "runners/check/found_methods.hpp"
 #include "runners/command/command.hpp"
+#include "runners/command/found_methods.hpp"
 #include "runners/command/subcommand.hpp"
 
 namespace ricochet {

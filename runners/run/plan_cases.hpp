@@ -4,7 +4,7 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
 
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/study/study.hpp"
 #include "runners/study/study_part.hpp"
 #include "runners/workers/worker.hpp"

@@ -1,5 +1,6 @@
 #include "runners/kinds/basins/basins.hpp"
 
+#include "runners/kinds/basins/basin_tables.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/basins/point.hpp"
 #include "runners/kinds/basins/run_basins.hpp"
@@ -32,7 +33,7 @@ std::vector<Field> basins_keys() {
 }  // namespace
 
 Kind basins_kind() {
-  Kind kind = sweep_kind(run_basins);
+  Kind kind = sweep_kind(run_basins, dynamics::derive_basins);
   kind.format.name = "basins";
   kind.format.text = "Each case goes through a grid of two parameters: where the orbit of each cell ends.";
   kind.format.keys = basins_keys();

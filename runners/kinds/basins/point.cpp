@@ -7,7 +7,7 @@
 #include <functional>
 #include <iostream>
 
-#include "runners/kinds/basins/cell_ends.hpp"
+#include "runners/kinds/basins/march_cell.hpp"
 #include "runners/kinds/sweep/stored_case.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 

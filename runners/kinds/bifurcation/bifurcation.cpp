@@ -4,6 +4,7 @@
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/bifurcation/point.hpp"
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include "runners/kinds/sweep/dynamics_tables.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
 #include "runners/kinds/sweep/sweep_keys.hpp"
 #include "runners/study/fields.hpp"
@@ -45,7 +46,7 @@ std::vector<Field> bifurcation_keys() {
 }  // namespace
 
 Kind bifurcation_kind() {
-  Kind kind = sweep_kind(run_bifurcation);
+  Kind kind = sweep_kind(run_bifurcation, derive_dynamics);
   kind.format.name = "bifurcation";
   kind.format.text = "Each case goes through a parameter: sections, classes and exponents of its orbits.";
   kind.format.keys = bifurcation_keys();

@@ -1,5 +1,10 @@
 #pragma once
-#include "runners/kinds/trajectory/run_case.hpp"
+#include <atomic>
+#include <ricochet/contract/registry.hpp>
+
+#include "runners/march/case_plan.hpp"
+#include "runners/store/record.hpp"
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 

@@ -1,6 +1,5 @@
 #include "runners/kinds/sweep/dynamics_tables.hpp"
 
-#include "runners/kinds/basins/basin_tables.hpp"
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/store/record_values.hpp"
@@ -38,16 +37,11 @@ Table bifurcations_table(const StudyDiagram& study) {
 
 }  // namespace
 
-bool has_dynamics(const StudyResults& results) {
-  return results.kind == "bifurcation" || results.kind == "basins";
-}
-
 bool derived_as_dynamics(const std::string& table) {
   return table == "values" || table == "bifurcations" || table == "cells";
 }
 
 void derive_dynamics(StudyResults& results) {
-  if (results.kind == "basins") return derive_basins(results);
   StudyDiagram study = read_diagram(results);
   if (study.sources.empty()) return;
   Table distances = find_attractors(study);

@@ -21,12 +21,11 @@
 /// are one attractor.
 namespace ricochet {
 
-/// Whether the study's cases leave sections: kinds `bifurcation` and `basins`.
-bool has_dynamics(const StudyResults& results);
-/// Whether a table of the cases is among those that derive_dynamics() collects.
+/// Whether a table of the cases is among those that are collected.
 bool derived_as_dynamics(const std::string& table);
 
-/// Appends the tables above to results.derived; an unfinished study has partial ones. Failed values make no attractor.
+/// Appends the tables of a bifurcation diagram to results.derived; an unfinished study has partial ones. Failed values
+/// make no attractor.
 void derive_dynamics(StudyResults& results);
 
 }  // namespace ricochet

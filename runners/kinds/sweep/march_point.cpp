@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
-#include "runners/kinds/sweep/orbit_scheduler.hpp"
 #include "runners/kinds/sweep/tip_march.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
@@ -36,7 +34,8 @@ class PointScenes {
   ForcedScenes scenes_;
 };
 
-// Marches an orbit on from where its kept periods began, sample by sample.
+}  // namespace
+
 void march_on(const ForcedScenes& scenes, int scene, const Orbit& orbit, const SectionPlan& plan, SampleCount count,
               const std::function<void(const PointSample&)>& use) {
   TipMarch tips(scenes.program(scenes[scene].group, {orbit.lane}), {&orbit}, plan);
@@ -54,8 +53,6 @@ void march_on(const ForcedScenes& scenes, int scene, const Orbit& orbit, const S
   }
 }
 
-}  // namespace
-
 void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
                  const std::function<void(const PointSample&)>& use) {
   PointScenes made(study_case, registry);
@@ -66,27 +63,6 @@ void march_point(const StudyCase& study_case, const Registry& registry, const Po
   orbit.lane = found.lane;
   orbit.entry = task.entry;
   march_on(made.scenes(), scene, orbit, section_plan(study_case, made.scenes()), task.count, use);
-}
-
-CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
-                   const std::function<void(const PointSample&)>& use) {
-  CellScenes made(study_case, registry);
-  made.begin();
-  CellScenes::Prepared prepared = made.prepare(cell.column, cell.row);
-  if (!prepared.refusal.empty()) return refused_end(prepared.refusal);
-  const ForcedScenes& scenes = made.scenes();
-  ScheduleOptions options;
-  options.section = section_plan(study_case, scenes);
-  OrbitScheduler scheduler(scenes, options);
-  const int number = scheduler.add(std::move(prepared.task));
-  const std::atomic<bool> stop = false;
-  scheduler.run(stop, [](const MarchedOrbits&) {});
-  const Orbit& orbit = scheduler.orbit(number);
-  Orbit ended = orbit;
-  keep_end(ended, options.section);
-  const CellEnd end = cell_end(ended);
-  if (end.status == "done") march_on(scenes, scheduler.task(number).scene, orbit, options.section, count, use);
-  return end;
 }
 
 }  // namespace ricochet

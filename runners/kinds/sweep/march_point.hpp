@@ -4,7 +4,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <string>
 
-#include "runners/kinds/basins/cell_ends.hpp"
+#include "runners/kinds/sweep/forced_scenes.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
@@ -35,14 +35,8 @@ struct PointSample {
 void march_point(const StudyCase& study_case, const Registry& registry, const PointTask& task,
                  const std::function<void(const PointSample&)>& use);
 
-/// A cell of a case of kind `basins`, by its places on the axes.
-struct CellPlace {
-  std::size_t column = 0, row = 0;
-};
-
-/// Marches the orbit of a cell from its initial state to its end, with the bits of a run that marches it; then hands
-/// over samples of the kept periods, as march_point() does. A cell that is refused or stops hands over none.
-CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
-                   const std::function<void(const PointSample&)>& use);
+/// Marches an orbit of this scene on from where its kept periods began, sample by sample.
+void march_on(const ForcedScenes& scenes, int scene, const Orbit& orbit, const SectionPlan& plan, SampleCount count,
+              const std::function<void(const PointSample&)>& use);
 
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/kinds/sweep/distributed_exponents.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {

@@ -4,7 +4,6 @@
 #include <ricochet/measure/orbits/judge_orbit.hpp>
 
 #include "runners/kinds/sweep/distributed_orbits.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/march/case_plan.hpp"
 #include "runners/march/seconds.hpp"
 

@@ -16,7 +16,7 @@
 
 namespace ricochet {
 
-Kind sweep_kind(RunSweep run) {
+Kind sweep_kind(RunSweep run, DeriveTables derive) {
   Kind kind;
   kind.format.settings = sweep_settings;
   kind.format.check_methods = check_sweep;
@@ -42,11 +42,11 @@ Kind sweep_kind(RunSweep run) {
                        const std::atomic<bool>& stop) { return marcher->march(study_case, order, so_far, stop); };
     return runner;
   };
-  kind.tables = [](StudyResults& results) {
+  kind.tables = [derive](StudyResults& results) {
     const SweptColumns swept = swept_columns(results);
     for (CaseRecord& record : results.cases) describe_sweep(record, swept);
     collect_tables(results, derived_as_dynamics);
-    derive_dynamics(results);
+    derive(results);
   };
   kind.alone = single_study;
   kind.contradiction = [](const CaseRecord& record) {

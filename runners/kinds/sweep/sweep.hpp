@@ -8,9 +8,12 @@ namespace ricochet {
 /// A case of a sweep, with the desk at which it keeps what would be lost if it were killed.
 using RunSweep = CaseRecord (*)(const StudyCase&, const Registry&, const CaseDesk&, const std::atomic<bool>& stop);
 
+/// Appends the tables that follow from the cases to results.derived.
+using DeriveTables = void (*)(StudyResults&);
+
 /// Format, runner, tables and study-of-one-case of a kind that goes through a parameter; name, text, keys, plan,
 /// measures and point are its own.
-Kind sweep_kind(RunSweep run);
+Kind sweep_kind(RunSweep run, DeriveTables derive);
 
 /// The measures of orbits.
 std::vector<MeasureInfo> orbit_measures();

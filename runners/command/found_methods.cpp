@@ -1,4 +1,4 @@
-#include "runners/check/found_methods.hpp"
+#include "runners/command/found_methods.hpp"
 
 #include "runners/command/subcommand.hpp"
 #include "runners/study/check_object.hpp"
