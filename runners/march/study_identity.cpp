@@ -8,7 +8,6 @@ std::vector<std::filesystem::path> libraries_of(const StudyCase& study_case, con
 }
 
 std::string StudyIdentity::of(const StudyCase& study_case) {
-  const std::lock_guard guard(mutex_);
   return fingerprints_.of(study_case, libraries_of(study_case, registry_));
 }
 

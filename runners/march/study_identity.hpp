@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <mutex>
 #include <ricochet/contract/registry.hpp>
 #include <string>
 #include <vector>
@@ -10,8 +9,8 @@
 
 namespace ricochet {
 
-/// What tells the cases of a study, and everything that their bits depend on, from others. May be asked by several
-/// threads; each library is read and hashed once.
+/// What tells the cases of a study, and everything that their bits depend on, from others. Each library is read and
+/// hashed once.
 class StudyIdentity {
  public:
   StudyIdentity(const Study& study, const Registry& registry)
@@ -25,7 +24,6 @@ class StudyIdentity {
  private:
   const Study& study_;
   const Registry& registry_;
-  std::mutex mutex_;
   Fingerprints fingerprints_;
 };
 

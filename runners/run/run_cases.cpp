@@ -1,12 +1,8 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <ricochet/contract/errors.hpp>
 #include <thread>
 
-#include "runners/march/prepare_case.hpp"
 #include "runners/run/alike_cases.hpp"
 #include "runners/run/study_runner.hpp"
 #include "runners/table/in_order_met.hpp"

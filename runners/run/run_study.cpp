@@ -1,6 +1,6 @@
 #include "runners/run/run_study.hpp"
 
-#include <map>
+#include <atomic>
 #include <optional>
 
 #include "runners/kinds/kind.hpp"
@@ -8,7 +8,6 @@
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
-#include "runners/run/alike_cases.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/merge_folders.hpp"
 #include "runners/run/study_runner.hpp"
@@ -26,20 +25,26 @@ constexpr double short_run = 1;          // s
 constexpr double of_each_case = 1.6e-3;  // s for its row, its curve, its share of tables and page
 
 /// Whether all cases together are predicted to take less than a second. References are not foreseen.
-bool is_short(const Study& study, const Registry& registry) {
-  const Kind& kind = *find_kind(study.kind);
-  if (kind.beside) return false;
-  const double begun = thread_seconds();
+bool is_short(const Study& study, const StudyRunner& here) {
+  if (find_kind(study.kind)->beside) return false;
   double seconds = of_each_case * static_cast<double>(study.cases.size());
-  std::map<std::string, double> known;  // of cases that cost the same
-  for (const StudyCase& one : study.cases) {
-    if (seconds + thread_seconds() - begun > short_run) return false;
-    if (one.excluded) continue;
-    const auto [found, fresh] = known.try_emplace(cost_key(one), 0);
-    if (fresh) found->second = kind.plan(one, registry).predicted_seconds;
-    seconds += found->second;
-  }
-  return seconds < short_run;
+  if (seconds >= short_run) return false;
+  std::atomic<bool> long_enough{false};
+  const double begun = thread_seconds();
+  double planned = 0;  // one case of those that cost the same
+  StudyRunner planner;
+  planner.plan = [&](const StudyCase& one) {
+    CasePlan plan = here.plan(one);
+    planned += plan.predicted_seconds;
+    if (seconds + planned + thread_seconds() - begun >= short_run) long_enough = true;
+    return plan;
+  };
+  std::vector<PendingCase> cases;
+  for (const StudyCase& one : study.cases)
+    if (!one.excluded) cases.push_back({&one, 0, ""});
+  predict_cases(planner, cases, 1, long_enough);
+  for (const PendingCase& one : cases) seconds += one.predicted_seconds;
+  return !long_enough && seconds < short_run;
 }
 
 }  // namespace
@@ -55,11 +60,11 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
   const RunContext context{study, registry, [&](const StudyCase& one) { return identity.of(one); }};
   RunOptions shared = options;
   std::optional<IsolatedCases> workers;
+  runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
   if (options.where == RunOptions::Where::here ||
-      (options.where == RunOptions::Where::here_if_short && is_short(study, registry))) {
+      (options.where == RunOptions::Where::here_if_short && is_short(study, runner))) {
     shared.jobs = 1;
     runner.cases = find_kind(study.kind)->start(context);
-    runner.plan = [&](const StudyCase& study_case) { return plan_for(study.kind, study_case, registry); };
   } else {
     const int jobs = options.jobs > 0 ? options.jobs : allowed_processors().count;
     workers.emplace(context, IsolationOptions{jobs, options.plugins, options.hosts});

@@ -64,7 +64,7 @@ class FolderRun {
     StudyResults header = results_header(study_);
     header.expected_cases = static_cast<int>(cases_.size());
     header.part = part_;
-    kept_ = settled_ = store_.begin(header, expected(), runner_.arithmetic);
+    kept_ = store_.begin(header, expected(), runner_.arithmetic);
     say(runner_.messages, versions_text(store_));
     take_over();
     announce();
@@ -109,7 +109,7 @@ class FolderRun {
     failed_ = store_.failed();
     std::vector<std::string> left = store_.left_under_way();
     std::erase_if(left, [&](const std::string& id) {
-      return settled_.count(id) != 0 ||
+      return kept_.count(id) != 0 ||
              std::none_of(cases_.begin(), cases_.end(), [&](const StudyCase* one) { return one->id == id; });
     });
     if (!left.empty())
@@ -122,7 +122,7 @@ class FolderRun {
   void announce() {
     std::vector<std::string> ids;
     for (const StudyCase* one : cases_)
-      if (!one->excluded && settled_.count(one->id) == 0) ids.push_back(one->id);
+      if (!one->excluded && kept_.count(one->id) == 0) ids.push_back(one->id);
     if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
   }
 
@@ -152,7 +152,7 @@ class FolderRun {
   bool run_missing() {
     std::vector<CaseRecord> excluded;
     std::vector<PendingCase> pending;
-    fresh_.merge(find_missing(cases_, fingerprints_, settled_, excluded, pending));
+    fresh_.merge(find_missing(cases_, fingerprints_, kept_, excluded, pending));
     if (!fresh_.empty()) {
       const Environment now = runner_.environment();
       store_.save_environment(kept_.empty() ? now : merge_environments(now, store_.load().environment));
@@ -161,7 +161,7 @@ class FolderRun {
     const std::size_t running = pending.size();
     tell(fmt::format("{}{}: {} case{}, {} finished before, {} to run{}", study_.name,
                      part_.whole() ? "" : ", " + part_.text(), cases_.size(), cases_.size() == 1 ? "" : "s",
-                     settled_.size(), running, running > 0 ? " " + workers() : ""));
+                     kept_.size(), running, running > 0 ? " " + workers() : ""));
     if (running == 0) return true;
     store_.save_progress("planning, " + workers());
     if (part_.whole())
@@ -173,6 +173,22 @@ class FolderRun {
   }
 
   std::string workers() const { return runner_.workers.empty() ? "in this process" : "on " + runner_.workers; }
+
+  /// While it lives, the progress line names the calls that cases wait for.
+  class WaitingTold {
+   public:
+    WaitingTold(FolderRun& run, Progress& progress) : run_(run) { show(&progress); }
+    ~WaitingTold() { show(nullptr); }
+    WaitingTold(const WaitingTold&) = delete;
+    WaitingTold& operator=(const WaitingTold&) = delete;
+
+   private:
+    void show(Progress* progress) {
+      const std::lock_guard guard(run_.waiting_mutex_);
+      run_.progress_ = progress;
+    }
+    FolderRun& run_;
+  };
 
   bool run_pending(std::vector<PendingCase> pending) {
     const int running = static_cast<int>(pending.size());
@@ -197,12 +213,7 @@ class FolderRun {
       progress.finished(record.id);
       if (next) progress.started(next->study_case->id, next->predicted_seconds);
     };
-    const auto shown = [&](Progress* one) {
-      const std::lock_guard guard(waiting_mutex_);
-      progress_ = one;
-    };
-    const auto hide = [&](Progress*) { shown(nullptr); };
-    const std::unique_ptr<Progress, decltype(hide)> told((shown(&progress), &progress), hide);
+    const WaitingTold told(*this, progress);
     return run_cases(runner_, std::move(pending), jobs_, stop_, events) == running;
   }
 
@@ -243,7 +254,7 @@ class FolderRun {
   std::vector<const StudyCase*> cases_;  // of this run
   std::map<std::string, std::string> fingerprints_;
   std::map<std::string, double> predicted_;  // seconds, where cases were dealt
-  std::set<std::string> kept_, settled_;     // rows that were there; and those that need no run any more
+  std::set<std::string> kept_;               // rows that were there
   std::set<std::string> fresh_;              // rows that this run made
   std::mutex failed_mutex_;
   std::set<std::string> failed_;

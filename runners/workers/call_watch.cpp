@@ -37,39 +37,30 @@ struct CallWatch::Answer {
   char role[32] = {}, function[32] = {}, name[256] = {}, file[1024] = {};
 };
 
-namespace {
-
-std::atomic<void (*)()> reply{nullptr};
-
-extern "C" void on_question(int) {
+void CallWatch::on_question(int) {
   const int error = errno;
-  if (auto* const answer = reply.load(std::memory_order_acquire)) answer();
+  Answer* const answer = asked_.load(std::memory_order_acquire);
+  // A signal that a stranger sends is no question.
+  if (!answer || answer->asked.load(std::memory_order_acquire) == answer->answered.load(std::memory_order_relaxed))
+    return;
+  const PluginCall call = *answer->call;
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  answer->processor_seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  answer->serial = call.plugin ? call.serial : 0;
+  if (call.plugin) {
+    copy(call.plugin->role.c_str(), answer->role, sizeof answer->role);
+    copy(call.plugin->name.c_str(), answer->name, sizeof answer->name);
+    copy(call.plugin->file.c_str(), answer->file, sizeof answer->file);
+    copy(call.function, answer->function, sizeof answer->function);
+  }
+  answer->answered.fetch_add(1, std::memory_order_release);
   errno = error;
 }
 
-}  // namespace
-
 CallWatch::CallWatch() : answer_(std::make_unique<Answer>()), thread_(::pthread_self()) {
-  static Answer* mine = nullptr;
   answer_->call = &current_plugin_call();
-  mine = answer_.get();
-  reply = [] {
-    Answer& answer = *mine;
-    // A signal that a stranger sends is no question.
-    if (answer.asked.load(std::memory_order_acquire) == answer.answered.load(std::memory_order_relaxed)) return;
-    const PluginCall call = *answer.call;
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    answer.processor_seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    answer.serial = call.plugin ? call.serial : 0;
-    if (call.plugin) {
-      copy(call.plugin->role.c_str(), answer.role, sizeof answer.role);
-      copy(call.plugin->name.c_str(), answer.name, sizeof answer.name);
-      copy(call.plugin->file.c_str(), answer.file, sizeof answer.file);
-      copy(call.function, answer.function, sizeof answer.function);
-    }
-    answer.answered.fetch_add(1, std::memory_order_release);
-  };
+  asked_ = answer_.get();
   struct sigaction action {};
   action.sa_handler = on_question;
   action.sa_flags = SA_RESTART | SA_ONSTACK;
@@ -77,14 +68,25 @@ CallWatch::CallWatch() : answer_(std::make_unique<Answer>()), thread_(::pthread_
 }
 
 CallWatch::~CallWatch() {
-  reply = nullptr;
+  asked_ = nullptr;
+}
+
+bool CallWatch::answered() const {
+  return answer_->answered.load(std::memory_order_acquire) == answer_->asked.load(std::memory_order_relaxed);
+}
+
+void CallWatch::note_answer() {
+  processor_ = answer_->processor_seconds;
+  if (answer_->serial == serial_) return;
+  serial_ = answer_->serial;
+  const PluginIdentity plugin{answer_->role, answer_->name, answer_->file};
+  call_ = {.role = plugin.role, .plugin = plugin.text(), .function = answer_->function};
+  seen_ = std::chrono::steady_clock::now();
+  processor_then_ = processor_;
 }
 
 std::optional<LongCall> CallWatch::look() {
   using std::chrono::steady_clock;
-  const auto answered = [&] {
-    return answer_->answered.load(std::memory_order_acquire) == answer_->asked.load(std::memory_order_relaxed);
-  };
   // A thread that still owes an answer is not asked again: it may be writing it.
   if (answered()) {
     answer_->asked.fetch_add(1, std::memory_order_release);
@@ -92,19 +94,11 @@ std::optional<LongCall> CallWatch::look() {
   }
   const auto late = steady_clock::now() + std::chrono::milliseconds(50);
   while (!answered() && steady_clock::now() < late) std::this_thread::sleep_for(std::chrono::microseconds(200));
-  if (!answered() || answer_->serial == 0) return std::nullopt;
-  if (answer_->serial != serial_) {
-    serial_ = answer_->serial;
-    seen_ = steady_clock::now();
-    processor_ = answer_->processor_seconds;
-  }
-  LongCall call;
-  const PluginIdentity plugin{answer_->role, answer_->name, answer_->file};
-  call.role = plugin.role;
-  call.plugin = plugin.text();
-  call.function = answer_->function;
+  if (answered()) note_answer();
+  if (serial_ == 0) return std::nullopt;
+  LongCall call = call_;
   call.seconds = seconds_since(seen_);
-  call.counted_seconds = std::max(answer_->processor_seconds - processor_, asleep_share * call.seconds);
+  call.counted_seconds = std::max(processor_ - processor_then_, asleep_share * call.seconds);
   return call;
 }
 

@@ -32,12 +32,18 @@ class CallWatch {
 
  private:
   struct Answer;
+  static void on_question(int);
+  bool answered() const;
+  void note_answer();
 
+  static inline std::atomic<Answer*> asked_{nullptr};
   const std::unique_ptr<Answer> answer_;
   const pthread_t thread_;
+  // Of the call that the last answer named; serial 0: none.
   unsigned long long serial_ = 0;
+  LongCall call_;
   std::chrono::steady_clock::time_point seen_;
-  double processor_ = 0;  // of the thread, when the call was first seen
+  double processor_ = 0, processor_then_ = 0;  // of the thread, at the last answer and when the call was first seen
 };
 
 /// Room for this thread's signal handlers where its own stack has run out.

@@ -242,7 +242,10 @@ class WorkerService : public BlockService {
     } else if (word == Word::time) {
       const auto timed = cases_.time(study_case, stop_);
       answer.found = timed.has_value();
-      if (timed) answer.seconds = timed->marching, answer.processor = timed->processor;
+      if (timed) {
+        answer.seconds = timed->marching;
+        answer.processor = timed->processor;
+      }
     } else {
       answer.record = run_guarded(cases_, study_case, stop_);
     }

@@ -13,7 +13,7 @@ namespace ricochet {
 /// How a set of orbits is marched.
 struct ScheduleOptions {
   SectionPlan section;
-  int lanes = 8;                 ///< most lanes of a block
+  int lanes = 8;  ///< most lanes of a block
   /// Where no orbit is ready any more, so many or fewer that still run are left as they are: somebody marches them in
   /// company.
   int leave = 0;
@@ -37,7 +37,8 @@ class OrbitScheduler {
 
   /// Takes back what an interrupted run had marched.
   void restore(MarchedOrbits marched) { queue_.restore(std::move(marched)); }
-  /// Marches everything that is not finished. `checkpoint` is called now and then with what is new since the last call. Throws Interrupted when `stop` becomes true (after a last checkpoint).
+  /// Marches everything that is not finished. `checkpoint` is called now and then with what is new since the last call.
+  /// Throws Interrupted when `stop` becomes true (after a last checkpoint).
   void run(const std::atomic<bool>& stop, const std::function<void(const MarchedOrbits&)>& checkpoint);
 
   /// The orbit of a finished task; stage complete or stopped.
@@ -64,7 +65,7 @@ class OrbitScheduler {
   double seconds_ = 0;
   long long lane_periods_ = 0;
   bool over_budget_ = false;
-  double counted_ = 0;                   // processor time of this thread that has been told
+  double counted_ = 0;                     // processor time of this thread that has been told
   Clock::time_point last_ = Clock::now();  // of a checkpoint
 };
 

@@ -13,6 +13,8 @@
 #include <set>
 #include <sstream>
 
+#include "runners/store/read_status.hpp"
+#include "runners/store/store_error.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/workers/quick_studies.hpp"
@@ -198,6 +200,16 @@ class Running {
   int status_ = 0;
 };
 
+/// Whether the store of a run tells that a case is marched.
+bool marches(const fs::path& folder) {
+  try {
+    const std::vector<ricochet::RunStatus::UnderWay> cases = ricochet::read_status(folder).under_way;
+    return std::any_of(cases.begin(), cases.end(), [](const auto& one) { return one.stage == "run"; });
+  } catch (const ricochet::StoreError&) {
+    return false;  // not yet there
+  }
+}
+
 }  // namespace
 
 TEST_CASE("workers: a call that never returns is told by case, plugin and function, and Ctrl-C ends the run") {
@@ -261,10 +273,9 @@ TEST_CASE("workers: a run that is stopped or killed goes on to the same tables, 
   std::vector<pid_t> children;
   {
     Running running(scratch, study, "out");
-    // A busy machine takes its time to start workers; then they march for a while.
-    constexpr int tries = 3000;
-    for (int i = 0; i < tries && !running.ended() && running.children().empty(); ++i) ::usleep(10000);
-    ::usleep(600000);
+    // A busy machine takes its time until workers march.
+    constexpr int tries = 6000;
+    for (int i = 0; i < tries && !running.ended() && !marches(scratch / "out"); ++i) ::usleep(10000);
     REQUIRE_FALSE(running.ended());
     children = running.children();
     CHECK(running.finish(signal) == (signal == SIGKILL ? -SIGKILL : 130));
