@@ -34,41 +34,23 @@ std::string apart(const std::string& before, const std::string& column, const st
 
 }  // namespace
 
+std::string shown_unit(const std::string& unit) {
+  return unit == "1" ? "" : unit;
+}
+
 std::string with_unit(const Quantity& quantity) {
-  return quantity.unit.empty() || quantity.unit == "1" ? quantity.name : quantity.name + " (" + quantity.unit + ")";
+  const std::string unit = shown_unit(quantity.unit);
+  return unit.empty() ? quantity.name : quantity.name + " (" + unit + ")";
 }
 
 std::string role_of(std::string_view column) {
   return axis_role(std::string(column));
 }
 
-std::string axis_unit(std::string_view column) {
-  static const std::map<std::string_view, std::string> units = {{"step", "s"},
-                                                                {"duration", "s"},
-                                                                {"support.amplitude", "m"},
-                                                                {"support.pulsation", "rad/s"},
-                                                                {"support.phase", "rad"},
-                                                                {"structure.length", "m"},
-                                                                {"structure.young", "Pa"},
-                                                                {"structure.density", "kg/m³"},
-                                                                {"structure.damping.stiffness", "s"},
-                                                                {"structure.damping.mass", "1/s"},
-                                                                {"structure.section.outer_diameter", "m"},
-                                                                {"structure.section.wall", "m"},
-                                                                {"structure.section.diameter", "m"},
-                                                                {"structure.section.width", "m"},
-                                                                {"structure.section.height", "m"},
-                                                                {"structure.section.EI", "N m²"},
-                                                                {"structure.section.rhoS", "kg/m"},
-                                                                {"stops.lower", "m"},
-                                                                {"stops.upper", "m"}};
-  const auto found = units.find(column);
-  return found == units.end() ? "" : found->second;
-}
-
 CaseView::CaseView(const StudyResults& results) : results_(results) {
   for (const std::string& column : results.columns) {
     Values& found = values_[column];
+    found.unit = shown_unit(axis_column(results, column).unit);
     bool absent = false;
     std::map<std::string, std::size_t> places;
     for (const CaseRecord& record : results.cases) {
@@ -100,6 +82,12 @@ const std::vector<std::string>& CaseView::values(const std::string& column) cons
   return found == values_.end() ? none : found->second.texts;
 }
 
+const std::string& CaseView::unit_of(const std::string& column) const {
+  static const std::string none;
+  const auto found = values_.find(column);
+  return found == values_.end() ? none : found->second.unit;
+}
+
 std::vector<std::string> CaseView::constants() const {
   std::vector<std::string> out;
   if (results_.cases.empty()) return out;
@@ -107,7 +95,7 @@ std::vector<std::string> CaseView::constants() const {
     if (varies(column)) continue;
     const std::string value = text(results_.cases.front(), column);
     if (value.empty()) continue;
-    const std::string unit = axis_unit(column);
+    const std::string& unit = unit_of(column);
     out.push_back(column + " " + value + (unit.empty() ? "" : " " + unit));
   }
   return out;
@@ -132,7 +120,7 @@ std::string CaseView::label(const CaseRecord& record, const std::vector<std::str
     if (value.empty()) continue;
     const std::string role = role_of(column);
     if (!out.empty()) out += role == previous_role ? ", " : " · ";
-    const std::string unit = axis_unit(column);
+    const std::string& unit = unit_of(column);
     out += word(column) + value + (unit.empty() ? "" : " " + unit);
     previous_role = role;
   }

@@ -14,6 +14,9 @@ struct Quantity {
   std::string name, unit;
 };
 
+/// A unit as it is shown: "" for "1".
+std::string shown_unit(const std::string& unit);
+
 /// "name (unit)", without the unit where it is "1" or unknown.
 std::string with_unit(const Quantity& quantity);
 
@@ -35,6 +38,8 @@ class CaseView {
   bool varies(std::string_view column) const;
   /// Distinct values of a column as texts, in order of appearance; cases without the column do not count.
   const std::vector<std::string>& values(const std::string& column) const;
+  /// Unit of an axis column as the study keeps it; "" for words, ratios and counts.
+  const std::string& unit_of(const std::string& column) const;
   /// Columns that have one value in every case, as "column value".
   std::vector<std::string> constants() const;
 
@@ -78,10 +83,11 @@ class CaseView {
 
  private:
   static constexpr std::size_t no_value = static_cast<std::size_t>(-1);
-  /// The values of a column as texts, in order of appearance, and which of them each case has.
+  /// The values of a column as texts, in order of appearance, which of them each case has, and their unit.
   struct Values {
     std::vector<std::string> texts;
     std::vector<std::size_t> at;
+    std::string unit;
   };
   /// Those that some of the cases have, as they are met.
   std::vector<std::string> values_of(const Cases& cases, const std::string& column) const;
@@ -93,8 +99,5 @@ class CaseView {
 
 /// The role of a column: "mass" of "mass.velocity"; the column itself where it belongs to no method.
 std::string role_of(std::string_view column);
-
-/// Unit of an axis column that the study format defines ("s" for step); "" for a plugin's own parameters.
-std::string axis_unit(std::string_view column);
 
 }  // namespace ricochet::report

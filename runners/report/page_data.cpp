@@ -71,7 +71,7 @@ PageJson axes_json(const CaseView& view) {
       at.push_back(place->second);
     }
     out.push_back({{"name", column},
-                   {"unit", axis_unit(column)},
+                   {"unit", view.unit_of(column)},
                    {"texts", std::move(texts)},
                    {"numbers", std::move(numbers)},
                    {"at", std::move(at)}});

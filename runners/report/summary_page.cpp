@@ -80,7 +80,7 @@ Fill methods_fill(const CaseView& view) {
     if (const std::string role = role_of(column); std::find(roles.begin(), roles.end(), role) == roles.end())
       roles.push_back(role);
   for (const std::string& role : roles) {
-    const std::string ran = ran_text(view.results(), role), unit = axis_unit(role);
+    const std::string ran = ran_text(view.results(), role), unit = view.unit_of(role);
     if (!ran.empty()) out << pair_fill("role", role + (unit.empty() ? "" : " (" + unit + ")"), "values", ran);
   }
   return out;

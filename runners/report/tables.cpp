@@ -67,7 +67,7 @@ CaseColumn axis_column(const CaseView& view, const std::string& column) {
     const std::string text = CaseView::text(record, column);
     return CaseCell{text, text.empty() || CaseView::number(record, column) ? "" : "text"};
   };
-  return {column, with_unit({column, axis_unit(column)}), "Axis of the study", "axis", !view.varies(column), cell};
+  return {column, with_unit({column, view.unit_of(column)}), "Axis of the study", "axis", !view.varies(column), cell};
 }
 
 CaseColumn measure_cells(const std::string& name) {

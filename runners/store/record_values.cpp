@@ -65,12 +65,14 @@ Cases with_status(const Cases& cases, const std::string& status) {
   return found;
 }
 
+Column axis_column(const StudyResults& results, const std::string& name) {
+  const auto known = find_column(results.axes, name);
+  return known ? results.axes[*known] : axis_meaning(name, results.study);
+}
+
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names) {
   std::vector<Column> columns;
-  for (const std::string& name : names) {
-    const auto known = find_column(results.axes, name);
-    columns.push_back(known ? results.axes[*known] : axis_meaning(name, results.study));
-  }
+  for (const std::string& name : names) columns.push_back(axis_column(results, name));
   return columns;
 }
 

@@ -33,6 +33,7 @@ Cases with_status(const Cases& cases, const std::string& status);
 
 /// What the axes of these names mean: as the run described them, else as the study format does.
 std::vector<Column> axis_columns(const StudyResults& results, const std::vector<std::string>& names);
+Column axis_column(const StudyResults& results, const std::string& name);
 
 /// `case`, the key of every table that speaks of cases.
 Column case_column();

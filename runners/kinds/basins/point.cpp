@@ -9,6 +9,7 @@
 
 #include "runners/kinds/basins/march_cell.hpp"
 #include "runners/kinds/sweep/stored_case.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
 namespace ricochet {
@@ -49,7 +50,7 @@ std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t r
   return out;
 }
 
-std::string regime_text(const CellEnd& end) {
+std::string text_of(const CellEnd& end) {
   if (end.status != "done") return end.status + ": " + end.reason;
   return text(end.motion);
 }
@@ -74,12 +75,12 @@ int march_cell_again(const StudyResults& results, const PointRequest& asked, std
 
   SamplePrinter print(out);
   const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(asked), std::ref(print));
-  std::cerr << regime_text(end);
+  std::cerr << text_of(end);
   if (row == cells.size()) {
     std::cerr << "; the run has not come to this cell";
   } else if (cells.truth(row, "marched") == false) {
     std::cerr << fmt::format("; the run filled this cell from a marched one of its basin ({})",
-                             stored_regime(cells, row));
+                             regime_text(cells.text(row, "class"), cells.number(row, "period")));
   } else {
     const std::vector<SectionPoint> section = stored_section(record, row);
     std::size_t equal = 0;

@@ -57,11 +57,11 @@ std::string from_where(const std::string& start) {
 }
 
 /// "periodic 1 from 2 to 2.645", "periodic 2 at 2.66", in the order of the parameter.
-std::vector<std::string> stretches_of(const std::vector<report::Orbit>& orbits) {
+std::vector<std::string> stretches_of(const std::vector<OrbitRow>& orbits) {
   std::vector<std::string> out;
   for (std::size_t first = 0, next = 0; first < orbits.size(); first = next) {
-    const std::string name = report::regime_text(orbits[first]);
-    while (next < orbits.size() && report::regime_text(orbits[next]) == name) ++next;
+    const std::string name = orbits[first].motion_text();
+    while (next < orbits.size() && orbits[next].motion_text() == name) ++next;
     const std::string low = number_text(orbits[first].parameter, 5), high = number_text(orbits[next - 1].parameter, 5);
     out.push_back(next - first == 1 ? fmt::format("{} at {}", name, low)
                                     : fmt::format("{} from {} to {}", name, low, high));
@@ -70,9 +70,9 @@ std::vector<std::string> stretches_of(const std::vector<report::Orbit>& orbits) 
 }
 
 /// "periodic 1 at 20 of 41 values", the most frequent first.
-std::vector<std::string> class_counts_of(const std::vector<report::Orbit>& orbits) {
+std::vector<std::string> class_counts_of(const std::vector<OrbitRow>& orbits) {
   std::vector<std::pair<std::string, std::size_t>> counts;
-  for (const report::Orbit& orbit : orbits) ++in_order_met(counts, report::regime_text(orbit));
+  for (const OrbitRow& orbit : orbits) ++in_order_met(counts, orbit.motion_text());
   std::stable_sort(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> out;
   for (const auto& [name, count] : counts)
@@ -123,14 +123,14 @@ void say_speeds(const CaseView& view, const CaseRecord& standard, const std::str
 }
 
 void say_motions(const StudyResults& results, const CaseView& view, const CaseRecord& standard, Table& answers) {
-  std::vector<report::Orbit> orbits = report::orbits_of(standard);
+  std::vector<OrbitRow> orbits = orbits_of(standard);
   const auto first =
-      std::find_if(orbits.begin(), orbits.end(), [](const report::Orbit& one) { return !is_random_start(one.start); });
+      std::find_if(orbits.begin(), orbits.end(), [](const OrbitRow& one) { return !is_random_start(one.start); });
   if (first == orbits.end()) return;
   const std::string start = first->start;
-  std::erase_if(orbits, [&](const report::Orbit& one) { return one.start != start || !std::isfinite(one.parameter); });
+  std::erase_if(orbits, [&](const OrbitRow& one) { return one.start != start || !std::isfinite(one.parameter); });
   std::stable_sort(orbits.begin(), orbits.end(),
-                   [](const report::Orbit& a, const report::Orbit& b) { return a.parameter < b.parameter; });
+                   [](const OrbitRow& a, const OrbitRow& b) { return a.parameter < b.parameter; });
   std::vector<std::string> said = stretches_of(orbits);
   if (said.size() > most_stretches) said = class_counts_of(orbits);
   const std::string who =

@@ -9,20 +9,20 @@
 
 #include "runners/kinds/sweep/orbit_entries.hpp"
 #include "runners/kinds/sweep/stored_case.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/table/csv_text.hpp"
 
 namespace ricochet {
 namespace {
 
-std::size_t find_row(const TableReader& values, double wanted, const std::string& start) {
+const OrbitRow& find_orbit(const std::vector<OrbitRow>& orbits, double wanted, const std::string& start) {
   std::vector<std::string> starts;
   std::vector<double> marched;  // from this start
-  const std::size_t starting = values.column("start"), parameter = values.column("parameter");
-  for (std::size_t row = 0; row < values.size(); ++row) {
-    const std::string name = values.text(row, starting);
-    if (std::find(starts.begin(), starts.end(), name) == starts.end()) starts.push_back(name);
-    if (name != start) continue;
-    marched.push_back(values.number(row, parameter).value());
-    if (is_value(marched.back(), wanted)) return row;
+  for (const OrbitRow& orbit : orbits) {
+    if (std::find(starts.begin(), starts.end(), orbit.start) == starts.end()) starts.push_back(orbit.start);
+    if (orbit.start != start) continue;
+    marched.push_back(orbit.parameter);
+    if (is_value(orbit.parameter, wanted)) return orbit;
   }
   if (!marched.empty())
     throw PointRefused(fmt::format("no orbit from \"{}\" was marched at {}; the nearest values are {}", start, wanted,
@@ -34,18 +34,13 @@ std::size_t find_row(const TableReader& values, double wanted, const std::string
 }
 
 // "periodic 1; 2 impacts per period; exponent_1 -0.31 in [-0.32, -0.3] 1/s (tangent)".
-std::string description(const TableReader& values, std::size_t row) {
-  std::string text = stored_regime(values, row);
-  if (const std::string impacts = values.text(row, "impacts_per_period"); !impacts.empty())
-    text += fmt::format("; {} impacts per period", impacts);
-  for (int k = 1;; ++k) {
-    const std::string name = fmt::format("exponent_{}", k);
-    const std::string exponent = values.text(row, values.column_if_any(name));
-    if (exponent.empty()) break;
-    text += fmt::format("; {} {} in [{}, {}] 1/s", name, exponent, values.text(row, name + "_low"),
-                        values.text(row, name + "_high"));
-  }
-  if (const std::string method = values.text(row, "exponent_method"); !method.empty()) text += " (" + method + ")";
+std::string description(const OrbitRow& orbit) {
+  std::string text = regime_text(orbit.regime, orbit.period);
+  if (orbit.impacts_per_period) text += fmt::format("; {} impacts per period", csv_number(*orbit.impacts_per_period));
+  for (std::size_t k = 0; k < orbit.exponents.size() && orbit.exponents[k].value; ++k)
+    text += fmt::format("; exponent_{} {} in [{}, {}] 1/s", k + 1, csv_number(*orbit.exponents[k].value),
+                        Cell(orbit.exponents[k].low).text(), Cell(orbit.exponents[k].high).text());
+  if (!orbit.exponent_method.empty()) text += " (" + orbit.exponent_method + ")";
   return text;
 }
 
@@ -57,12 +52,12 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
         "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");
   const CaseRecord& record = find_case(results, asked.case_id);
-  const TableReader values(stored_table(record, "values"));
-  const std::size_t row = find_row(values, *asked.parameter, asked.start);
-  if (const std::string status = values.text(row, "status"); status != "done")
-    throw PointRefused(fmt::format("this orbit is {}: {}", status, values.text(row, "reason")));
+  stored_table(record, "values");
+  const std::vector<OrbitRow> orbits = orbits_of(record);
+  const OrbitRow& orbit = find_orbit(orbits, *asked.parameter, asked.start);
+  if (!orbit.done()) throw PointRefused(fmt::format("this orbit is {}: {}", orbit.status, orbit.reason));
   PointTask task;
-  task.parameter = values.number(row, "parameter").value();
+  task.parameter = orbit.parameter;
   task.start = asked.start;
   task.count = wanted_count(asked);
   auto entry = find_entry(record, task.parameter, task.start);
@@ -86,7 +81,7 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
     ++compared;
     equal += sample.displacement == strobes[static_cast<std::size_t>(sample.strobe)];
   });
-  std::cerr << description(values, row) << comparison_text(equal, compared) << "\n";
+  std::cerr << description(orbit) << comparison_text(equal, compared) << "\n";
   return 0;
 }
 

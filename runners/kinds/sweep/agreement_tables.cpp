@@ -1,3 +1,4 @@
+#include <cmath>
 #include <ricochet/measure/attractors/diagram_changes.hpp>
 
 #include "runners/kinds/sweep/diagram_tables.hpp"
@@ -14,19 +15,14 @@ bool open(const std::string& regime) {
   return regime == text(Regime::undecided) || regime == text(Regime::failed);
 }
 
-std::vector<DiagramChange> changes_of(const CaseRecord& record) {
+// Those between classes that are known.
+std::vector<DiagramChange> known_changes(const CaseRecord& record) {
   std::vector<DiagramChange> out;
-  const Table* table = find_table(record.tables, "bifurcations");
-  if (!table) return out;
-  const TableReader rows(*table);
-  const std::size_t start = rows.column("start"), from = rows.column("from"), to = rows.column("to"),
-                    kind = rows.column("kind"), value = rows.column("value"), low = rows.column("low"),
-                    high = rows.column("high");
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const auto at = rows.number(r, value);
-    if (!at || open(rows.text(r, from)) || open(rows.text(r, to))) continue;
-    out.push_back({rows.text(r, start), rows.text(r, from), rows.text(r, to), rows.text(r, kind), *at,
-                   rows.number(r, low).value_or(*at), rows.number(r, high).value_or(*at)});
+  for (DiagramChange change : changes_of(record)) {
+    if (std::isnan(change.value) || open(change.from) || open(change.to)) continue;
+    if (std::isnan(change.low)) change.low = change.value;
+    if (std::isnan(change.high)) change.high = change.value;
+    out.push_back(std::move(change));
   }
   return out;
 }
@@ -55,11 +51,11 @@ Table shifts_table(const StudyDiagram& study) {
   const auto reference = reference_case(diagram);
   if (!reference) return table;
   const CaseRecord& standard = study.record(*reference);
-  const std::vector<DiagramChange> expected = changes_of(standard);
+  const std::vector<DiagramChange> expected = known_changes(standard);
   const double reach = kReach * (diagram.values.back() - diagram.values.front());
   for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
     if (c == *reference || !diagram.cases[c].any_decided()) continue;
-    const std::vector<DiagramChange> here = changes_of(study.record(c));
+    const std::vector<DiagramChange> here = known_changes(study.record(c));
     const std::vector<int> match = match_changes(expected, here, reach);
     std::vector<char> used(here.size(), 0);
     const auto add = [&](const DiagramChange& change, const DiagramChange* standing, const DiagramChange* found) {

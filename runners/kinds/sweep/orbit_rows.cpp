@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <tuple>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
@@ -22,37 +23,32 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* contact_word = "contact";  // beyond a grazing, whatever class of motion it is
 
-Row value_row(const OrbitView& view, const std::string& start, int exponents, const SectionPlan& plan) {
-  const bool complete = view.complete();
+OrbitRow orbit_row(const OrbitView& view, const std::string& start, const SectionPlan& plan) {
+  OrbitRow row;
+  row.parameter = view.value;
+  row.start = start;
+  row.regime = text(view.complete() ? view.judged.verdict.motion.regime : Regime::failed);
+  for (const Interval& one : view.exponents.values) row.exponents.push_back({one.value, one.low, one.high});
+  row.exponent_method = view.exponents.method;
+  if (view.exponents.twin) row.exponent_twin = view.exponents.twin->value;
+  row.marginal = view.marginal;
+  if (view.viscosity) row.alpha_equivalent = view.viscosity->numerical;
+  std::tie(row.status, row.reason) = status_of(view);
+  if (!view.complete()) return row;
+  const Orbit& orbit = *view.orbit;
   const RegimeVerdict& verdict = view.judged.verdict;
-  Row row = {view.value, start, text(complete ? verdict.motion.regime : Regime::failed)};
-  row.push_back(complete && verdict.period > 0 ? Cell(verdict.period) : Cell());
-  row.push_back(complete ? Cell(impacts_per_period(*view.orbit)) : Cell());
-  row.push_back(complete ? Cell(view.judged.symmetric) : Cell());
-  for (std::size_t k = 0; k < static_cast<std::size_t>(exponents); ++k) {
-    const bool known = k < view.exponents.values.size();
-    for (const double Interval::*part : {&Interval::value, &Interval::low, &Interval::high})
-      row.push_back(known ? Cell(view.exponents.values[k].*part) : Cell());
-  }
-  row.push_back(view.exponents.method);
-  row.push_back(view.exponents.twin ? Cell(view.exponents.twin->value) : Cell());
-  row.push_back(view.marginal);
-  row.emplace_back();  // the attractor: told apart over all cases
-  row.push_back(view.viscosity ? Cell(view.viscosity->numerical) : Cell());
-  if (complete) {
-    const Orbit& orbit = *view.orbit;
-    row.insert(row.end(), {view.judged.recurrence.distance, view.judged.recurrence.contraction, view.judged.zero_one,
-                           orbit.transient_periods, orbit.settled, orbit.most_on_a_side >= chatter_impacts,
-                           static_cast<double>(orbit.contact_steps) /
-                               (static_cast<double>(orbit.kept_periods) * plan.steps_per_period),
-                           verdict.evidence});
-  } else {
-    row.insert(row.end(), 7, Cell());
-    row.push_back("");
-  }
-  const auto [status, reason] = status_of(view);
-  row.push_back(status);
-  row.push_back(reason);
+  if (verdict.period > 0) row.period = verdict.period;
+  row.impacts_per_period = impacts_per_period(orbit);
+  row.symmetric = view.judged.symmetric;
+  row.recurrence = view.judged.recurrence.distance;
+  row.contraction = view.judged.recurrence.contraction;
+  row.zero_one = view.judged.zero_one;
+  row.transient_periods = orbit.transient_periods;
+  row.settled = orbit.settled;
+  row.chatter = orbit.most_on_a_side >= chatter_impacts;
+  row.sticking = static_cast<double>(orbit.contact_steps) /
+                 (static_cast<double>(orbit.kept_periods) * plan.steps_per_period);
+  row.evidence = verdict.evidence;
   return row;
 }
 
@@ -69,6 +65,7 @@ std::span<const ImpactPoint> impacts_shown(const OrbitView& view) {
 
 Table changes(const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
   Table table = bifurcations_head();
+  const RowType<ChangeRow> type = change_row_type();
   std::vector<std::optional<MotionClass>> classes;
   for (const OrbitView& view : views)
     classes.push_back(view.complete() ? std::optional(view.judged.verdict.motion) : std::nullopt);
@@ -78,8 +75,8 @@ Table changes(const std::vector<OrbitView>& views, const std::vector<std::string
     const MotionClass &from = *classes[below], &to = *classes[above];
     const auto either = [&](Regime one) { return (from.regime == one) != (to.regime == one); };
     const char* kind = either(Regime::no_contact) ? "grazing" : either(Regime::at_rest) ? "lift-off" : "change";
-    table.rows.push_back({starts[view.start], text(from), text(to), kind, 0.5 * (before.value + view.value),
-                          before.value, view.value, nullptr});
+    table.rows.push_back(type.row(ChangeRow({starts[view.start], text(from), text(to), kind,
+                                             0.5 * (before.value + view.value), before.value, view.value})));
   }
   return table;
 }
@@ -162,11 +159,12 @@ void judge(OrbitView& view, const SectionPlan& plan) {
 void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts,
                       int exponents, const SectionPlan& plan) {
   Table values = values_head(exponents);
+  const RowType<OrbitRow> type = orbit_row_type(exponents);
   NumberTable points = points_head(), impacts = impacts_head();
   points.words = {{"start", starts}};
   impacts.words = {{"start", starts}, {"side", {"lower", "upper"}}};
   for (const OrbitView& view : views) {
-    values.rows.push_back(value_row(view, starts[view.start], exponents, plan));
+    values.rows.push_back(type.row(orbit_row(view, starts[view.start], plan)));
     if (!view.complete()) continue;
     const auto start = static_cast<double>(view.start);
     const auto& section = plan.section == SectionKind::strobe ? view.orbit->strobed : view.orbit->points;
@@ -206,8 +204,8 @@ void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
   const char *below = contact_word, *above = text(Regime::no_contact);
   if (grazing.opens_below) std::swap(below, above);
   if (Table* changes = find_table(record.tables, "bifurcations"))
-    changes->rows.push_back(
-        {"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high, grazing.steps});
+    changes->rows.push_back(change_row_type().row(
+        ChangeRow({"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high}, grazing.steps)));
 }
 
 }  // namespace ricochet

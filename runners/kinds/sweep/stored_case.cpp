@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <ricochet/measure/orbits/motion_class.hpp>
 
 #include "runners/table/csv_text.hpp"
 
@@ -22,12 +21,6 @@ const Table& stored_table(const CaseRecord& record, const std::string& name) {
   if (const Table* table = find_table(record.tables, name)) return *table;
   throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
                                  record.reason.empty() ? "" : ", " + record.reason));
-}
-
-std::string stored_regime(const TableReader& rows, std::size_t row) {
-  const std::string name = rows.text(row, "class");
-  const auto motion = motion_class(name, rows.number(row, "period"));
-  return motion ? text(*motion) : name;
 }
 
 SamplePrinter::SamplePrinter(std::ostream& out) : out_(out) {

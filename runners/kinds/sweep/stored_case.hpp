@@ -12,9 +12,6 @@ namespace ricochet {
 /// The table of this name that a case left. Throws PointRefused where it has none, with what became of it.
 const Table& stored_table(const CaseRecord& record, const std::string& name);
 
-/// "periodic 3": class and period of a row of `values` or `cells`.
-std::string stored_regime(const TableReader& rows, std::size_t row);
-
 /// Samples as lines of CSV: t, tip_displacement, tip_velocity.
 class SamplePrinter {
  public:

@@ -25,23 +25,19 @@ int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
 }
 
 void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
-  const TableReader rows(*source.table);
-  const std::size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
-                    period = rows.column("period"), symmetric = rows.column_if_any("symmetric"),
-                    viscosity = rows.column_if_any("alpha_equivalent"), status = rows.column_if_any("status");
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const auto value = rows.number(r, parameter);
-    if (!value) continue;
+  const std::vector<OrbitRow> orbits = orbits_of(*source.record);
+  for (std::size_t r = 0; r < orbits.size(); ++r) {
+    const OrbitRow& orbit = orbits[r];
+    if (std::isnan(orbit.parameter)) continue;
     DiagramRun run;
-    run.parameter = *value;
-    run.start = start_in(study.diagram.starts, rows.text(r, start));
-    run.status = status == TableReader::absent ? "done" : rows.text(r, status);
-    run.settled = run.status == "done";
-    const auto repeats = rows.number(r, period);
-    run.motion = motion_of(rows.text(r, regime), repeats, run.status);
-    if (repeats && *repeats >= 1) run.period = static_cast<int>(*repeats);
-    run.symmetric = rows.truth(r, symmetric);
-    run.viscosity = rows.number(r, viscosity);
+    run.parameter = orbit.parameter;
+    run.start = start_in(study.diagram.starts, orbit.start);
+    run.status = orbit.status.empty() ? "done" : orbit.status;
+    run.settled = orbit.done();
+    run.motion = motion_of(orbit.regime, orbit.period, run.status);
+    if (orbit.period && *orbit.period >= 1) run.period = *orbit.period;
+    run.symmetric = orbit.symmetric;
+    run.viscosity = orbit.alpha_equivalent;
     source.rows.push_back(r);
     owner.runs.push_back(std::move(run));
   }

@@ -76,21 +76,14 @@ Table class_counts_table(const StudyResults& results) {
                       {"orbits", "1", "Orbits (values and starts) with this class."},
                       {"share", "1", "Their share of the orbits of the case."}});
   for (const CaseRecord& record : results.cases) {
-    const Table* values = find_table(record.tables, "values");
-    if (!values || values->rows.empty()) continue;
-    const TableReader rows(*values);
-    const std::size_t name = rows.column("class"), period = rows.column("period"),
-                      status = rows.column_if_any("status");
-    std::vector<std::pair<Row, int>> counts;  // class and period, in the order met
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const std::string state = rows.text(row, status);
-      const bool done = state.empty() || state == "done";
-      const Row key = {done ? rows.text(row, name) : "failed", done ? rows.cell(row, period) : Cell()};
-      ++in_order_met(counts, key);
-    }
-    for (const auto& [key, count] : counts)
+    const std::vector<OrbitRow> orbits = orbits_of(record);
+    std::vector<std::pair<std::pair<std::string, std::optional<int>>, int>> counts;  // by class and period
+    for (const OrbitRow& orbit : orbits)
+      ++in_order_met(counts, orbit.done() ? std::pair(orbit.regime, orbit.period)
+                                          : std::pair(std::string("failed"), std::optional<int>()));
+    for (const auto& [motion, count] : counts)
       add_row(table, place_of(results, record),
-              {key[0], key[1], count, static_cast<double>(count) / static_cast<double>(values->rows.size())});
+              {motion.first, motion.second, count, static_cast<double>(count) / static_cast<double>(orbits.size())});
   }
   return table;
 }
@@ -111,22 +104,14 @@ Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swep
     double bracket = 0;
   };
   std::vector<std::pair<std::string, Grazings>> found;  // by start
-  for (const CaseRecord& record : results.cases) {
-    const Table* changes = find_table(record.tables, "bifurcations");
-    if (!changes) continue;
-    const TableReader rows(*changes);
-    const std::size_t start = rows.column("start"), kind = rows.column("kind"), value = rows.column("value"),
-                      low = rows.column("low"), high = rows.column("high");
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const auto at = rows.number(row, value);
-      if (!at || rows.text(row, kind) != "grazing") continue;
-      Grazings& one = in_order_met(found, rows.text(row, start));
+  for (const CaseRecord& record : results.cases)
+    for (const ChangeRow& change : changes_of(record)) {
+      if (std::isnan(change.value) || change.kind != "grazing") continue;
+      Grazings& one = in_order_met(found, change.start);
       ++one.changes;
-      one.values.include(*at);
-      if (rows.number(row, low) && rows.number(row, high))
-        one.bracket = std::max(one.bracket, *rows.number(row, high) - *rows.number(row, low));
+      one.values.include(change.value);
+      if (const double bracket = change.high - change.low; bracket > one.bracket) one.bracket = bracket;
     }
-  }
   for (const auto& [start, one] : found)
     table.rows.push_back({start, one.changes, one.values.low, one.values.high, one.bracket});
   return table;
@@ -142,19 +127,15 @@ Table numerical_viscosity_table(const StudyResults& results) {
        {"share", "1", "Largest modulus of the equivalent viscosity over α; empty where there is no α to compare with."},
        {"small", "", "Whether that share is at most 1 %."}});
   for (const CaseRecord& record : results.cases) {
-    const Table* values = find_table(record.tables, "values");
-    if (!values) continue;
-    const TableReader rows(*values);
-    const std::size_t viscosity = rows.column_if_any("alpha_equivalent"), parameter = rows.column("parameter");
     Bounds numerical, physical;
     double share = 0;
     bool undamped = false;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const auto added = rows.number(row, viscosity);
+    for (const OrbitRow& orbit : orbits_of(record)) {
+      const auto added = orbit.alpha_equivalent;
       if (!added) continue;
       numerical.include(*added);
-      const auto at = rows.number(row, parameter);
-      const auto alpha = at ? dynamics::viscosity_of(results, record, *at) : std::nullopt;
+      const auto alpha =
+          std::isnan(orbit.parameter) ? std::nullopt : dynamics::viscosity_of(results, record, orbit.parameter);
       if (!alpha) continue;
       physical.include(*alpha);
       if (*alpha > 0)

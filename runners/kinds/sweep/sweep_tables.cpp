@@ -1,9 +1,11 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 
 #include <algorithm>
+#include <ricochet/measure/orbits/motion_class.hpp>
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -36,27 +38,38 @@ std::string column_name(std::string pointer) {
   return pointer;
 }
 
-// What a pointer of the study goes through, in the column `name`.
+// What a pointer of the study goes through, in the column `plain`.
 Column swept_column(const StudyResults& results, const Column& plain, const nlohmann::ordered_json& where) {
-  if (!where.is_object() || !where.contains("pointer") || !where.at("pointer").is_string()) return plain;
-  const auto pointer = where.at("pointer").get<std::string>();
-  const Column axis = axis_columns(results, {column_name(pointer)}).front();
-  try {
-    const nlohmann::ordered_json::json_pointer place(pointer);
-    // A formula is multiplied by the value.
-    if (pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string())
-      return {plain.name, "1", plain.text + " It multiplies " + axis.name + ": " + axis.text};
-  } catch (const nlohmann::ordered_json::exception&) {
-    return plain;
-  }
-  return {plain.name, axis.unit, plain.text + " It is " + axis.name + ": " + axis.text};
+  const std::optional<SweptAxis> swept = swept_axis(results, where);
+  if (!swept) return plain;
+  const auto& [axis, factor] = *swept;
+  return {plain.name, factor ? "1" : axis.unit,
+          plain.text + (factor ? " It multiplies " : " It is ") + axis.name + ": " + axis.text};
 }
 
 Column in_units_of(const Column& parameter, const char* name, const char* text) {
   return {name, parameter.unit, text};
 }
 
+std::string exponent_name(int number) {
+  return "exponent_" + std::to_string(number);
+}
+
 }  // namespace
+
+std::optional<SweptAxis> swept_axis(const StudyResults& results, const nlohmann::ordered_json& where) {
+  if (!where.is_object() || !where.contains("pointer") || !where.at("pointer").is_string()) return std::nullopt;
+  const auto pointer = where.at("pointer").get<std::string>();
+  SweptAxis out{axis_column(results, column_name(pointer))};
+  try {
+    const nlohmann::ordered_json::json_pointer place(pointer);
+    out.factor =
+        pointer.starts_with("/scene/") && results.study.contains(place) && results.study.at(place).is_string();
+  } catch (const nlohmann::ordered_json::exception&) {
+    return std::nullopt;
+  }
+  return out;
+}
 
 std::string swept_name(const StudyResults& results) {
   const auto parameter = results.study.find("parameter");
@@ -75,63 +88,118 @@ SweptColumns swept_columns(const StudyResults& results) {
   return out;
 }
 
-Table values_head(int exponents, const SweptColumns& swept) {
-  Table table{"values",
-              "One orbit of one case: a value of the parameter and a start.",
-              {swept.parameter,
-               start_column,
-               class_column,
-               period_column,
-               {"impacts_per_period", "1",
-                "Impacts in one forcing period, mean over the kept ones; a contact that never opens is none."},
-               {"symmetric", "", "Whether the orbit is its own image under x → −x half a forcing period later."}},
-              {}};
+std::string regime_text(const std::string& regime, std::optional<double> period) {
+  const auto motion = motion_class(regime, period);
+  return motion ? text(*motion) : regime;
+}
+
+RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
+  RowType<OrbitRow> type;
+  type.add(swept.parameter, &OrbitRow::parameter)
+      .add(start_column, &OrbitRow::start)
+      .add(class_column, &OrbitRow::regime)
+      .add(period_column, &OrbitRow::period)
+      .add({"impacts_per_period", "1",
+            "Impacts in one forcing period, mean over the kept ones; a contact that never opens is none."},
+           &OrbitRow::impacts_per_period)
+      .add({"symmetric", "", "Whether the orbit is its own image under x → −x half a forcing period later."},
+           &OrbitRow::symmetric);
   for (int k = 1; k <= exponents; ++k) {
-    const std::string name = "exponent_" + std::to_string(k);
-    table.columns.push_back({name, "1/s", "Lyapunov exponent number " + std::to_string(k) + ", largest first."});
-    table.columns.push_back({name + "_low", "1/s", "Lower end of its 95 % interval (stationary block bootstrap)."});
-    table.columns.push_back({name + "_high", "1/s", "Upper end of that interval."});
+    const std::string name = exponent_name(k);
+    const auto add = [&](Column column, std::optional<double> OrbitRow::Exponent::*part) {
+      const auto place = static_cast<std::size_t>(k) - 1;
+      type.add(
+          std::move(column),
+          [place, part](const OrbitRow& row) {
+            return place < row.exponents.size() ? Cell(row.exponents[place].*part) : Cell();
+          },
+          [place, part](OrbitRow& row, const Cell& cell) {
+            if (row.exponents.size() <= place) row.exponents.resize(place + 1);
+            row.exponents[place].*part = cell.number();
+          });
+    };
+    add({name, "1/s", "Lyapunov exponent number " + std::to_string(k) + ", largest first."},
+        &OrbitRow::Exponent::value);
+    add({name + "_low", "1/s", "Lower end of its 95 % interval (stationary block bootstrap)."},
+        &OrbitRow::Exponent::low);
+    add({name + "_high", "1/s", "Upper end of that interval."}, &OrbitRow::Exponent::high);
   }
-  table.columns = joined(
-      std::move(table.columns),
-      {{"exponent_method", "",
-        "How the exponents were found: tangent, tangent+jump, or twin with its offset; superstable where all are −∞, "
-        "as the mass comes to rest on its stop; empty where there are none, or none that would see how impacts move "
-        "(the notes of the case say so)."},
-       {"exponent_twin", "1/s",
-        "The largest exponent by a second trajectory beside the first, as a check; empty where impacts have inertia, "
-        "as "
-        "both would meet their stops at the same steps."},
-       {"marginal", "", "Roots of modulus one that are the scheme's own and not the motion's."},
-       attractor_column,
-       {"alpha_equivalent", "s",
-        "Stiffness viscosity that the scheme itself adds: what α of C = αK would damp the first modes as much."},
-       {"recurrence", "1", "Largest distance between readings one period apart, relative to the gap."},
-       {"contraction", "1", "Factor by which that distance falls per forcing period; 1 where nothing tells it from 1."},
-       {"zero_one", "1", "K of the 0–1 test of the strobed displacement: near 0 regular, near 1 chaotic."},
-       {"transient_periods", "1", "Forcing periods that were left out before the first reading."},
-       {"settled", "", "Whether the orbit had settled before the transient was cut at its cap."},
-       {"chatter", "", "Whether there were ten or more impacts on one side within one forcing period."},
-       {"sticking", "1", "Share of the kept steps with contact closed."},
-       {"evidence", "", "What the class rests on, one sentence with its numbers."},
-       status_column,
-       reason_column});
-  return table;
+  type.add({"exponent_method", "",
+            "How the exponents were found: tangent, tangent+jump, or twin with its offset; superstable where all are "
+            "−∞, as the mass comes to rest on its stop; empty where there are none, or none that would see how impacts "
+            "move (the notes of the case say so)."},
+           &OrbitRow::exponent_method)
+      .add({"exponent_twin", "1/s",
+            "The largest exponent by a second trajectory beside the first, as a check; empty where impacts have "
+            "inertia, as both would meet their stops at the same steps."},
+           &OrbitRow::exponent_twin)
+      .add({"marginal", "", "Roots of modulus one that are the scheme's own and not the motion's."},
+           &OrbitRow::marginal)
+      .add(attractor_column, &OrbitRow::attractor)
+      .add({"alpha_equivalent", "s",
+            "Stiffness viscosity that the scheme itself adds: what α of C = αK would damp the first modes as much."},
+           &OrbitRow::alpha_equivalent)
+      .add({"recurrence", "1", "Largest distance between readings one period apart, relative to the gap."},
+           &OrbitRow::recurrence)
+      .add({"contraction", "1",
+            "Factor by which that distance falls per forcing period; 1 where nothing tells it from 1."},
+           &OrbitRow::contraction)
+      .add({"zero_one", "1", "K of the 0–1 test of the strobed displacement: near 0 regular, near 1 chaotic."},
+           &OrbitRow::zero_one)
+      .add({"transient_periods", "1", "Forcing periods that were left out before the first reading."},
+           &OrbitRow::transient_periods)
+      .add({"settled", "", "Whether the orbit had settled before the transient was cut at its cap."},
+           &OrbitRow::settled)
+      .add({"chatter", "", "Whether there were ten or more impacts on one side within one forcing period."},
+           &OrbitRow::chatter)
+      .add({"sticking", "1", "Share of the kept steps with contact closed."}, &OrbitRow::sticking)
+      .add({"evidence", "", "What the class rests on, one sentence with its numbers."}, &OrbitRow::evidence)
+      .add(status_column, &OrbitRow::status)
+      .add(reason_column, &OrbitRow::reason);
+  return type;
+}
+
+std::vector<OrbitRow> orbits_of(const CaseRecord& record) {
+  const Table* table = find_table(record.tables, "values");
+  if (!table) return {};
+  int exponents = 0;
+  while (find_column(table->columns, exponent_name(exponents + 1))) ++exponents;
+  return orbit_row_type(exponents).read(*table);
+}
+
+RowType<ChangeRow> change_row_type(const SweptColumns& swept) {
+  const Column& of = swept.parameter;
+  RowType<ChangeRow> type;
+  type.add(start_column, &ChangeRow::start)
+      .add({"from", "", "Class below the change."}, &ChangeRow::from)
+      .add({"to", "", "Class above it."}, &ChangeRow::to)
+      .add({"kind", "",
+            "grazing (contact begins or ends), lift-off (a contact that never opens begins to) or change (any other)."},
+           &ChangeRow::kind)
+      .add(in_units_of(of, "value", "Value of the parameter at which the change is located."), &ChangeRow::value)
+      .add(in_units_of(of, "low", "Largest value known to lie below the change."), &ChangeRow::low)
+      .add(in_units_of(of, "high", "Smallest value known to lie above it."), &ChangeRow::high)
+      .add({"steps", "1", "Steps of the search, where the change was located apart from the sweep."},
+           &ChangeRow::steps);
+  return type;
+}
+
+std::vector<ChangeRow> changes_of(const CaseRecord& record) {
+  const Table* table = find_table(record.tables, "bifurcations");
+  return table ? change_row_type().read(*table) : std::vector<ChangeRow>();
+}
+
+Table values_head(int exponents, const SweptColumns& swept) {
+  return {"values",
+          "One orbit of one case: a value of the parameter and a start.",
+          orbit_row_type(exponents, swept).columns(),
+          {}};
 }
 
 Table bifurcations_head(const SweptColumns& swept) {
-  const Column& of = swept.parameter;
   return {"bifurcations",
           "One change of the motion of one case along the parameter.",
-          {start_column,
-           {"from", "", "Class below the change."},
-           {"to", "", "Class above it."},
-           {"kind", "",
-            "grazing (contact begins or ends), lift-off (a contact that never opens begins to) or change (any other)."},
-           in_units_of(of, "value", "Value of the parameter at which the change is located."),
-           in_units_of(of, "low", "Largest value known to lie below the change."),
-           in_units_of(of, "high", "Smallest value known to lie above it."),
-           {"steps", "1", "Steps of the search, where the change was located apart from the sweep."}},
+          change_row_type(swept).columns(),
           {}};
 }
 

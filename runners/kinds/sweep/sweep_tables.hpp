@@ -1,6 +1,11 @@
 #pragma once
+#include <cmath>
+#include <optional>
+#include <ricochet/measure/attractors/diagram_changes.hpp>
+
 #include "runners/store/record.hpp"
 #include "runners/table/number_table.hpp"
+#include "runners/table/row_type.hpp"
 
 /// \file
 /// The tables of both kinds of sweep, without rows: what their columns mean.
@@ -14,8 +19,59 @@ struct SweptColumns {
 };
 /// The same with the names and units that the study gives them.
 SweptColumns swept_columns(const StudyResults& results);
+/// The axis that a pointer of the study goes through; a formula there is multiplied by the value.
+struct SweptAxis {
+  Column axis;
+  bool factor = false;
+};
+/// That of {"pointer": …} in a study; nothing where there is no pointer.
+std::optional<SweptAxis> swept_axis(const StudyResults& results, const nlohmann::ordered_json& where);
 /// The parameter of a study as the column of an axis would be called: "support.amplitude"; "" without one.
 std::string swept_name(const StudyResults& results);
+
+/// "periodic 3", "chaotic": a class and its period, as `values` and `cells` have them, in the words of `bifurcations`.
+std::string regime_text(const std::string& regime, std::optional<double> period);
+
+/// One row of `values`: what came of one value of the parameter from one start.
+struct OrbitRow {
+  struct Exponent {
+    std::optional<double> value, low, high;  ///< 1/s
+  };
+  double parameter = NAN;
+  std::string start, regime;
+  std::optional<int> period;  ///< forcing periods
+  std::optional<double> impacts_per_period;
+  std::optional<bool> symmetric;
+  std::vector<Exponent> exponents;  ///< the largest first
+  std::string exponent_method;
+  std::optional<double> exponent_twin;  ///< 1/s
+  std::string marginal;
+  std::optional<int> attractor;
+  std::optional<double> alpha_equivalent;  ///< s
+  std::optional<double> recurrence, contraction, zero_one;
+  std::optional<int> transient_periods;
+  std::optional<bool> settled, chatter;
+  std::optional<double> sticking;
+  std::string evidence, status, reason;
+  bool done() const { return status.empty() || status == "done"; }
+  /// The motion, or why there is none: "refused".
+  std::string motion_text() const { return done() ? regime_text(regime, period) : status; }
+  std::optional<double> largest_exponent() const { return exponents.empty() ? std::nullopt : exponents.front().value; }
+};
+/// With so many exponents.
+RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept = {});
+/// The orbits of a case, in its order; none where it has no such table.
+std::vector<OrbitRow> orbits_of(const CaseRecord& record);
+
+/// One row of `bifurcations`.
+struct ChangeRow : DiagramChange {
+  explicit ChangeRow(DiagramChange change = {{}, {}, {}, {}, NAN, NAN, NAN}, std::optional<int> of_search = {})
+      : DiagramChange(std::move(change)), steps(of_search) {}
+  std::optional<int> steps;  ///< of the search
+};
+RowType<ChangeRow> change_row_type(const SweptColumns& swept = {});
+/// The changes of a case, in its order; none where it has no such table.
+std::vector<ChangeRow> changes_of(const CaseRecord& record);
 
 /// Of a case, kept in the store.
 Table values_head(int exponents, const SweptColumns& swept = {});

@@ -65,7 +65,7 @@ TEST_CASE("an orbit's group follows its class and period", "[report]") {
   CHECK(named("quasi-periodic", std::nullopt) == "quasi-periodic");
   CHECK(named("chaotic", std::nullopt) == "chaotic");
   CHECK(named("what is this", std::nullopt) == "undecided");
-  Orbit refused;
+  OrbitRow refused;
   refused.regime = "periodic";
   refused.period = 1;
   refused.status = "refused";
@@ -75,14 +75,18 @@ TEST_CASE("an orbit's group follows its class and period", "[report]") {
   CHECK(colours.size() == regime_groups.size());
 }
 
-TEST_CASE("a formula that is swept through is a factor of it", "[report]") {
-  const nlohmann::ordered_json study = {
-      {"scene", {{"stops", {{"upper", "0.1"}, {"lower", -0.1}}}, {"support", {{"amplitude", 0.1}}}}}};
-  CHECK(with_unit(scene_quantity(study, "/scene/support/amplitude")) == "support.amplitude (m)");
-  CHECK(with_unit(scene_quantity(study, "/scene/stops/lower")) == "stops.lower (m)");
-  CHECK(with_unit(scene_quantity(study, "/scene/stops/upper")) == "factor of stops.upper");
-  CHECK(with_unit(scene_quantity(study, "/methods/contact/stiffness")) == "contact.stiffness");
-  CHECK(scene_quantity(study, "no pointer").name == "no pointer");
+TEST_CASE("a swept value has the unit that the study keeps, and a formula is multiplied by it", "[report]") {
+  StudyResults results;
+  results.study = {{"scene", {{"stops", {{"upper", "0.1"}, {"lower", -0.1}}}, {"support", {{"amplitude", 0.1}}}}}};
+  results.axes = {{"support.amplitude", "m", ""}, {"stops.lower", "m", ""}, {"contact.stiffness", "N/m", ""}};
+  const auto shown = [&](const char* pointer) {
+    return with_unit(swept_quantity(results, {{"pointer", pointer}}, "parameter"));
+  };
+  CHECK(shown("/scene/support/amplitude") == "support.amplitude (m)");
+  CHECK(shown("/scene/stops/lower") == "stops.lower (m)");
+  CHECK(shown("/scene/stops/upper") == "factor of stops.upper");
+  CHECK(shown("/methods/contact/stiffness") == "contact.stiffness (N/m)");
+  CHECK(shown("no pointer") == "parameter");
 }
 
 TEST_CASE("the page has every section point, but for repeats of periodic orbits", "[report]") {
@@ -91,7 +95,7 @@ TEST_CASE("the page has every section point, but for repeats of periodic orbits"
   CurveData curves(1000);
   const std::string said = put_points(view, curves);
   for (const CaseRecord& record : results.cases) {
-    const std::vector<Orbit> orbits = orbits_of(record);
+    const std::vector<OrbitRow> orbits = orbits_of(record);
     const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
     const auto u = numbers_of<float>(curves, record.id + "/points/u:f32");
     REQUIRE(orbit.size() == u.size());
@@ -137,14 +141,14 @@ TEST_CASE("thinning is said, keeps every orbit, and keeps to its budget", "[repo
     const auto orbit = numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16");
     written += orbit.size();
     orbits_drawn += std::set<std::uint16_t>(orbit.begin(), orbit.end()).size();
-    for (const Orbit& one : orbits_of(record)) orbits_with += one.done();
+    for (const OrbitRow& one : orbits_of(record)) orbits_with += one.done();
   }
   CHECK(orbits_drawn == orbits_with);
   // Of orbits that repeat every branch is still there.
   CurveData whole(1000);
   put_points(view, whole);
   for (const CaseRecord& record : results.cases) {
-    const std::vector<Orbit> orbits = orbits_of(record);
+    const std::vector<OrbitRow> orbits = orbits_of(record);
     std::map<std::uint16_t, size_t> all, some;
     for (const auto o : numbers_of<std::uint16_t>(whole, record.id + "/points/orbit:u16")) ++all[o];
     for (const auto o : numbers_of<std::uint16_t>(curves, record.id + "/points/orbit:u16")) ++some[o];

@@ -196,6 +196,7 @@ inline StudyResults dynamics(const DynamicsShape& shape = {}) {
                {"section", "strobe"},
                {"phase", 0.0}};
   out.columns = {"mass", "contact", "time", "time.beta", "elements", "steps_per_period"};
+  out.axes = {{"support.amplitude", "m", ""}};
   for (const auto& [time, beta] : shape.methods) out.cases.push_back(dynamics_case(time, beta, shape));
   out.expected_cases = static_cast<int>(out.cases.size());
   derive_synthetic(out);

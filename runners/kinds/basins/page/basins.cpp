@@ -140,8 +140,8 @@ Basins basins_of(const StudyResults& results) {
   out.x = {"x", ""};
   out.y = {"y", ""};
   if (axes != results.study.end() && axes->is_array() && axes->size() == 2) {
-    out.x = scene_quantity(results.study, (*axes)[0].value("pointer", "x"));
-    out.y = scene_quantity(results.study, (*axes)[1].value("pointer", "y"));
+    out.x = swept_quantity(results, (*axes)[0], "x");
+    out.y = swept_quantity(results, (*axes)[1], "y");
   }
   return out;
 }

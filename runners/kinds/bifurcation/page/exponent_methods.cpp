@@ -16,8 +16,8 @@ Table exponent_methods(const CaseView& view) {
   std::map<std::string, size_t> counts;
   size_t all = 0, marginal = 0;
   for (const CaseRecord* record : view.all())
-    for (const Orbit& orbit : orbits_of(*record)) {
-      if (!orbit.exponent) continue;
+    for (const OrbitRow& orbit : orbits_of(*record)) {
+      if (!orbit.largest_exponent()) continue;
       ++counts[orbit.exponent_method];
       ++all;
       marginal += !orbit.marginal.empty();

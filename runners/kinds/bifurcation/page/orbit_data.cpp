@@ -21,7 +21,7 @@ using Rows = std::vector<std::uint32_t>;
 constexpr double cells_across = 4000;
 
 /// Rows of a table of numbers by the orbit that they belong to; rows of no orbit are left out.
-std::vector<Rows> rows_by_orbit(const NumberTable& table, const std::vector<Orbit>& orbits) {
+std::vector<Rows> rows_by_orbit(const NumberTable& table, const std::vector<OrbitRow>& orbits) {
   std::vector<Rows> out(orbits.size());
   const auto* parameter = table.numbers("parameter");
   const auto* start = table.numbers("start");
@@ -97,7 +97,7 @@ std::optional<Section> section_of(const CaseRecord& record) {
   out.u = table->numbers("tip_displacement");
   out.v = table->numbers("tip_velocity");
   if (!out.u || !out.v) return std::nullopt;
-  const std::vector<Orbit> orbits = orbits_of(record);
+  const std::vector<OrbitRow> orbits = orbits_of(record);
   out.rows = rows_by_orbit(*table, orbits);
   const Extent us = extent(*out.u), vs = extent(*out.v);
   const auto cell = [](double value, const Extent& range) {
@@ -161,7 +161,7 @@ std::map<std::tuple<std::string, double, std::string>, std::string> attractors_o
 }
 
 /// Half-way to the neighbours of the same start.
-void put_intervals(const std::vector<Orbit>& orbits, bool logarithmic, OrbitJson& into) {
+void put_intervals(const std::vector<OrbitRow>& orbits, bool logarithmic, OrbitJson& into) {
   std::map<std::string, std::vector<size_t>> by_start;
   for (size_t o = 0; o < orbits.size(); ++o) by_start[orbits[o].start].push_back(o);
   std::vector<double> from(orbits.size()), to(orbits.size());
@@ -290,12 +290,12 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   for (const CaseRecord* record : view.all()) {
     const Table* table = find_table(record->tables, "values");
     if (!table) continue;
-    const std::vector<Orbit> orbits = orbits_of(*record);
+    const std::vector<OrbitRow> orbits = orbits_of(*record);
     if (orbits.empty()) continue;
     OrbitJson one = {{"columns", columns_of(*table)}};
     OrbitJson group = OrbitJson::array(), kind = OrbitJson::array();
     double low = INFINITY, high = -INFINITY;
-    for (const Orbit& orbit : orbits) {
+    for (const OrbitRow& orbit : orbits) {
       group.push_back(regime_group(orbit));
       kind.push_back(start_kind(orbit.start));
       low = std::min(low, orbit.parameter);
@@ -306,7 +306,7 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
     put_intervals(orbits, logarithmic_sweep(low, high), one);
     if (!attractors.empty()) {
       OrbitJson names = OrbitJson::array();
-      for (const Orbit& orbit : orbits) {
+      for (const OrbitRow& orbit : orbits) {
         const auto found = attractors.find({record->id, orbit.parameter, orbit.start});
         names.push_back(found == attractors.end() ? OrbitJson(nullptr) : OrbitJson(found->second));
       }

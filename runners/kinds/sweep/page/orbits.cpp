@@ -17,34 +17,6 @@ int random_number(std::string_view start) {
 
 }  // namespace
 
-std::vector<Orbit> orbits_of(const CaseRecord& record) {
-  std::vector<Orbit> out;
-  const Table* table = find_table(record.tables, "values");
-  if (!table) return out;
-  const TableReader rows(*table);
-  const size_t parameter = rows.column("parameter"), start = rows.column("start"), regime = rows.column("class"),
-               period = rows.column("period"), status = rows.column_if_any("status"),
-               method = rows.column_if_any("exponent_method"), marginal = rows.column_if_any("marginal"),
-               exponent = rows.column_if_any("exponent_1");
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto periods = rows.number(row, period);
-    out.push_back({rows.number(row, parameter).value_or(0), rows.text(row, start), rows.text(row, regime),
-                   rows.text(row, status), rows.text(row, method), rows.text(row, marginal),
-                   periods ? std::optional(static_cast<int>(*periods)) : std::nullopt, rows.number(row, exponent)});
-  }
-  return out;
-}
-
-std::string regime_text(const Orbit& orbit) {
-  if (!orbit.done()) return orbit.status;
-  return regime_text(orbit.regime, orbit.period);
-}
-
-std::string regime_text(const std::string& regime, std::optional<double> period) {
-  const auto motion = motion_class(regime, period);
-  return motion ? text(*motion) : regime;
-}
-
 size_t regime_group(std::string_view regime, std::optional<int> period) {
   const auto motion = period ? motion_class(regime, *period) : motion_class(regime);
   if (!motion) return regime == "refused" || regime == "diverged" ? failed_group : undecided_group;
@@ -67,7 +39,7 @@ size_t regime_group(std::string_view regime, std::optional<int> period) {
   return failed_group;
 }
 
-size_t regime_group(const Orbit& orbit) {
+size_t regime_group(const OrbitRow& orbit) {
   return orbit.done() ? regime_group(orbit.regime, orbit.period) : failed_group;
 }
 
@@ -82,7 +54,7 @@ size_t start_kind(std::string_view start) {
 std::vector<std::string> starts_in(const Cases& cases) {
   std::vector<std::string> out;
   for (const CaseRecord* record : cases)
-    for (const Orbit& orbit : orbits_of(*record))
+    for (const OrbitRow& orbit : orbits_of(*record))
       if (std::find(out.begin(), out.end(), orbit.start) == out.end()) out.push_back(orbit.start);
   std::stable_sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
     return std::pair(start_kind(a), random_number(a)) < std::pair(start_kind(b), random_number(b));
@@ -90,30 +62,16 @@ std::vector<std::string> starts_in(const Cases& cases) {
   return out;
 }
 
-Quantity pointer_quantity(std::string_view pointer) {
-  for (const std::string_view prefix : {"/scene/", "/methods/"})
-    if (pointer.starts_with(prefix)) pointer.remove_prefix(prefix.size());
-  std::string name(pointer);
-  std::replace(name.begin(), name.end(), '/', '.');
-  return {name, axis_unit(name)};
-}
-
-Quantity scene_quantity(const nlohmann::ordered_json& study, const std::string& pointer) {
-  Quantity out = pointer_quantity(pointer);
-  try {
-    const nlohmann::ordered_json::json_pointer place(pointer);
-    if (study.contains(place) && study.at(place).is_string() && pointer.starts_with("/scene/"))
-      return {"factor of " + out.name, ""};
-  } catch (const nlohmann::ordered_json::exception&) {
-    // A pointer that is none keeps its text as its name.
-  }
-  return out;
+Quantity swept_quantity(const StudyResults& results, const nlohmann::ordered_json& where, const std::string& name) {
+  const std::optional<SweptAxis> swept = swept_axis(results, where);
+  if (!swept) return {name, ""};
+  if (swept->factor) return {"factor of " + swept->axis.name, ""};
+  return {swept->axis.name, swept->axis.unit};
 }
 
 Quantity swept_parameter(const StudyResults& results) {
   const auto found = results.study.find("parameter");
-  if (found == results.study.end() || !found->is_object()) return {"parameter", ""};
-  return scene_quantity(results.study, found->value("pointer", "parameter"));
+  return swept_quantity(results, found == results.study.end() ? nlohmann::ordered_json() : *found, "parameter");
 }
 
 }  // namespace ricochet::report

@@ -5,26 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
-
-/// One row of a case's table `values`: what came of one value of the parameter from one start.
-struct Orbit {
-  double parameter = 0;
-  std::string start, regime, status, exponent_method, marginal;
-  std::optional<int> period;
-  std::optional<double> exponent;  ///< the largest Lyapunov exponent, 1/s
-  bool done() const { return status.empty() || status == "done"; }
-};
-
-/// The rows of a case, in its order; empty where it has no such table.
-std::vector<Orbit> orbits_of(const CaseRecord& record);
-
-/// "periodic 3", "chaotic": the words of the table `bifurcations`.
-std::string regime_text(const Orbit& orbit);
-std::string regime_text(const std::string& regime, std::optional<double> period);
 
 /// What orbits are coloured by. The list, its order and its colours are the same for every study.
 struct RegimeGroup {
@@ -46,7 +31,7 @@ inline constexpr std::array<RegimeGroup, 12> regime_groups = {{{"no contact", "#
 inline constexpr size_t undecided_group = 10, failed_group = 11;
 inline constexpr size_t repeating_groups = 8;  ///< the first ones, of what repeats
 /// Index into regime_groups; what did not finish is `failed`.
-size_t regime_group(const Orbit& orbit);
+size_t regime_group(const OrbitRow& orbit);
 /// The same for words such as "periodic 3".
 size_t regime_group(std::string_view regime, std::optional<int> period);
 
@@ -73,9 +58,8 @@ inline bool logarithmic_sweep(double low, double high) {
 /// The parameter that a study of kind `bifurcation` sweeps.
 Quantity swept_parameter(const StudyResults& results);
 
-/// A pointer such as "/scene/support/amplitude" as the axes of a study name it, with its unit.
-Quantity pointer_quantity(std::string_view pointer);
-/// The same in a study, where a value that is swept through a formula is a factor of it, without a unit.
-Quantity scene_quantity(const nlohmann::ordered_json& study, const std::string& pointer);
+/// What a pointer of the study goes through, as axes of figures name it; a factor of a formula has no unit. `name` where
+/// it is no pointer.
+Quantity swept_quantity(const StudyResults& results, const nlohmann::ordered_json& where, const std::string& name);
 
 }  // namespace ricochet::report

@@ -83,8 +83,8 @@ void check_diagram(const StudyResults& results, const Json& page) {
   CHECK(by_start == points);
   // An exponent and its interval per orbit that has one; a cell of the band per orbit.
   for (size_t c = 0; c < 2; ++c) {
-    const auto orbits = report::orbits_of(results.cases[c]);
-    const auto with = std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return o.exponent.has_value(); });
+    const auto orbits = orbits_of(results.cases[c]);
+    const auto with = std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return o.largest_exponent().has_value(); });
     CHECK(count_of(sources(charts[c], "exponents")) == static_cast<size_t>(with));
     CHECK(count_of(sources(charts[c], "whiskers")) == static_cast<size_t>(with));
     CHECK(count_of(sources(charts[c], "twins")) == static_cast<size_t>(with));

@@ -146,7 +146,7 @@ void check_stability(const Ran& ran, const Json& page) {
 void check_bifurcation(const Ran& ran, const Json& page) {
   const Json& diagram = figure(page, "diagram");
   for (size_t c = 0; c < ran.results.cases.size(); ++c) {
-    const auto orbits = report::orbits_of(ran.results.cases[c]);
+    const auto orbits = orbits_of(ran.results.cases[c]);
     size_t cells = 0;
     std::multiset<double> drawn, stored;
     for (const Json& series : diagram.at("charts")[c].at("views")[0].at("series"))
@@ -156,7 +156,7 @@ void check_bifurcation(const Ran& ran, const Json& page) {
       if (source.at("what") == "exponents")
         for (size_t k = 1; k < source.at("values").size(); k += 2) drawn.insert(source.at("values")[k].get<double>());
     for (const auto& orbit : orbits)
-      if (orbit.exponent) stored.insert(*orbit.exponent);
+      if (orbit.largest_exponent()) stored.insert(*orbit.largest_exponent());
     CHECK(drawn == stored);
   }
   const Table& spreads = stored_table(ran.results, "distance_spreads");
