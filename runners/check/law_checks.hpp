@@ -8,7 +8,7 @@ namespace ricochet::checking {
 // Rigid laws (law_rigid.cpp).
 Verdict complementarity_holds(const Law& law);
 
-// Compliant laws (law_compliant.cpp, law_slopes.cpp).
+// Compliant laws (law_compliant.cpp).
 Verdict force_law_is_one(const Law& law);
 Verdict solution_answers_the_force_law(const Law& law);
 Verdict stiffness_as_declared(const Law& law);

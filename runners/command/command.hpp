@@ -13,7 +13,7 @@ class WorkerHost;
 /// processors.
 using FindHosts = std::function<std::vector<std::shared_ptr<WorkerHost>>(int jobs)>;
 
-/// Exit codes of the command (design §5).
+/// Exit codes of the command (runners/README.md).
 enum ExitCode {
   exit_done = 0,
   exit_bug = 1,        ///< our fault: an error that nothing else explains

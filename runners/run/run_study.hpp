@@ -32,7 +32,7 @@ CasePlan plan_for(const std::string& kind, const StudyCase& study_case, const Re
 std::filesystem::path default_folder(const std::string& study, const StudyPart& part);
 
 /// Runs what is missing, so many cases at once, writes every finished case at once, then cases.csv, curves/,
-/// study.json and report.html, and prints the answer. Returns the exit code of design §5 (0, 3, 5, 130); throws
+/// study.json and report.html, and prints the answer. Returns the exit code (0, 3, 5, 130); throws
 /// PartRefused (part_cases.hpp).
 int run_study(const Study& study, const Catalogue& catalogue, const Registry& registry, const RunOptions& options);
 

@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// Sampled series of one case: columns of equal length, in the order of `names` (design §5).
+/// Sampled series of one case: columns of equal length, in the order of `names`.
 struct Curve {
   std::vector<std::string> names;
   std::vector<Series> columns;

@@ -23,7 +23,7 @@ struct MethodChoice {
 /// One combination of the study: everything that one run needs.
 struct StudyCase {
   std::string id;  ///< stable across re-orderings: hash of the axes, 10 hex digits
-  /// Every axis as a column (design §5): mass, mass.velocity, contact, contact.stiffness, time, time.beta, elements,
+  /// Every axis as a column: mass, mass.velocity, contact, contact.stiffness, time, time.beta, elements,
   /// step, and any scene value given as a list by its JSON pointer without "/scene/" and '/' → '.'; in the study's
   /// order.
   std::vector<std::pair<std::string, Json>> axes;

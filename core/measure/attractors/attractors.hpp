@@ -7,7 +7,7 @@
 /// Which settled sections show one attractor, at one value of the parameter.
 ///
 /// Sections of different class (no contact, periodic 3, chaotic …) never do. Of one class, they are linked where their
-/// distance (core/measure/point_clouds.hpp, a mirror image folded onto its original) is at most a threshold,
+/// distance (point_clouds.hpp, a mirror image folded onto its original) is at most a threshold,
 ///
 ///     cycles: c        others: max(c, f × the larger of the two nulls)
 ///
