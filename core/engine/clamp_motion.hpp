@@ -13,7 +13,7 @@ class ClampMotion {
 
   /// A (m) and ψ (rad) of a lane; those of a lane that was never placed are zero.
   void place(int lane, double amplitude, double phase);
-  void hold_still(int lane) { amplitude_.at(0, lane) = 0; }
+  void stop(int lane) { amplitude_.at(0, lane) = 0; }
 
   /// When the step begins, s. Asked for again, it costs nothing.
   void set_time(double t);

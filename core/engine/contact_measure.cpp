@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
+#include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 
@@ -71,7 +72,7 @@ void Marcher::open_gates(StageProgram& program, StageState& state, std::span<con
 // What the law reads in every lane; a bit for each lane beyond a bound.
 std::uint32_t Marcher::measure_contact(StageProgram& program, StageState& state, const double* z) {
   state.closed_lanes = 0;
-  if (clear_ > 0 && state.contact_lanes == 0) return 0;
+  if (lane_flight_ && lane_flight_->clear() && state.contact_lanes == 0) return 0;
   if (state.test) return state.test->outside;
   std::array<const double*, most_slots + 1> slots{};
   std::copy(slot_pointers_.begin(), slot_pointers_.end(), slots.begin());

@@ -87,7 +87,7 @@ void Marcher::freeze(int lane, const LaneEnd& end) {
     clear_lane(tangent);
     clear_efforts(tangent);
   }
-  clamp_.hold_still(lane);
+  clamp_.stop(lane);
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, lane) = 0;
   for (int i = 0; i < lower_.rows(); ++i) {
     lower_.at(i, lane) = -infinity;

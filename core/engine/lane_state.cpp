@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/engine/energy_bounds.hpp>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/engine/stage_state.hpp>
 
 namespace ricochet {
 
@@ -89,7 +88,7 @@ void Marcher::set_state_at(int column, const LaneState& state) {
   const double* memory = state.memory.data();
   for (int i = 0; i < memory_.rows(); ++i) memory_.at(i, column) = *memory++;
   combined_for_ = nullptr;
-  quiet_ = 0;
+  if (lane_flight_) lane_flight_->forget_contact();
 }
 
 LaneState Marcher::lane_state(int lane) const {
@@ -110,16 +109,16 @@ void Marcher::set_lane(int lane, const LaneSpec& spec, const LaneState& state) {
   if (program_.contact) place_stops(lane);
   if (program_.flight && !(same_law && same_stops))
     program_.flight->place(own, program_.contact ? program_.law->layer(0) : 0);
-  clear_ = 0;
   set_state_at(lane, state);
+  if (lane_flight_) lane_flight_->forget();
 }
 
 void Marcher::set_clock(long long step) {
   step_ = step;
   // What comes depends on the state alone, whoever marched before.
-  quiet_ = 0;
-  clear_ = 0;
-  if (program_.flight) program_.flight->forget();
+  if (!lane_flight_) return;
+  lane_flight_->forget();
+  program_.flight->forget();
 }
 
 }  // namespace ricochet

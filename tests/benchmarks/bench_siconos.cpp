@@ -96,10 +96,10 @@ struct Audited {
   EnergyAudit audit;
   ImpactRecorder recorder;
   Audited(const std::shared_ptr<const SemiDiscrete>& problem, double h, MarchWay way, Registry& registry)
-      : marcher(program(problem, h, way, registry)), audit(marcher, Looks::seldom), recorder(marcher, &audit) {
-    marcher.start(&recorder);
+      : marcher(program(problem, h, way, registry)), audit(marcher, SamplingMode::seldom), recorder(marcher) {
+    marcher.start({&audit, &recorder});
   }
-  void march(long long until) { marcher.march(until - marcher.step(), &recorder); }
+  void march(long long until) { marcher.march(until - marcher.step(), {&audit, &recorder}); }
 
   static Program program(const std::shared_ptr<const SemiDiscrete>& problem, double h, MarchWay way,
                          Registry& registry) {

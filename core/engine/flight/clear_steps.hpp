@@ -14,8 +14,8 @@ class ClearSteps {
       : rows_(rows), bound_(bound), motion_(motion) {}
 
   /// The largest k ≤ `most` for which they do in the steps that begin 0, 1, …, k steps after (x, e); −1: not in the
-  /// first. `pace`: over how many steps to ask first, kept from one count to the next.
-  long long count(const std::vector<double>& x, const double* e, long long most, long long& pace);
+  /// first. `ask`: of how many steps to ask first, kept from one count to the next.
+  long long count(const std::vector<double>& x, const double* e, long long most, long long& ask);
   /// How many times a point was read for the last count: what it cost beside steps that are marched, which measure all.
   long long read() const { return read_; }
   /// A point of a watch in each step.
@@ -26,7 +26,7 @@ class ClearSteps {
   static constexpr std::size_t few = 6;
   struct Followed {
     const StepReadings* reading;
-    FlightBound::Pace pace;
+    FlightBound::Differences most;
     double lower, upper;
     long long clear = -1;  // the last step of which it is known to be
   };

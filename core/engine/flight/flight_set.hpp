@@ -2,9 +2,9 @@
 #include <memory>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/flight/clear_steps.hpp>
+#include <ricochet/engine/flight/closed_point.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
 #include <ricochet/engine/flight/flight_works.hpp>
-#include <ricochet/engine/held_point.hpp>
 
 /// \file
 /// The motion between two changes of contact, as uncoupled modes. With no point closed they are the modes of the
@@ -20,17 +20,17 @@ class FlightSet {
  public:
   /// `program` marches one lane in modal coordinates; its `lanes.front()` says where the stops are. `layer` (m): the
   /// law acts from so far before them. `twin`: one that holds the same points, on whatever side; their modes are one.
-  FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,
+  FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
             const FlightSet* twin = nullptr);
 
   /// Why this motion cannot fly; empty where it can.
   const std::string& cause() const { return cause_; }
-  const std::vector<HeldPoint>& held() const { return held_; }
+  const std::vector<ClosedPoint>& closed() const { return closed_; }
 
-  /// Takes the stops of another lane, where none of them is held.
+  /// Takes the stops of another lane, where none of them is closed.
   void place(const LaneSpec& lane, double layer);
 
-  /// x of these modes from the slots (rows each), and back. False where the held points are not where they come to
+  /// x of these modes from the slots (rows each), and back. False where the closed points are not where they come to
   /// rest, up to round-off: the transient is not over.
   bool enter(const double* const* slots, const double* e, std::vector<double>& x) const;
   void leave(const std::vector<double>& x, const double* e, double* const* slots) const;
@@ -46,8 +46,10 @@ class FlightSet {
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
   const StepReadings& tip_readings();
-  /// The effort of a held point in each step, N.
-  const StepReadings& effort(std::size_t held) { return clear_steps_->readings(effort_watch_, static_cast<int>(held)); }
+  /// The effort of a closed point in each step, N.
+  const StepReadings& effort(std::size_t closed) {
+    return clear_steps_->readings(effort_watch_, static_cast<int>(closed));
+  }
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -56,7 +58,7 @@ class FlightSet {
   /// Loads and the like in these modes, and rows of points.
   Eigen::MatrixXd project(const Eigen::MatrixXd& all) const;
   Eigen::MatrixXd onto(const Eigen::MatrixXd& points) const;
-  void hold(const Program& program, const FlightSet* twin);
+  void close(const Program& program, const FlightSet* twin);
   bool rest(const Program& program);
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
@@ -64,22 +66,22 @@ class FlightSet {
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
                            const Eigen::MatrixXd& lifted);
 
-  std::vector<HeldPoint> held_;
+  std::vector<ClosedPoint> closed_;
   int rows_ = 0, modes_ = 0, slots_ = 0;
   FlightDrive drive_;
   std::string cause_;
-  std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
-  Eigen::VectorXd own_mass_;    // M of the structure's modes
-  Eigen::VectorXd held_mass_;   // ΨᵀMΨ
-  Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
-  Eigen::MatrixXd basis_rows_;  // Ψᵀ
-  Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
+  std::vector<double> metres_;   // what a slot has to be multiplied by to be a length
+  Eigen::VectorXd own_mass_;     // M of the structure's modes
+  Eigen::VectorXd closed_mass_;  // ΨᵀMΨ
+  Eigen::MatrixXd basis_;        // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd basis_rows_;   // Ψᵀ
+  Eigen::MatrixXd settle_;       // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
   mutable Eigen::MatrixXd apart_;
-  Eigen::MatrixXd lever_;                         // L, rows × held
-  std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
+  Eigen::MatrixXd lever_;                         // L, rows × closed
+  std::vector<Eigen::MatrixXd> rest_;             // of each closed point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
-  Eigen::MatrixXd held_rows_;                     // H_I
+  Eigen::MatrixXd closed_rows_;                   // H_I
   std::unique_ptr<const StepRows> step_rows_;
   FlightWatch tip_watch_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;

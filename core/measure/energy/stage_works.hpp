@@ -43,7 +43,7 @@ class StageWorks {
     if (projected_) works.loads += marcher.support(lane, stage.sum_load) * stage.sum.projection;
   }
   /// The same of a step that was not shown, of a plan of one stage: where squares_alone().
-  void add(const Marcher& marcher, const QuietSteps::Step& step, Works& works) const {
+  void add(const Marcher& marcher, const FreeStep& step, Works& works) const {
     const StageTerms& stage = stages_.front();
     works.damping += stage.by_sum * step.form;
     if (projected_) works.loads += marcher.support(0, stage.sum_load, step) * step.projection;

@@ -147,7 +147,7 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   for (std::size_t i = 0; i < massive_.size(); ++i) massive_[i] = massive_[i] && resolved[i];
   needed_ = some();
   if (!needed_) return;
-  marcher.hold_tangents(massive_, longest_impact);
+  marcher.delay_tangents(massive_, longest_impact);
   offset_ = program.velocity_offset;
   restitution_ = plan_restitution(program.plan, program.h);
   for (int lane = 0; lane < marcher.lanes(); ++lane) {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/infinity.hpp>
-#include <ricochet/engine/flight/held_steps.hpp>
+#include <ricochet/engine/flight/closed_steps.hpp>
 
 namespace ricochet {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr double resting = 64 * 0x1p-52;
 
 // Whether what a rigid law holds in this stage is the position at its end.
-bool holds_the_end(const StageProgram& stage, const Stage& plan) {
+bool stops_the_end(const StageProgram& stage, const Stage& plan) {
   const auto weights = [](const Combination& c) {
     std::vector<double> all = c.slots;
     all.resize(most_slots);
@@ -25,7 +25,7 @@ bool holds_the_end(const StageProgram& stage, const Stage& plan) {
 
 }  // namespace
 
-std::string HeldSteps::why_not(const Program& program) {
+std::string ClosedSteps::why_not(const Program& program) {
   if (!program.contact) return "there is none";
   if (program.tangents > 0) return "tangents are taken along";
   if (program.problem->changed_by_law()) return "the law measures no displacements";
@@ -42,15 +42,15 @@ std::string HeldSteps::why_not(const Program& program) {
     if (stage.impulse.op) return "efforts move a second unknown";
     if (program.law->reads()) continue;
     if (stage.measure.z == 0) return "the impact measure does not see the effort of its own stage";
-    if (!holds_the_end(stage, program.plan.stages[k])) return "what the stops hold is not the end of a stage";
+    if (!stops_the_end(stage, program.plan.stages[k])) return "what the stops hold is not the end of a stage";
   }
   if (!last) return "no stage reads it";
   if (!program.law->reads() && last != &program.stages.back()) return "the last stage does not read it";
   return "";
 }
 
-HeldSteps::HeldSteps(const Program& program, FlightSet& free, std::vector<HeldPoint> held)
-    : rows_(program, free, std::move(held)), free_(free) {
+ClosedSteps::ClosedSteps(const Program& program, FlightSet& free, std::vector<ClosedPoint> closed)
+    : rows_(program, free, std::move(closed)), free_(free) {
   const auto n = static_cast<std::size_t>(rows_.modes()), state = static_cast<std::size_t>(rows_.slots()) * n;
   const std::size_t m = rows_.efforts(), steps = static_cast<std::size_t>(longest) + 1;
   for (auto* block : {&start_, &x_[0], &x_[1]}) block->resize(state);
@@ -62,7 +62,7 @@ HeldSteps::HeldSteps(const Program& program, FlightSet& free, std::vector<HeldPo
   vector_.resize(2 * n);
 }
 
-double HeldSteps::row(const HeldRows::Row& row, const double* x, long long step) const {
+double ClosedSteps::row(const ClosedRows::Row& row, const double* x, long long step) const {
   double sum = flight_kernels().dot(static_cast<int>(row.x.size()), row.x.data(), x + row.first);
   for (int k = 0; k < rows_.drives(); ++k) sum += row.e[static_cast<std::size_t>(k)] * e_[k];
   const std::size_t m = rows_.efforts();
@@ -72,7 +72,7 @@ double HeldSteps::row(const HeldRows::Row& row, const double* x, long long step)
 }
 
 // p of a step from its rows; false where some point lets go.
-bool HeldSteps::solve(const double* x, long long step) {
+bool ClosedSteps::solve(const double* x, long long step) {
   const std::size_t m = rows_.efforts();
   double* p = efforts_.data() + (static_cast<std::size_t>(step) + rows_.memory()) * m;
   for (std::size_t i = 0; i < m; ++i) rest_[i] = rows_.points[i].target - row(rows_.points[i].law, x, step);
@@ -81,7 +81,7 @@ bool HeldSteps::solve(const double* x, long long step) {
     for (std::size_t j = 0; j < m; ++j) p[i] += rows_.solution[i * m + j] * rest_[j];
   }
   for (std::size_t i = 0; i < m; ++i) {
-    const HeldRows::Point& point = rows_.points[i];
+    const ClosedRows::Point& point = rows_.points[i];
     if (!(point.side * p[i] > 0)) return false;
     // A point that slides along its stop is on either side of it, by round-off.
     const double clear = resting * std::abs(point.stop);
@@ -93,7 +93,8 @@ bool HeldSteps::solve(const double* x, long long step) {
   return true;
 }
 
-const double* HeldSteps::vector(const HeldRows::Vector& vector, const double* x, long long step, double* out) const {
+const double* ClosedSteps::vector(const ClosedRows::Vector& vector, const double* x, long long step,
+                                  double* out) const {
   const FlightKernels& kernels = flight_kernels();
   const std::size_t m = rows_.efforts();
   kernels.row(rows_.modes(), rows_.slots(), rows_.drives(), vector.table.data(), x, e_, out);
@@ -103,13 +104,13 @@ const double* HeldSteps::vector(const HeldRows::Vector& vector, const double* x,
 }
 
 // The works of a step whose efforts are known.
-FlightSums HeldSteps::works(const double* x, long long step) {
+FlightSums ClosedSteps::works(const double* x, long long step) {
   const FlightKernels& kernels = flight_kernels();
   const int n = rows_.modes();
-  const std::size_t m = rows_.efforts(), points = rows_.held().size();
+  const std::size_t m = rows_.efforts(), points = rows_.closed().size();
   FlightSums works;
-  for (const HeldRows::Balance& balance : rows_.balances) {
-    for (const HeldRows::Balance::Loss& loss : balance.losses)
+  for (const ClosedRows::Balance& balance : rows_.balances) {
+    for (const ClosedRows::Balance::Loss& loss : balance.losses)
       works.scheme += kernels.quadratic(n, 1, 0, loss.weight.data(), vector(loss.value, x, step, vector_.data()), e_);
     if (balance.displacement.table.empty()) continue;
     const double* s = vector(balance.displacement, x, step, vector_.data());
@@ -144,8 +145,8 @@ FlightSums HeldSteps::works(const double* x, long long step) {
 }
 
 // Takes the state over; false where other points still push, or a rigid stop does not hold these to round-off.
-bool HeldSteps::begin(const double* const* slots, const double* e, Past past) {
-  const std::size_t n = static_cast<std::size_t>(rows_.modes()), points = rows_.held().size(), m = rows_.efforts();
+bool ClosedSteps::begin(const double* const* slots, const double* e, Past past) {
+  const std::size_t n = static_cast<std::size_t>(rows_.modes()), points = rows_.closed().size(), m = rows_.efforts();
   for (int j = 0; j < rows_.slots(); ++j) std::copy_n(slots[j], n, start_.data() + static_cast<std::size_t>(j) * n);
   std::copy_n(e, 3, start_e_);
   for (int stage = 0; stage < rows_.stages(); ++stage) {
@@ -158,8 +159,8 @@ bool HeldSteps::begin(const double* const* slots, const double* e, Past past) {
       const double* from = kept[q - 1];
       std::size_t next = 0;
       for (int i = 0; i < rows_.contact_points(); ++i) {
-        const bool held = next < points && rows_.held()[next].point == i;
-        if (held)
+        const bool closed = next < points && rows_.closed()[next].point == i;
+        if (closed)
           to[next++] = from[i];
         else if (from[i] != 0)
           return false;
@@ -177,7 +178,7 @@ bool HeldSteps::begin(const double* const* slots, const double* e, Past past) {
 }
 
 // Up to `most` steps and the one after; how many of them keep their points.
-long long HeldSteps::run(long long most) {
+long long ClosedSteps::run(long long most) {
   const FlightKernels& kernels = flight_kernels();
   const std::size_t m = rows_.efforts();
   const int state = rows_.slots() * rows_.modes();
@@ -197,7 +198,7 @@ long long HeldSteps::run(long long most) {
     if (made > 0) {
       sums_ += last;
       for (std::size_t i = 0; i < rows_.start.size(); ++i) {
-        const HeldRows::Point& point = rows_.points[i];
+        const ClosedRows::Point& point = rows_.points[i];
         penetration_ = std::max(penetration_, point.side * (point.stop - row(rows_.start[i], x, made)));
       }
       tips_[static_cast<std::size_t>(made) - 1] = row(rows_.tip, x, made);
@@ -213,7 +214,7 @@ long long HeldSteps::run(long long most) {
 
 // Whether all other points stay between their bounds in the state that was looked at and `steps` steps on, with efforts
 // that sum up to impulse_.
-bool HeldSteps::stays_open(long long steps) {
+bool ClosedSteps::stays_open(long long steps) {
   FlightBound& bound = free_.bound();
   const std::size_t m = rows_.efforts();
   const auto power =
@@ -224,7 +225,7 @@ bool HeldSteps::stays_open(long long steps) {
     std::size_t next = 0;
     for (int i = 0; i < rows_.contact_points(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      if (next < rows_.held().size() && rows_.held()[next].point == i) {
+      if (next < rows_.closed().size() && rows_.closed()[next].point == i) {
         ++next;
         continue;
       }
@@ -238,11 +239,11 @@ bool HeldSteps::stays_open(long long steps) {
   return true;
 }
 
-long long HeldSteps::march(const double* const* slots, const double* e, Past past, long long most) {
+long long ClosedSteps::march(const double* const* slots, const double* e, Past past, long long most) {
   flown_ = 0;
   if (!begin(slots, e, past)) return 0;
   most = std::min({most, longest, free_.bound().longest()});
-  const bool others = rows_.contact_points() > static_cast<int>(rows_.held().size());
+  const bool others = rows_.contact_points() > static_cast<int>(rows_.closed().size());
   if (others) free_.bound().look(start_.data(), e);
   constexpr int attempts = 3;
   for (int attempt = 0; attempt < attempts && most >= 1; ++attempt, most /= 4) {
@@ -256,7 +257,7 @@ long long HeldSteps::march(const double* const* slots, const double* e, Past pas
   return 0;
 }
 
-void HeldSteps::leave(double* const* slots, Past past) const {
+void ClosedSteps::leave(double* const* slots, Past past) const {
   const std::size_t n = static_cast<std::size_t>(rows_.modes()), m = rows_.efforts();
   for (int j = 0; j < rows_.slots(); ++j) std::copy_n(x_[at_].data() + static_cast<std::size_t>(j) * n, n, slots[j]);
   for (int stage = 0; stage < rows_.stages(); ++stage) {
@@ -269,7 +270,7 @@ void HeldSteps::leave(double* const* slots, Past past) const {
       if (step < -static_cast<long long>(rows_.memory())) continue;
       const double* p = efforts_.data() + static_cast<std::size_t>(step + static_cast<long long>(rows_.memory())) * m +
                         static_cast<std::size_t>(rows_.first(stage));
-      for (std::size_t i = 0; i < rows_.held().size(); ++i) kept[q][rows_.held()[i].point] = p[i];
+      for (std::size_t i = 0; i < rows_.closed().size(); ++i) kept[q][rows_.closed()[i].point] = p[i];
     }
   }
 }

@@ -9,7 +9,7 @@ namespace ricochet {
 /// The numbers of a step with these points closed: everything that is linear in the state, in what drives it, and in
 /// the efforts of this step and of those before that still act, worked out once. Efforts stand stage by stage, point by
 /// point.
-class HeldRows {
+class ClosedRows {
  public:
   /// Σ w x + Σ d e + Σ_q a_q p₋q, a number. What is zero of w at its ends is left out.
   struct Row {
@@ -23,7 +23,7 @@ class HeldRows {
     std::vector<double> table;                                   // (slots + drives) × modes
     std::vector<std::pair<std::size_t, std::vector<double>>> p;  // where in (p, p₋₁, …), and its column
   };
-  /// What a stage that reads contact asks of a held point.
+  /// What a stage that reads contact asks of a closed point.
   struct Point {
     double side = 1, stop = 0;
     double target = 0;  // t of (7)
@@ -47,9 +47,9 @@ class HeldRows {
     std::vector<Loss> losses;
   };
 
-  HeldRows(const Program& program, FlightSet& free, std::vector<HeldPoint> held);
+  ClosedRows(const Program& program, FlightSet& free, std::vector<ClosedPoint> closed);
 
-  const std::vector<HeldPoint>& held() const { return held_; }
+  const std::vector<ClosedPoint>& closed() const { return closed_; }
   int modes() const { return modes_; }
   int slots() const { return slots_; }
   int drives() const { return drives_; }
@@ -57,9 +57,9 @@ class HeldRows {
   bool reads(int stage) const { return first_[static_cast<std::size_t>(stage)] >= 0; }
   int first(int stage) const { return first_[static_cast<std::size_t>(stage)]; }
   int contact_points() const { return static_cast<int>(contact_.rows()); }
-  /// H of a held point.
+  /// H of a closed point.
   const double* row_of_point(std::size_t i) const {
-    return held_contact_.data() + i * static_cast<std::size_t>(modes_);
+    return closed_contact_.data() + i * static_cast<std::size_t>(modes_);
   }
   /// Efforts of a step.
   std::size_t efforts() const { return m_; }
@@ -73,7 +73,7 @@ class HeldRows {
   std::vector<double> solution;  ///< W₀⁻¹, by rows
   std::vector<Balance> balances;
   std::vector<std::pair<std::size_t, std::vector<double>>> change;  ///< U: where in (p, p₋₁, …), slots × modes
-  std::vector<Row> start;  ///< absolute place of each held point where a step begins
+  std::vector<Row> start;  ///< absolute place of each closed point where a step begins
   Row tip;                 ///< of the tip there
   /// How far an effort may take a measure of an open point within 2^k steps: of each watch of the free motion, points ×
   /// efforts for each k.
@@ -88,14 +88,14 @@ class HeldRows {
   void add_reach(FlightSet& free);
   void find_memory(const Program& program);
 
-  std::vector<HeldPoint> held_;
+  std::vector<ClosedPoint> closed_;
   const StepRows* rows_;  // while it is made
   FlightDrive drive_;
   int modes_, slots_, drives_;
   std::vector<int> first_;
   std::size_t m_ = 0, memory_ = 0;
   Eigen::MatrixXd contact_;
-  std::vector<double> held_contact_;
+  std::vector<double> closed_contact_;
   Eigen::VectorXd mass_;
   std::vector<std::vector<EffortResponse>> responses_;  // of q steps before, of each effort
 };

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
-#include <ricochet/engine/flight/held_rows.hpp>
+#include <ricochet/engine/flight/closed_rows.hpp>
 
 /// \file
 /// Steps through which the same points stay closed, one by one, by what the law comes to there. With the efforts p of
@@ -13,7 +13,7 @@
 /// open point is measured and nobody looks: of all that a step with 50 points asks, a tenth is left.
 namespace ricochet {
 
-class HeldSteps {
+class ClosedSteps {
  public:
   /// Longest run of steps at once.
   static constexpr long long longest = 2048;
@@ -24,7 +24,7 @@ class HeldSteps {
   static std::string why_not(const Program& program);
 
   /// `free`: the same motion without contact.
-  HeldSteps(const Program& program, FlightSet& free, std::vector<HeldPoint> held);
+  ClosedSteps(const Program& program, FlightSet& free, std::vector<ClosedPoint> closed);
 
   /// Makes up to `most` steps from this state on, as long as these points alone are closed in each of them and in the
   /// one after; how many.
@@ -37,11 +37,11 @@ class HeldSteps {
   /// Absolute displacement of the tip after each of them, m.
   std::span<const double> tips() const { return {tips_.data(), static_cast<std::size_t>(flown_)}; }
 
-  /// Each stage of each of these steps: `see`(stage, efforts of the held points, absolute places of these before it).
+  /// Each stage of each of these steps: `see`(stage, efforts of the closed points, absolute places of these before it).
   /// Empty where a stage reads no contact.
   template <class See>
   void each_stage(See&& see) const {
-    const std::size_t points = rows_.held().size(), m = rows_.efforts();
+    const std::size_t points = rows_.closed().size(), m = rows_.efforts();
     for (long long step = 0; step < flown_; ++step) {
       const double* effort = efforts_.data() + (static_cast<std::size_t>(step) + rows_.memory()) * m;
       const double* place = places_.data() + static_cast<std::size_t>(step) * m;
@@ -67,10 +67,10 @@ class HeldSteps {
   double effort(long long step, std::size_t q, std::size_t i) const {
     return efforts_[(static_cast<std::size_t>(step) + rows_.memory() - q) * rows_.efforts() + i];
   }
-  double row(const HeldRows::Row& row, const double* x, long long step) const;
-  const double* vector(const HeldRows::Vector& vector, const double* x, long long step, double* out) const;
+  double row(const ClosedRows::Row& row, const double* x, long long step) const;
+  const double* vector(const ClosedRows::Vector& vector, const double* x, long long step, double* out) const;
 
-  HeldRows rows_;
+  ClosedRows rows_;
   FlightSet& free_;
   std::vector<double> start_, x_[2], efforts_, places_, tips_, impulse_, rest_, vector_;
   double start_e_[3] = {}, e_[3] = {};

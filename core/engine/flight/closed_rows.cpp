@@ -2,9 +2,9 @@
 #include <bit>
 #include <cmath>
 #include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/engine/flight/closed_rows.hpp>
+#include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/engine/flight/drive_rows.hpp>
-#include <ricochet/engine/flight/held_rows.hpp>
-#include <ricochet/engine/flight/held_steps.hpp>
 
 namespace ricochet {
 namespace {
@@ -45,8 +45,8 @@ double ratio_of(const Combination& s, const Combination& r) {
 
 }  // namespace
 
-HeldRows::HeldRows(const Program& program, FlightSet& free, std::vector<HeldPoint> held)
-    : held_(std::move(held)),
+ClosedRows::ClosedRows(const Program& program, FlightSet& free, std::vector<ClosedPoint> closed)
+    : closed_(std::move(closed)),
       rows_(&free.step_rows()),
       drive_(rows_->drive()),
       modes_(rows_->modes()),
@@ -56,17 +56,17 @@ HeldRows::HeldRows(const Program& program, FlightSet& free, std::vector<HeldPoin
       mass_(program.model->inertia().mass.diagonal()) {
   for (const StageProgram& stage : program.stages) {
     first_.push_back(stage.reads_contact ? static_cast<int>(m_) : -1);
-    if (stage.reads_contact) m_ += held_.size();
+    if (stage.reads_contact) m_ += closed_.size();
   }
-  for (const HeldPoint& point : held_)
-    for (int mode = 0; mode < modes_; ++mode) held_contact_.push_back(contact_(point.point, mode));
+  for (const ClosedPoint& point : closed_)
+    for (int mode = 0; mode < modes_; ++mode) closed_contact_.push_back(contact_(point.point, mode));
   find_memory(program);
   for (std::size_t q = 0; q <= memory_; ++q) {
     std::vector<EffortResponse>& of_steps = responses_.emplace_back();
     for (int stage = 0; stage < stages(); ++stage)
-      for (std::size_t i = 0; reads(stage) && i < held_.size(); ++i) {
+      for (std::size_t i = 0; reads(stage) && i < closed_.size(); ++i) {
         const EffortResponse& one =
-            of_steps.emplace_back(program, stage, static_cast<int>(q), contact_.row(held_[i].point).transpose());
+            of_steps.emplace_back(program, stage, static_cast<int>(q), contact_.row(closed_[i].point).transpose());
         if (!one.none()) {
           const MatrixXd& moved = one.change();
           change.emplace_back(q * m_ + of_steps.size() - 1,
@@ -79,7 +79,7 @@ HeldRows::HeldRows(const Program& program, FlightSet& free, std::vector<HeldPoin
   Combination position;
   position.slots = {1};
   const RowVectorXd here = harmonic(PhaseWeights({{0, 1}}, program.problem->support.pulsation, program.h), drive_);
-  for (const HeldPoint& point : held_) start.push_back(row_of(0, position, contact_.row(point.point), here));
+  for (const ClosedPoint& point : closed_) start.push_back(row_of(0, position, contact_.row(point.point), here));
   tip = row_of(0, position, dense(program.model->tip(), modes_).row(0), here);
   add_reach(free);
   responses_.clear();
@@ -87,7 +87,7 @@ HeldRows::HeldRows(const Program& program, FlightSet& free, std::vector<HeldPoin
 }
 
 // As far as the equations and the works look back.
-void HeldRows::find_memory(const Program& program) {
+void ClosedRows::find_memory(const Program& program) {
   for (int stage = 0; stage < stages(); ++stage) {
     const StageProgram& one = program.stages[static_cast<std::size_t>(stage)];
     const std::size_t weights = std::max(one.effort.size(), one.work_effort.size());
@@ -96,8 +96,8 @@ void HeldRows::find_memory(const Program& program) {
   }
 }
 
-HeldRows::Row HeldRows::row_of(int stage, const Combination& c, const RowVectorXd& at_point,
-                               const RowVectorXd& drive) const {
+ClosedRows::Row ClosedRows::row_of(int stage, const Combination& c, const RowVectorXd& at_point,
+                                   const RowVectorXd& drive) const {
   Row row;
   MatrixXd weights = MatrixXd::Zero(modes_, slots_);
   RowVectorXd e = drive;
@@ -117,7 +117,7 @@ HeldRows::Row HeldRows::row_of(int stage, const Combination& c, const RowVectorX
   return row;
 }
 
-HeldRows::Vector HeldRows::vector_of(int stage, const Combination& c) const {
+ClosedRows::Vector ClosedRows::vector_of(int stage, const Combination& c) const {
   Vector vector;
   vector.table.resize(static_cast<std::size_t>(slots_ + drives_) * static_cast<std::size_t>(modes_));
   for (int mode = 0; mode < modes_; ++mode) {
@@ -131,7 +131,7 @@ HeldRows::Vector HeldRows::vector_of(int stage, const Combination& c) const {
   return vector;
 }
 
-void HeldRows::add_points(const Program& program) {
+void ClosedRows::add_points(const Program& program) {
   const LaneSpec& lane = program.lanes.front();
   const double omega = program.problem->support.pulsation;
   ContactSlopes slopes;
@@ -146,11 +146,11 @@ void HeldRows::add_points(const Program& program) {
     const StageProgram& stage = program.stages[static_cast<std::size_t>(at)];
     Combination position;
     position.slots = {1};
-    for (const HeldPoint& held : held_) {
-      const RowVectorXd h = contact_.row(held.point);
+    for (const ClosedPoint& closed : closed_) {
+      const RowVectorXd h = contact_.row(closed.point);
       Point point;
-      point.side = held.lower ? 1 : -1;
-      point.stop = held.lower ? lane.lower[held.point] : lane.upper[held.point];
+      point.side = closed.lower ? 1 : -1;
+      point.stop = closed.lower ? lane.lower[closed.point] : lane.upper[closed.point];
       point.place = row_of(at, position, h, harmonic(PhaseWeights({{stage.facts.from, 1}}, omega, program.h), drive_));
       point.depth = row_of(at, stage.measure, h, harmonic(stage.measure_phase, drive_));
       if (rigid) {
@@ -197,7 +197,7 @@ void HeldRows::add_points(const Program& program) {
     for (Index j = 0; j < inverse.cols(); ++j) solution.push_back(inverse(i, j));
 }
 
-void HeldRows::add_balances(const Program& program) {
+void ClosedRows::add_balances(const Program& program) {
   const Damping& damping = program.problem->damping;
   for (int at = 0; at < stages(); ++at) {
     const Stage& plan = program.plan.stages[static_cast<std::size_t>(at)];
@@ -237,10 +237,10 @@ void HeldRows::add_balances(const Program& program) {
   }
 }
 
-void HeldRows::add_reach(FlightSet& free) {
+void ClosedRows::add_reach(FlightSet& free) {
   FlightBound& bound = free.bound();
   const auto count = static_cast<std::size_t>(contact_.rows());
-  const int powers = std::bit_width(static_cast<unsigned long long>(HeldSteps::longest));
+  const int powers = std::bit_width(static_cast<unsigned long long>(ClosedSteps::longest));
   const double still[3] = {};
   reach.resize(static_cast<std::size_t>(bound.watches()));
   for (int w = 0; w < bound.watches(); ++w)
