@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/box_round_off.hpp>
-#include <ricochet/algebra/infinity.hpp>
 
 namespace ricochet {
 namespace {

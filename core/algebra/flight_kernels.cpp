@@ -2,7 +2,6 @@
 #include <cmath>
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/algebra/instruction_set.hpp>
-#include <ricochet/algebra/loose_four.hpp>
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,6 @@
 #else
 #define RICOCHET_AVX512 __attribute__((target("avx2,fma,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
 #endif
-
 namespace ricochet {
 
 /// What kernels over lanes are compiled for.
@@ -34,5 +33,9 @@ inline bool has_avx512() {
 inline InstructionSet best_instruction_set() {
   return has_avx512() ? InstructionSet::avx512 : has_avx2() ? InstructionSet::avx2 : InstructionSet::baseline;
 }
+
+/// Four numbers that may start at any of them. A typedef: in a using, clang leaves the alignment out.
+typedef double LooseFour __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(LooseFour) == 8);
 
 }  // namespace ricochet

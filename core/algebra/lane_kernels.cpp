@@ -1,11 +1,9 @@
 #include <ricochet/algebra/instruction_set.hpp>
 #include <ricochet/algebra/lane_band.hpp>
-#include <ricochet/algebra/lane_combinations.hpp>
 #include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/algebra/lane_modes.hpp>
 #include <ricochet/algebra/lane_nodes.hpp>
 #include <ricochet/algebra/lane_rows.hpp>
-#include <ricochet/algebra/lane_sparse.hpp>
 #include <stdexcept>
 
 namespace ricochet {

@@ -2,7 +2,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/infinity.hpp>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/pointwise_solver.hpp>
 
 namespace ricochet {

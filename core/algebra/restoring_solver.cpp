@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/infinity.hpp>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/restoring_solver.hpp>
 
 namespace ricochet {

@@ -1,5 +1,8 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
 #include <string>
 #include <vector>
 
@@ -49,5 +52,25 @@ class SparseLdlt {
   std::vector<int> order_, start_, row_;  // P, columns of L without the diagonal
   std::vector<double> value_, pivot_, work_;
 };
+
+/// A sparse factor as SparseStep reads it: L by rows for the way down, by columns for the way up.
+class SparseSubstitution {
+ public:
+  SparseSubstitution() = default;
+  /// `order`: the unknown of each row of the matrix that was factorised. Those from `known` on have no right-hand side,
+  /// those from `wanted` on no place in z.
+  SparseSubstitution(const SparseLdlt& ldlt, const std::vector<int>& order, int known, int wanted);
+  int rows() const { return static_cast<int>(inverse_.size()); }
+  /// Without blocks.
+  SparseStep step() const;
+
+ private:
+  std::vector<int> lower_start_, lower_index_, upper_start_, upper_index_, from_, to_;
+  std::vector<double> lower_, upper_, inverse_;
+};
+
+/// S = k K + m M as (1) of band_ldlt.hpp: a mass that is not assembled enters through its border, scaled so that both
+/// blocks have the same units. K is n × n; m ≥ 0.
+QuasiDefinite weighted_system(double k, const SparseMatrix& stiffness, double m, const Inertia& inertia);
 
 }  // namespace ricochet

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <ricochet/algebra/infinity.hpp>
-#include <ricochet/engine/available_memory.hpp>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>

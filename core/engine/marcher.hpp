@@ -2,10 +2,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <ricochet/engine/clamp_motion.hpp>
 #include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/lane_state.hpp>
-#include <ricochet/engine/lane_status.hpp>
+#include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/step_observer.hpp>
 #include <span>
 #include <string>

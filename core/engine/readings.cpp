@@ -4,7 +4,7 @@
 #include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
-#include <ricochet/engine/load_window.hpp>
+#include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
 
 /// \file

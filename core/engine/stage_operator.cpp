@@ -2,9 +2,7 @@
 #include <cmath>
 #include <ricochet/algebra/band_ldlt.hpp>
 #include <ricochet/algebra/node_band.hpp>
-#include <ricochet/algebra/sparse_substitution.hpp>
-#include <ricochet/algebra/weighted_system.hpp>
-#include <ricochet/engine/modal_operator.hpp>
+#include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {

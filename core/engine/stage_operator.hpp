@@ -63,4 +63,7 @@ using OperatorOrRefusal = std::variant<std::unique_ptr<StageOperator>, Refusal>;
 /// Makes the operator of a stage in the coordinates of `model`, for T lanes.
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes);
 
+/// The operator of a stage where `model` has modal coordinates. Refuses a mode on which S vanishes.
+OperatorOrRefusal make_modal_operator(const MarchModel& model, const FoldedStage& stage, int lanes);
+
 }  // namespace ricochet

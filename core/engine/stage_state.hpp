@@ -4,9 +4,7 @@
 #include <optional>
 #include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/restoring_solver.hpp>
-#include <ricochet/engine/active_system.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
-#include <ricochet/engine/stage_impulse.hpp>
 #include <ricochet/engine/step_observer.hpp>
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <optional>
-#include <ricochet/algebra/inverse_form.hpp>
+#include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 
 namespace ricochet {

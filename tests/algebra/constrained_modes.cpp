@@ -1,7 +1,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/algebra/constrained_modes.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 
 using namespace ricochet;

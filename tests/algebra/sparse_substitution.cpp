@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/sparse_substitution.hpp>
+#include <ricochet/algebra/sparse_ldlt.hpp>
 
 #include "tests/instruction_sets.hpp"
 

@@ -2,9 +2,8 @@
 #include <bit>
 #include <cmath>
 #include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/engine/flight/closed_rows.hpp>
 #include <ricochet/engine/flight/closed_steps.hpp>
-#include <ricochet/engine/flight/drive_rows.hpp>
+#include <ricochet/engine/flight/step_rows.hpp>
 
 namespace ricochet {
 namespace {

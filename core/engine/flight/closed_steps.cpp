@@ -2,8 +2,8 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/closed_steps.hpp>
 
 namespace ricochet {

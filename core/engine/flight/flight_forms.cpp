@@ -1,5 +1,5 @@
-#include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/step_rows.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
 
 // What is asked of a bound while a march goes on; how it is made stands in flight_bound.cpp.

@@ -1,12 +1,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/constrained_modes.hpp>
+#include <ricochet/algebra/block.hpp>
 #include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
-#include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/step_rows.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,10 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <ricochet/engine/compile.hpp>
-#include <ricochet/engine/flight/clear_steps.hpp>
-#include <ricochet/engine/flight/closed_point.hpp>
+#include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
-#include <ricochet/engine/flight/flight_works.hpp>
 
 /// \file
 /// The motion between two changes of contact, as uncoupled modes. With no point closed they are the modes of the
@@ -15,6 +14,96 @@
 ///
 /// (L is K-orthogonal to Ψ, so that only M couples them), and the efforts are p = Lᵀ(S z − b).
 namespace ricochet {
+
+/// A contact point closed at one of its stops.
+struct ClosedPoint {
+  int point = 0;  ///< row of H
+  bool lower = true;
+  bool operator==(const ClosedPoint&) const = default;
+};
+
+/// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone: by
+/// rows h r, h r A, h r A², …; h is the point over the modes.
+class StepReadings {
+ public:
+  static constexpr int block = 8;
+
+  StepReadings(const StepRows& rows, const FlightWatch& watch, int point);
+
+  /// `step` ≤ block steps after (x, e).
+  double operator()(int step, const double* x, const double* e) const;
+  /// It in each of the first `steps` ≤ block steps.
+  void first(int steps, const double* x, const double* e, double* out) const { read(0, steps, x, e, out); }
+  /// Its value in the step that begins now, and its first, second and third differences over those that follow: by h r,
+  /// h r D, h r D² and h r D³, so that what they differ by is not lost in their sizes.
+  void differences(const double* x, const double* e, double out[4]) const {
+    read(differences_from, differences_read, x, e, out);
+  }
+  /// `see`(value) in each of `steps` steps from (x, e) on, which go on to where the last block ends.
+  template <class See>
+  void each(const FlightMotion& motion, long long steps, double* x, double* e, See&& see) const {
+    for (long long first = 0; first < steps; first += block) {
+      const int count = static_cast<int>(std::min<long long>(block, steps - first));
+      double values[block];
+      this->first(count, x, e, values);
+      for (int step = 0; step < count; ++step) see(values[step]);
+      motion.advance(block, x, e);
+    }
+  }
+
+ private:
+  static constexpr int differences_from = block + 1, differences_read = 4,
+                       rows_read = differences_from + differences_read;
+
+  void read(int first, int count, const double* x, const double* e, double* out) const;
+
+  int size_, drives_;
+  std::vector<double> weights_, drive_;  // of each step, then of each difference: slots × modes, drives
+};
+
+/// How many steps lie ahead in which every measure of a motion stays between its bounds. The bound of the motion alone
+/// would say it of few steps where some point is near a bound or a fast mode is strong: so it is asked again from where
+/// it ends, and the few points that it leaves open are read, as often as they could have reached their bound since: in
+/// every step just before they do. What ends it is then the first step in which one does, up to round-off.
+class ClearSteps {
+ public:
+  ClearSteps(const StepRows& rows, FlightBound& bound, const FlightMotion& motion)
+      : rows_(rows), bound_(bound), motion_(motion) {}
+
+  /// The largest k ≤ `most` for which they do in the steps that begin 0, 1, …, k steps after (x, e); −1: not in the
+  /// first. `ask`: of how many steps to ask first, kept from one count to the next.
+  long long count(const std::vector<double>& x, const double* e, long long most, long long& ask);
+  /// How many times a point was read for the last count: what it cost beside steps that are marched, which measure all.
+  long long read() const { return read_; }
+  /// A point of a watch in each step.
+  const StepReadings& readings(int watch, int point);
+
+ private:
+  // Points that are followed one by one.
+  static constexpr std::size_t few = 6;
+  struct Followed {
+    const StepReadings* reading;
+    FlightBound::Differences most;
+    double lower, upper;
+    long long clear = -1;  // the last step of which it is known to be
+  };
+
+  long long follow(long long steps);
+  long long clear_steps(const Followed& one);
+  bool inside(const Followed& one, int step);
+  void advance(long long k);
+
+  const StepRows& rows_;
+  FlightBound& bound_;
+  const FlightMotion& motion_;
+  // Of each watch and point; made when first asked for.
+  std::vector<std::vector<std::unique_ptr<StepReadings>>> readings_;
+  std::vector<double> x_;
+  double e_[3] = {};
+  std::vector<WatchedPoint> exposed_;
+  std::vector<Followed> followed_;
+  long long read_ = 0;
+};
 
 class FlightSet {
  public:

@@ -3,7 +3,6 @@
 #include <ricochet/measure/contact/closed_points.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
-#include <ricochet/measure/energy/state_energies.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -7,7 +7,7 @@
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
-#include <ricochet/measure/stability/structure_modes.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
 #include <vector>
 
 namespace ricochet {

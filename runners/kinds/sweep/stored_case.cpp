@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <ricochet/measure/orbits/motion_class.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 
 #include "runners/table/csv_text.hpp"
 
