@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <ricochet/measure/orbits/exponent_intervals.hpp>
+#include <cmath>
+#include <ricochet/measure/orbits/exponents.hpp>
 
 namespace ricochet {
 namespace {
@@ -29,6 +32,32 @@ bool stays_together(const std::vector<double>& a, const std::vector<double>& b) 
     high = std::max(high, off);
   }
   return std::abs(end) <= 2 * (high - low);
+}
+
+constexpr double twin_offset = 1e-7;  // m
+
+bool usable(const std::vector<double>& rates) {
+  return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
+}
+
+// More than one period in a hundred: the mean is a lower bound.
+bool saturates(const LyapunovRates& twin) {
+  return 100 * twin.saturated > static_cast<int>(twin.rates[0].size());
+}
+
+// What tangent columns say of an orbit. A column beyond what the state can tell apart has no growth to speak of.
+OrbitExponents by_tangents(const LyapunovRates& found, int count, int columns) {
+  OrbitExponents exponents;
+  if (found.end) return exponents;
+  exponents.superstable = columns > 0 && found.told == 0;
+  exponents.untold = !exponents.superstable && found.untold > 0;
+  if (exponents.superstable) exponents.method = "superstable";
+  if (exponents.superstable || exponents.untold) return exponents;
+  const auto& all = found.rates;
+  const auto last = std::find_if_not(all.begin(), all.begin() + found.told, usable);
+  exponents.values = exponent_intervals({all.begin(), last}, count, found.turning);
+  exponents.method = found.jumps > 0 ? "tangent+jump" : "tangent";
+  return exponents;
 }
 
 }  // namespace
@@ -64,6 +93,38 @@ std::vector<Interval> exponent_intervals(const std::vector<std::vector<double>>&
     found.push_back(exponent_interval(rates[k]));
   }
   found.resize(std::min(found.size(), static_cast<std::size_t>(count)));
+  return found;
+}
+
+std::vector<OrbitExponents> exponents_of(const std::function<Program(int columns)>& program,
+                                         const std::vector<LaneState>& states, LyapunovPlan plan, int count,
+                                         int columns) {
+  std::vector<OrbitExponents> found(states.size());
+  std::vector<LyapunovRates> rates;
+  bool tangents = true;
+  plan.keep_orbit = !plan.without_sawtooth;
+  try {
+    rates = lyapunov_rates(program(columns), states, plan);
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = by_tangents(rates[i], count, columns);
+  } catch (const Refusal&) {
+    tangents = false;
+    plan.keep_orbit = true;
+    rates = lyapunov_rates(program(0), states, plan);
+  }
+  if (!plan.keep_orbit) return found;
+  const std::vector<LyapunovRates> twin = twin_rates(program(0), states, rates, plan, twin_offset);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    OrbitExponents& exponents = found[i];
+    if (exponents.superstable || rates[i].jumps > 0 || twin[i].end || !usable(twin[i].rates[0])) continue;
+    if (saturates(twin[i])) {
+      exponents.saturated = !tangents;
+      continue;
+    }
+    exponents.twin = exponent_interval(twin[i].rates[0]);
+    if (tangents) continue;
+    exponents.values = {*exponents.twin};
+    exponents.method = fmt::format("twin({:g})", twin_offset);
+  }
   return found;
 }
 
