@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/cost_model.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <string>
 
 namespace ricochet {

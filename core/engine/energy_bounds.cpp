@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 

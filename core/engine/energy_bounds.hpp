@@ -1,6 +1,6 @@
 #pragma once
-#include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <vector>
 
 namespace ricochet {

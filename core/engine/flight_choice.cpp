@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
 #include <ricochet/engine/flight_choice.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 namespace {

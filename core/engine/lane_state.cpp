@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 

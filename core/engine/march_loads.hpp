@@ -1,8 +1,8 @@
 #pragma once
 #include <limits>
 #include <optional>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/engine/compile.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <vector>
 
 namespace ricochet {

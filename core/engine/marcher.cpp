@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <bit>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/flush_denormals.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flush_denormals.hpp>
 #include <utility>
 
 namespace ricochet {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 /// \file
 /// What others read of a march.

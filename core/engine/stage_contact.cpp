@@ -3,12 +3,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 

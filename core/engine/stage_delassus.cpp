@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 namespace ricochet {
 

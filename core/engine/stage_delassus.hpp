@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/engine/stage_operator.hpp>

@@ -1,10 +1,10 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
 #include <variant>
 #include <vector>

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/shortened.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>

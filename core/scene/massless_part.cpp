@@ -5,7 +5,7 @@
 #include <Eigen/SparseQR>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <stdexcept>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>

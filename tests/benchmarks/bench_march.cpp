@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>

@@ -22,9 +22,9 @@
 #include <cstring>
 #include <numbers>
 #include <optional>
-#include <ricochet/algebra/flush_denormals.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/flush_denormals.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 

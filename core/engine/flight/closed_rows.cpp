@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 
 namespace ricochet {
 namespace {

@@ -2,9 +2,9 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/flight/closed_steps.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 namespace {

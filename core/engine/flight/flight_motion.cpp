@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 

@@ -1,12 +1,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
 #include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
 
 namespace ricochet {

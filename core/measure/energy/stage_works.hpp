@@ -1,10 +1,10 @@
 #pragma once
 #include <array>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/combined_form.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/combined_form.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -1,8 +1,8 @@
 #pragma once
 #include <deque>
-#include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/momentum_ledger.hpp>
 #include <vector>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/scene/massless_part.hpp>

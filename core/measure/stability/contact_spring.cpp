@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/measure/stability/contact_spring.hpp>
 
 namespace ricochet {

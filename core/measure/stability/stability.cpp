@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 #include <ricochet/measure/stability/step_map.hpp>

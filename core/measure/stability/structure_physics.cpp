@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <numbers>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/measure/statistics/effects.hpp>
 #include <ricochet/measure/statistics/factorial_table.hpp>
 #include <set>

@@ -1,6 +1,6 @@
 #pragma once
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <vector>
 
 namespace ricochet {

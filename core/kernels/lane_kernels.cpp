@@ -1,9 +1,9 @@
-#include <ricochet/algebra/instruction_set.hpp>
-#include <ricochet/algebra/lane_band.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
-#include <ricochet/algebra/lane_modes.hpp>
-#include <ricochet/algebra/lane_nodes.hpp>
-#include <ricochet/algebra/lane_rows.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
+#include <ricochet/kernels/lane_band.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
+#include <ricochet/kernels/lane_modes.hpp>
+#include <ricochet/kernels/lane_nodes.hpp>
+#include <ricochet/kernels/lane_rows.hpp>
 #include <stdexcept>
 
 namespace ricochet {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/restoring_solver.hpp>
+#include <ricochet/contact_solvers/restoring_solver.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 namespace {

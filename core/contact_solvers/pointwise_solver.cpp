@@ -2,8 +2,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/pointwise_solver.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 namespace {

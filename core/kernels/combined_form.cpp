@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <ricochet/algebra/combined_form.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/instruction_set.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/combined_form.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-#include <ricochet/algebra/instruction_set.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <stdexcept>
 #include <string>
 

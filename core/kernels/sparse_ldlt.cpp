@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 namespace ricochet {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <optional>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <vector>
 
 namespace ricochet {

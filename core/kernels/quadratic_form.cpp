@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/instruction_set.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
-#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <stdexcept>
 
 namespace ricochet {

@@ -1,8 +1,8 @@
 #pragma once
 #include <Eigen/SparseCore>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
 #include <vector>
 

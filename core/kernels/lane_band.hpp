@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/algebra/lane_vectors.hpp>
+#include <ricochet/kernels/lane_vectors.hpp>
 
 /// \file
 /// The free step of a band operator: products with K and M, load shape, and substitution through L D Lᵀ.

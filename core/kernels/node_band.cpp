@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cstddef>
-#include <ricochet/algebra/node_band.hpp>
+#include <ricochet/kernels/node_band.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/algebra/pointwise_solver.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
 
 namespace ricochet {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <ricochet/algebra/band_ldlt.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
 
 namespace ricochet {
 

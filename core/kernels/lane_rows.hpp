@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/algebra/lane_vectors.hpp>
+#include <ricochet/kernels/lane_vectors.hpp>
 
 /// \file
 /// Kernels that see a row of lanes at a time: the diagonal free step, measures at points, and the test of their bounds.

@@ -1,6 +1,6 @@
 #pragma once
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 namespace ricochet {
 

@@ -1,9 +1,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
+#include <ricochet/kernels/block.hpp>
 
 /// \file
 /// One set of active points: its effort, what that does to all measures, and how far it is from (1).

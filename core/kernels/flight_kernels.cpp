@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/instruction_set.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
 
 namespace ricochet {
 namespace {

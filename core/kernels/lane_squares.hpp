@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/algebra/lane_vectors.hpp>
+#include <ricochet/kernels/lane_vectors.hpp>
 
 /// \file
 /// Sums of squares of one lane beside a step that has its numbers in registers, see SquareSum.

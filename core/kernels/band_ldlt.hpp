@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <optional>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
 #include <vector>
 

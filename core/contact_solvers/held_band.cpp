@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <utility>
 
 namespace ricochet {

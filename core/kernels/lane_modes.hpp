@@ -1,6 +1,6 @@
 #pragma once
-#include <ricochet/algebra/lane_squares.hpp>
-#include <ricochet/algebra/lane_vectors.hpp>
+#include <ricochet/kernels/lane_squares.hpp>
+#include <ricochet/kernels/lane_vectors.hpp>
 #include <type_traits>
 
 /// \file

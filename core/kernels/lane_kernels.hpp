@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <ricochet/algebra/instruction_set.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
 
 /// \file
 /// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
