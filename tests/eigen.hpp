@@ -3,7 +3,7 @@
 
 /// \file
 /// What tests ask of Eigen's dense factorisations, compiled once: templates that every file would compile again take
-/// longer than anything else in it. A second opinion beside core/algebra, which these do not call.
+/// longer than anything else in it. A second opinion beside core/kernels, which these do not call.
 namespace eigen {
 
 /// A⁻¹ b and A⁻¹ B, A symmetric (LDLᵀ).

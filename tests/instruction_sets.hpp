@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/algebra/instruction_set.hpp>
+#include <ricochet/kernels/instruction_set.hpp>
 #include <vector>
 
 namespace ricochet::testing {

@@ -4,7 +4,7 @@
 #include <ricochet/contract/stage_facts.hpp>
 #include <ricochet/contract/time_scheme.hpp>
 #include <ricochet/engine/march_model.hpp>
-#include <ricochet/engine/stage_impulse.hpp>
+#include <ricochet/engine/stage_delassus.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 #include <string>
 #include <variant>

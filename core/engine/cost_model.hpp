@@ -3,6 +3,10 @@
 
 namespace ricochet {
 
+/// Bytes that this process may still take without paging: what the machine has free, less where the process or its
+/// group is allowed less; infinite where nobody says.
+double available_memory();
+
 /// Predicted cost of marching, from operation counts and the per-operation times that the benchmark `bench_march
 /// --calibrate` measures. Only its order matters: it chooses an operator and orders cases, it is never a result.
 struct Cost {

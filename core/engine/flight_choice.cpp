@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <ricochet/algebra/infinity.hpp>
-#include <ricochet/engine/available_memory.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
 #include <ricochet/engine/flight_choice.hpp>
+#include <ricochet/kernels/block.hpp>
 
 namespace ricochet {
 namespace {
@@ -49,13 +48,14 @@ std::string let_fly(Program& program, const CompileOptions& options) {
   auto flight = std::make_shared<Flight>(program, layer, options.expected_steps);
   if (!flight->cause().empty()) return flight->cause();
   program.flight = std::move(flight);
-  const std::string &held = program.flight->held_cause(), &steps = program.flight->steps_cause();
-  program.left_out.push_back({"steps in which no contact changes",
-                              held.empty()    ? "open or closed, they are composed"
-                              : steps.empty() ? "those without contact are composed; with it (" + held +
-                                                    ") they are made without a search or a look"
-                                              : "those without contact are composed; with it (" +
-                                                    (program.law->reads() ? steps : held) + ") every step is marched"});
+  const std::string &closed = program.flight->closed_cause(), &steps = program.flight->steps_cause();
+  program.left_out.push_back(
+      {"steps in which no contact changes",
+       closed.empty() ? "open or closed, they are composed"
+       : steps.empty()
+           ? "those without contact are composed; with it (" + closed + ") they are made without a search or a look"
+           : "those without contact are composed; with it (" + (program.law->reads() ? steps : closed) +
+                 ") every step is marched"});
   return "";
 }
 

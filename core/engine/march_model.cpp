@@ -1,6 +1,6 @@
-#include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <memory>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <vector>
 

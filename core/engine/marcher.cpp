@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <bit>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/flush_denormals.hpp>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
-#include <ricochet/engine/load_window.hpp>
+#include <ricochet/engine/flight/lane_flight.hpp>
+#include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flush_denormals.hpp>
 #include <utility>
 
 namespace ricochet {
@@ -57,6 +58,7 @@ Marcher::Marcher(Program program)
         blocks_[j].at(i, lane) = program_.plan.initial[j][0] * q[i] + program_.plan.initial[j][1] * v[i];
     place_lane(lane);
   }
+  if (program_.flight) lane_flight_ = std::make_unique<LaneFlight>();
   if (program_.load) load_window_ = std::make_unique<LoadWindow>(program_);
   for (std::size_t k = 0; k < program_.start.size(); ++k)
     start_states_.push_back(make_state(program_.start[k], program_.plan.start[k]));
@@ -67,7 +69,6 @@ Marcher::Marcher(Program program)
   connect_efforts();
   connect_works();
   connect_tests();
-  for (const auto& state : stage_states_) quiet_after_ = std::max(quiet_after_, static_cast<int>(state->effort.size()));
 }
 
 // Which stage's work each gives back.
@@ -97,16 +98,29 @@ void Marcher::connect_tests() {
   for (std::size_t k = 0; k < stage_states_.size(); ++k) connect(program_.stages[k], *stage_states_[k]);
 }
 
-// What the operators add up for the observer of a march: of unknowns that only efforts of the same stage may move.
-void Marcher::connect_sums(StepObserver* observer) {
-  tells_tip_ = observer && observer->reads_tip();
+// What the march does for its observers alone. Operators add up squares of unknowns that only efforts of the same stage
+// may move.
+void Marcher::connect(const Observers& observers) {
+  observers_ = observers;
+  free_count_ = 0;
+  tells_tip_ = false;
+  const StepObserver* asks = nullptr;
+  int asking = 0;
+  for (const StepObserver* one : observers_) {
+    tells_tip_ = tells_tip_ || one->asks().tip;
+    if (one->asks().squares.empty()) continue;
+    if (!asks) asks = one;
+    ++asking;
+  }
   for (std::size_t k = 0; k < stage_states_.size(); ++k) {
     const StageProgram& program = program_.stages[k];
     SquareSum*& sum = stage_states_[k]->sum;
     const bool known = program.op && program.driven && program.effort.size() == 1 && !program_.load;
-    sum = observer && known && program.op->sums_squares() ? observer->squares(static_cast<int>(k)) : nullptr;
+    sum = asks && known && program.op->sums_squares() ? asks->asks().squares[k] : nullptr;
     if (sum) sum->x = slots_[1];
   }
+  keeps_sums_ =
+      !observers_.empty() && asking < 2 && program_.width == 1 && stage_states_.size() == 1 && !program_.flight;
 }
 
 // Storage of a stage, and its combinations as the kernels read them.
@@ -167,64 +181,97 @@ std::unique_ptr<StageState> Marcher::make_state(StageProgram& stage, const Stage
   return state;
 }
 
-void Marcher::start(StepObserver* observer) {
+void Marcher::start(const Observers& observers) {
   const FlushDenormals flush;
+  observers_ = observers;
   clamp_.set_time(time());
   begin_contact();
   for (std::size_t k = 0; k < program_.start.size(); ++k)
-    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), observer, false,
-              false);
+    run_stage(program_.start[k], program_.plan.start[k], *start_states_[k], static_cast<int>(k), false, false);
   keep_start_efforts();
   if (program_.plan.start_advances) {
     ++step_;
-    if (observer) observer->step_done(*this);
+    for (StepObserver* one : observers_) one->step_done(*this);
   }
   check_lanes();
 }
 
-long long Marcher::march(long long steps, StepObserver* observer) {
+long long Marcher::march(long long steps, const Observers& observers) {
   const FlushDenormals flush;
-  connect_sums(observer);
-  quiet_count_ = 0;
-  // Steps of which only sums are kept: those of one lane and one stage, of which nothing else is known.
-  const bool keeps = observer && program_.width == 1 && program_.stages.size() == 1 && !program_.flight;
-  long long next_shown = keeps ? observer->next_shown(*this) : 0;
+  connect(observers);
+  const bool observed = !observers_.empty();
+  long long next_shown = keeps_sums_ ? observers_.next_shown() : 0;
   for (long long n = 0; n < steps; ++n) {
-    if (program_.flight) n += fly(steps - n - 1, observer);
+    if (lane_flight_) n += fly(steps - n - 1);
     if (program_.support) clamp_.set_time(time());
-    // Whether nobody looks at the slots between this step and the next, and whether the observer need not see it.
-    const bool unchecked = (step_ + 1) % check_interval != 0, quiet = unchecked && step_ + 1 < next_shown;
-    const bool goes_on = (!observer || quiet) && !program_.flight && n + 1 < steps && unchecked;
-    bool shown = observer;
+    // Whether nobody looks at the slots between this step and the next, and whether no observer need see it.
+    const bool unchecked = (step_ + 1) % check_interval != 0, unseen = unchecked && step_ + 1 < next_shown;
+    const bool goes_on = (!observed || unseen) && !program_.flight && n + 1 < steps && unchecked;
+    bool shown = observed;
     for (std::size_t k = 0; k < program_.stages.size(); ++k)
-      shown = run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), observer,
-                        quiet, goes_on);
+      shown = run_stage(program_.stages[k], program_.plan.stages[k], *stage_states_[k], static_cast<int>(k), unseen,
+                        goes_on);
     ++step_;
     ++visited_;
-    if (clear_ > 0) --clear_;
+    if (lane_flight_) lane_flight_->step_made();
     if (shown) {
       // Observers ask where the clamp is now; the next step begins here.
       if (program_.support) clamp_.set_time(time());
-      observer->step_done(*this);
-      if (keeps) next_shown = observer->next_shown(*this);
+      for (StepObserver* one : observers_) one->step_done(*this);
+      if (keeps_sums_) next_shown = observers_.next_shown();
     }
     if (step_ % check_interval == 0) {
       check_lanes();
       if (!any_running()) return n + 1;
     }
   }
-  tell_quiet(observer);
+  tell_free_steps();
   return steps;
 }
 
-// What an observer is told of steps that it need not see.
-void Marcher::tell_quiet(StepObserver* observer) {
-  if (quiet_count_ == 0) return;
-  QuietSteps told;
-  told.steps = {quiet_steps_.data(), quiet_count_};
-  told.last = static_cast<double>(step_ - 1) * program_.h;
-  quiet_count_ = 0;
-  observer->quiet(*this, told);
+// Leaves out steps in which contact stays what it is, before the next one; returns how many.
+long long Marcher::fly(long long most) {
+  // Delayed tangents count the steps of an impact.
+  if (delay_steps_ > 0) return 0;
+  const FlownLane lane{program_, stage_states_, slots_, memory_};
+  if (!lane_flight_->follow(lane) || most < Flight::least || !status_.front().running) return 0;
+  most = std::min(most, observers_.next_shown() - 1 - step_);
+  if (!lane_flight_->due(lane, most)) return 0;
+  double e[3] = {0, 0, 0};
+  if (program_.support) {
+    clamp_.set_time(time());
+    clamp_.drive(0, e[0], e[1]);
+    e[2] = 1;
+  } else {
+    e[0] = 1;
+  }
+  StepInterval told;
+  told.from = time();
+  const long long k = lane_flight_->leave_out(lane, e, most, !observers_.empty(), told);
+  if (k == 0) return 0;
+  step_ += k;
+  combined_for_ = nullptr;
+  check_lanes();
+  for (StepObserver* one : observers_) one->interval(*this, told);
+  return k;
+}
+
+// Keeps what is told of a step that is not shown. The tip stands where the step before it ended.
+void Marcher::keep_free_step(const StageState& state) {
+  if (tells_tip_ && free_count_ > 0) free_steps_[free_count_ - 1].tip = tip(0);
+  free_steps_[free_count_++] = {clamp_.sine(), clamp_.cosine(), state.sum ? state.sum->form : 0,
+                                state.sum ? state.sum->projection : 0, 0};
+}
+
+void Marcher::tell_free_steps() {
+  if (free_count_ == 0) return;
+  if (tells_tip_) free_steps_[free_count_ - 1].tip = tip(0);
+  StepInterval told;
+  told.steps = static_cast<long long>(free_count_);
+  told.from = static_cast<double>(step_ - told.steps) * program_.h;
+  told.marched = {free_steps_.data(), free_count_};
+  free_count_ = 0;
+  for (StepObserver* one : observers_) one->interval(*this, told);
 }
 
 void Marcher::combine_for(const StageProgram& program) {
@@ -267,9 +314,9 @@ void Marcher::free_step(StageProgram& program, const Stage& plan, StageState& st
   if (program_.tangents > 0 && input.load) remove_load(program, input.load);
 }
 
-// Whether the observer was shown the stage.
-bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
-                        bool quiet, bool may_wait) {
+// Whether the stage was shown to observers.
+bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, bool unseen,
+                        bool may_wait) {
   const double* z = elastic_.data();
   if (program.op) {
     free_step(program, plan, state);
@@ -279,12 +326,12 @@ bool Marcher::run_stage(StageProgram& program, const Stage& plan, StageState& st
     // Nothing to solve: z = 0.
     elastic_.fill(0.0);
   }
-  const bool shown = observer && !(quiet && (state.touched_lanes | state.contact_lanes | frozen_now_) == 0);
+  const bool observed = !observers_.empty();
+  const bool shown = observed && !(unseen && (state.touched_lanes | state.contact_lanes | frozen_now_) == 0);
   if (shown)
-    show(state, z, *observer);
-  else if (observer)
-    quiet_steps_[quiet_count_++] = {clamp_.sine(), clamp_.cosine(), state.sum ? state.sum->form : 0,
-                                    state.sum ? state.sum->projection : 0, tells_tip_ ? tip(0) : 0};
+    show(state, z);
+  else if (observed)
+    keep_free_step(state);
   // A jump comes after the update: what the next stage multiplies is combined anew.
   const StageProgram* next = nullptr;
   const bool last = index + 1 == static_cast<int>(program_.stages.size());
@@ -322,7 +369,7 @@ void Marcher::find_pushed(const Block& effort, std::vector<int>& points) {
   }
 }
 
-// What stays the same from step to step of what the observer sees of a stage.
+// What stays the same from step to step of what observers see of a stage.
 StageView Marcher::view_of(bool starting, std::size_t index, const StageState& state) const {
   StageView view;
   view.stage = static_cast<int>(index);
@@ -336,9 +383,9 @@ StageView Marcher::view_of(bool starting, std::size_t index, const StageState& s
   return view;
 }
 
-// What the observer sees of a stage that has found z and p.
-void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
-  tell_quiet(&observer);
+// What observers see of a stage that has found z and p.
+void Marcher::show(StageState& state, const double* z) {
+  tell_free_steps();
   StageView& view = state.view;
   const StageFacts& facts = view.program->facts;
   view.time = time();
@@ -356,7 +403,7 @@ void Marcher::show(StageState& state, const double* z, StepObserver& observer) {
     if (state.contact_lanes != 0) find_pushed(state.effort[0], pushed_);
     view.pushed = pushed_;
   }
-  observer.stage_solved(*this, view);
+  for (StepObserver* one : observers_) one->stage_solved(*this, view);
 }
 
 }  // namespace ricochet

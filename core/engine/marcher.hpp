@@ -2,11 +2,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <ricochet/engine/clamp_motion.hpp>
 #include <ricochet/engine/compile.hpp>
-#include <ricochet/engine/held_point.hpp>
 #include <ricochet/engine/lane_state.hpp>
-#include <ricochet/engine/lane_status.hpp>
+#include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/step_observer.hpp>
 #include <span>
 #include <string>
@@ -15,6 +13,7 @@
 namespace ricochet {
 
 class EnergyBounds;
+class LaneFlight;
 class LoadWindow;
 struct StageState;
 
@@ -29,14 +28,14 @@ class Marcher {
   Marcher(Marcher&&) noexcept;
 
   /// Applies the start rule; call once, before march().
-  void start(StepObserver* observer = nullptr);
+  void start(const Observers& observers = {});
   /// Makes up to `steps` steps; returns early (with how many it made) only when no lane runs any more.
-  long long march(long long steps, StepObserver* observer = nullptr);
+  long long march(long long steps, const Observers& observers = {});
   /// Steps that were marched, and not left out.
   long long steps_visited() const { return visited_; }
   /// Where steps are left out: those that were while a point was closed, and all that were made then.
-  long long steps_held() const { return held_left_out_; }
-  long long steps_closed() const { return held_left_out_ + closed_visits_; }
+  long long closed_left_out() const;
+  long long closed_steps() const;
 
   /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
   /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
@@ -56,7 +55,7 @@ class Marcher {
 
   /// Lets tangent columns fly free through the first `steps` steps of contact at these points: an impact with inertia
   /// is over by then, and its jump is put on by whoever asked.
-  void hold_tangents(const std::vector<bool>& points, int steps);
+  void delay_tangents(const std::vector<bool>& points, int steps);
 
   long long step() const { return step_; }
   double time() const { return static_cast<double>(step_) * program_.h; }
@@ -84,7 +83,7 @@ class Marcher {
     return phase.along * sine + phase.across * cosine;
   }
   /// The same of a step that was not shown.
-  double support(int lane, const PhaseWeights& phase, const QuietSteps::Step& step) const {
+  double support(int lane, const PhaseWeights& phase, const FreeStep& step) const {
     double sine = step.sine, cosine = step.cosine;
     clamp_.turn(lane, sine, cosine);
     return phase.along * sine + phase.across * cosine;
@@ -118,22 +117,17 @@ class Marcher {
   std::unique_ptr<StageState> make_state(StageProgram& program, const Stage& plan) const;
   void connect_works();
   void connect_tests();
-  void connect_sums(StepObserver* observer);
-  bool run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, StepObserver* observer,
-                 bool quiet, bool may_wait);
-  void tell_quiet(StepObserver* observer);
+  void connect(const Observers& observers);
+  bool run_stage(StageProgram& program, const Stage& plan, StageState& state, int index, bool unseen, bool may_wait);
+  long long fly(long long most);
+  void keep_free_step(const StageState& state);
+  void tell_free_steps();
   void free_step(StageProgram& program, const Stage& plan, StageState& state);
   void combine_for(const StageProgram& program);
   static void find_pushed(const Block& effort, std::vector<int>& points);
   StageView view_of(bool starting, std::size_t index, const StageState& state) const;
-  void show(StageState& state, const double* z, StepObserver& observer);
+  void show(StageState& state, const double* z);
 
-  // flight_march.cpp: steps in which nothing happens.
-  long long fly(long long most, StepObserver* observer);
-  void gather_columns();
-  void scatter_columns();
-  bool contact_set();
-  void find_past();
   // readings.cpp
   template <class See>
   bool may_be_beyond(See&& see) const;
@@ -198,22 +192,17 @@ class Marcher {
   std::unique_ptr<LoadWindow> load_window_;
   std::vector<double> scratch_;
   Block elastic_;
-  std::vector<bool> held_points_;  // whose tangents wait
-  int held_steps_ = 0;
+  std::vector<bool> delayed_points_;  // see delay_tangents()
+  int delay_steps_ = 0;
   std::vector<double> stiffness_rows_;
   int stiffness_width_ = 0;
-  long long step_ = 0, visited_ = 0, held_left_out_ = 0, closed_visits_ = 0;
-  int quiet_ = 0, quiet_after_ = 0;         // steps without contact, and how many until nothing of it acts any more
-  long long clear_ = 0;                     // steps to come of which a flight has seen that no point closes in them
-  std::vector<HeldPoint> held_;             // closed points, where flights ask for them
-  std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before
-  // Slots by column, where a flight takes tangents along: numbers, and pointers to them for each column.
-  std::vector<double> columns_;
-  std::vector<double*> column_pointers_;
-  std::vector<double* const*> column_slots_;
-  std::array<QuietSteps::Step, check_interval> quiet_steps_;  // of which the observer has not been told
-  std::size_t quiet_count_ = 0;
-  bool tells_tip_ = false;  // of quiet steps
+  long long step_ = 0, visited_ = 0;
+  std::unique_ptr<LaneFlight> lane_flight_;  // null: every step is marched
+  Observers observers_;
+  bool keeps_sums_ = false;                          // of steps that are not shown, for observers that can do without
+  bool tells_tip_ = false;                           // of them too
+  std::array<FreeStep, check_interval> free_steps_;  // of which nobody has been told
+  std::size_t free_count_ = 0;
   std::unique_ptr<EnergyBounds> energy_bounds_;
 };
 

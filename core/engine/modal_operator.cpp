@@ -1,5 +1,5 @@
 #include <cmath>
-#include <ricochet/engine/modal_operator.hpp>
+#include <ricochet/engine/stage_operator.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/engine/energy_bounds.hpp>
-#include <ricochet/engine/load_window.hpp>
+#include <ricochet/engine/flight/lane_flight.hpp>
+#include <ricochet/engine/march_loads.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/engine/stage_state.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 /// \file
 /// What others read of a march.
@@ -13,6 +13,14 @@ namespace ricochet {
 
 bool Marcher::any_running() const {
   return std::any_of(status_.begin(), status_.end(), [](const LaneStatus& status) { return status.running; });
+}
+
+long long Marcher::closed_left_out() const {
+  return lane_flight_ ? lane_flight_->closed_left_out() : 0;
+}
+
+long long Marcher::closed_steps() const {
+  return lane_flight_ ? lane_flight_->closed_steps() : 0;
 }
 
 double Marcher::support(int lane, double t) const {

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/node_band.hpp>
-#include <ricochet/algebra/sparse_substitution.hpp>
-#include <ricochet/algebra/weighted_system.hpp>
-#include <ricochet/engine/modal_operator.hpp>
 #include <ricochet/engine/stage_operator.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/node_band.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 namespace ricochet {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <string>
 #include <variant>
 #include <vector>
@@ -62,5 +62,8 @@ using OperatorOrRefusal = std::variant<std::unique_ptr<StageOperator>, Refusal>;
 
 /// Makes the operator of a stage in the coordinates of `model`, for T lanes.
 OperatorOrRefusal make_operator(OperatorKind kind, const MarchModel& model, const FoldedStage& stage, int lanes);
+
+/// The operator of a stage where `model` has modal coordinates. Refuses a mode on which S vanishes.
+OperatorOrRefusal make_modal_operator(const MarchModel& model, const FoldedStage& stage, int lanes);
 
 }  // namespace ricochet

@@ -2,12 +2,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/restoring_solver.hpp>
-#include <ricochet/engine/active_system.hpp>
+#include <ricochet/contact_solvers/restoring_solver.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
-#include <ricochet/engine/stage_impulse.hpp>
 #include <ricochet/engine/step_observer.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <vector>
 
 namespace ricochet {

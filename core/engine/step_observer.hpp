@@ -1,12 +1,17 @@
 #pragma once
+#include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <limits>
 #include <ricochet/engine/compile.hpp>
 #include <span>
+#include <stdexcept>
+#include <vector>
 
 namespace ricochet {
 
 class Marcher;
-struct SkippedSteps;
+struct StepInterval;
 
 /// What an observer sees while a step is made. Blocks are rows × T or points × T.
 struct StageView {
@@ -29,41 +34,74 @@ struct StageView {
   const SquareSum* sum = nullptr;  ///< what an observer asked for, of z as it is now; null where efforts moved it
 };
 
-/// Steps of one lane in which no stop was looked at and that nobody was shown: what is known of each.
-struct QuietSteps {
-  struct Step {
-    double sine = 0, cosine = 1;      ///< of ωt, when it began
-    double form = 0, projection = 0;  ///< of the squares that the observer asked for; 0 where it asked for none
-    double tip = 0;                   ///< absolute displacement when it began, m; 0 where the observer does not read it
-  };
-  std::span<const Step> steps;
-  double last = 0;  ///< when the last of them began, s
-};
-
-/// Looks at every step of a block; a march without an observer pays nothing for it.
+/// Sees the steps of a block. A march without observers pays nothing for them.
 class StepObserver {
  public:
+  static constexpr long long never = std::numeric_limits<long long>::max();
+
+  /// What it asks of a march. It keeps this up to date; the marcher reads it when a march begins or goes on, and after
+  /// each call.
+  struct Asks {
+    /// The next step (counted as Marcher::step() after it) that it has to be shown whatever happens in it. interval()
+    /// tells of those before it: steps that flights leave out, and marched ones in which no stage looks at a stop.
+    /// It comes before the next step that is shown, and before march() returns. 0: every step is shown.
+    long long next_shown = 0;
+    bool tip = false;  ///< whether it reads the tip in marched steps of an interval
+    /// Of each stage of the plan, squares that it would see added up in free steps, if its operator sums_squares();
+    /// null or none: it needs none. One observer of a march gets them.
+    std::vector<SquareSum*> squares;
+  };
+
   virtual ~StepObserver() = default;
-  /// Squares that it would see added up in each free step of a stage of the plan, if its operator sums_squares(); null:
-  /// none. Asked when a march begins or goes on, and kept until it returns.
-  virtual SquareSum* squares(int /*stage*/) { return nullptr; }
-  /// Whether it reads QuietSteps::Step::tip. Asked as squares() are.
-  virtual bool reads_tip() const { return false; }
   /// The stage has found z and p; the slots are not yet updated.
   virtual void stage_solved(const Marcher& marcher, const StageView& view) = 0;
   /// The step is complete.
   virtual void step_done(Marcher& marcher) = 0;
-  /// How many steps from now on it need not be shown, as long as contact stays what it is: it is told of them by
-  /// skipped(), and the step after them is shown, with the same contact unless Flight::tells_slots(). None, unless it
-  /// says otherwise.
-  virtual long long may_skip(const Marcher& /*marcher*/) { return 0; }
-  /// Steps were left out; the marcher stands at their end.
-  virtual void skipped(Marcher& /*marcher*/, const SkippedSteps& /*steps*/) {}
-  /// The next step (counted as Marcher::step() after it) that has to be shown whatever happens in it. Those before it
-  /// need not be, as long as no stage looks at a stop: it is told of them by quiet(), before the next one that is shown
-  /// and before march() returns. Asked when a march begins or goes on, and after each step that was shown.
-  virtual long long next_shown(const Marcher& /*marcher*/) { return 0; }
-  virtual void quiet(const Marcher& /*marcher*/, const QuietSteps& /*steps*/) {}
+  /// Steps were made or left out that it was not shown; the marcher stands at their end, or where a shown step begins.
+  virtual void interval(Marcher& /*marcher*/, const StepInterval& /*steps*/) {}
+
+  const Asks& asks() const { return asks_; }
+
+ protected:
+  Asks asks_;
+};
+
+/// The observers of a march, in the order in which they are told. Refers to them.
+class Observers {
+ public:
+  static constexpr std::size_t most = 8;
+
+  Observers() = default;
+  Observers(StepObserver* one) { add(one); }
+  Observers(std::initializer_list<StepObserver*> all) {
+    for (StepObserver* const one : all) add(one);
+  }
+  /// Null adds nobody.
+  void add(StepObserver* one) {
+    if (!one) return;
+    if (count_ == most) throw std::logic_error("a march has too many observers");
+    all_[count_++] = one;
+  }
+  bool empty() const { return count_ == 0; }
+  StepObserver* const* begin() const { return all_.data(); }
+  StepObserver* const* end() const { return all_.data() + count_; }
+  /// The next step that one of them has to be shown.
+  long long next_shown() const {
+    long long next = StepObserver::never;
+    for (const StepObserver* one : *this) next = next < one->asks().next_shown ? next : one->asks().next_shown;
+    return next;
+  }
+
+ private:
+  std::array<StepObserver*, most> all_{};
+  std::size_t count_ = 0;
+};
+
+/// A step of one lane that was marched and not shown: no stage of it looked at a stop.
+struct FreeStep {
+  double sine = 0, cosine = 1;      ///< of ωt, when it began
+  double form = 0, projection = 0;  ///< of the squares that an observer asked for; 0 where none did
+  double tip = 0;                   ///< absolute displacement after it, m; 0 where no observer reads it
 };
 
 }  // namespace ricochet

@@ -11,9 +11,9 @@ constexpr double least_answer = 1e-17;
 
 }  // namespace
 
-void Marcher::hold_tangents(const std::vector<bool>& points, int steps) {
-  held_points_ = points;
-  held_steps_ = steps;
+void Marcher::delay_tangents(const std::vector<bool>& points, int steps) {
+  delayed_points_ = points;
+  delay_steps_ = steps;
   for (auto& state : stage_states_)
     if (state->delassus) state->contact_age.assign(points.size() * static_cast<std::size_t>(program_.width), 0);
 }
@@ -76,8 +76,8 @@ void Marcher::tangent_contact(StageProgram& program, StageState& state) {
     system.points.clear();
     for (int i = 0; i < state.free.rows(); ++i) {
       const bool closed = active && state.effort[0].at(i, lane) != 0;
-      if (held_steps_ > 0) age(i) = closed ? age(i) + 1 : 0;
-      const bool waits = held_steps_ > 0 && held_points_[static_cast<std::size_t>(i)] && age(i) <= held_steps_;
+      if (delay_steps_ > 0) age(i) = closed ? age(i) + 1 : 0;
+      const bool waits = delay_steps_ > 0 && delayed_points_[static_cast<std::size_t>(i)] && age(i) <= delay_steps_;
       if (closed && !waits) system.points.push_back(i);
     }
     if (system.points.empty()) continue;

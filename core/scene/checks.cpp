@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/contract/shortened.hpp>
+#include <ricochet/kernels/block.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
-#include <ricochet/scene/require_positive.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 namespace ricochet {
+
 namespace {
 
 void require(bool holds, const std::string& pointer, const std::string& message) {
@@ -283,6 +283,12 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
     for (const auto& point : gauss_points()) scene.load.formula(element.left + point.xi * element.length, 0);
   scene.load.formula(tip_position(scene), 0);
   check_load(scene, space);
+}
+
+void require_positive(double value, const char* key, const char* what, const char* unit) {
+  if (std::isfinite(value) && value > 0) return;
+  throw InputError(fmt::format("/scene/structure/{}", key),
+                   fmt::format("{} is {:.6g} {}; expected a finite number above 0", what, value, unit));
 }
 
 }  // namespace ricochet

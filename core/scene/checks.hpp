@@ -56,4 +56,7 @@ SupportMotion support_at_start(const SupportSpec& support);
 /// Values of g1 or g2 at the points, ∓∞ for an absent stop.
 Eigen::VectorXd stop_values(const std::optional<Formula>& stop, const std::vector<double>& x, double absent);
 
+/// Throws InputError at /scene/structure/`key` unless the value is finite and above 0; `what` names it in the sentence.
+void require_positive(double value, const char* key, const char* what, const char* unit);
+
 }  // namespace ricochet

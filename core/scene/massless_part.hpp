@@ -1,8 +1,8 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <optional>
-#include <ricochet/algebra/inverse_form.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 namespace ricochet {
 

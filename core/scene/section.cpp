@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/require_positive.hpp>
+#include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/scene.hpp>
 
 namespace ricochet {

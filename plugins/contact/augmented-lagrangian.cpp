@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contract/plugin.hpp>
 
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/contract/contact_structure.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "power_law.hpp"
 

@@ -1,5 +1,5 @@
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/pointwise_solver.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
 #include <utility>
 
 #include "power_law.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 #include <cmath>
-#include <ricochet/algebra/pointwise_contact.hpp>
+#include <ricochet/contact_solvers/pointwise_contact.hpp>
 #include <ricochet/contract/plugin.hpp>
 #include <vector>
 

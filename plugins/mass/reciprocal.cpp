@@ -1,4 +1,4 @@
-#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 
 #include "lumped_diagonal.hpp"
 

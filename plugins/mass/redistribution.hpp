@@ -1,9 +1,9 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/sparse_ldlt.hpp>
 #include <ricochet/contract/plugin.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 /// \file
 /// Mass moved off the dofs where contact acts, by a projection (Khenous, Laborde and Renard 2008, there over the whole

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/contract/plugin_call.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 namespace ricochet::checking {
 namespace {

@@ -1,4 +1,4 @@
-#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 
 #include "runners/check/bench.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 
 namespace ricochet::checking {
 namespace {

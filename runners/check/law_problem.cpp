@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "runners/check/bench.hpp"
 #include "runners/check/law_checks.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "runners/check/mass_checks.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/contract/plugin_call.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/scene/assembly.hpp>
 
 namespace ricochet::checking {

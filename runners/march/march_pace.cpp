@@ -165,26 +165,27 @@ class Pace {
     Prepared prepared = prepare_case(other, registry_, steps_);
     if (!prepared.program) return std::nullopt;
     Marcher marcher(std::move(*prepared.program));
-    const std::shared_ptr<StepObserver> observer = observe_ ? observe_(other, marcher, prepared.steps) : nullptr;
-    marcher.start(observer.get());
+    const std::shared_ptr<const Observers> watched = observe_ ? observe_(other, marcher, prepared.steps) : nullptr;
+    const Observers observers = watched ? *watched : Observers{};
+    marcher.start(observers);
     Part part;
     part.of = prepared.steps;
     part.dofs = marcher.program().problem->dofs();
     part.marginal = prepared.marginal;
     if (const auto& flight = marcher.program().flight) {
       part.flies = true;
-      part.leaves_contact = flight->held_cause().empty() || flight->steps_cause().empty();
+      part.leaves_contact = flight->closed_cause().empty() || flight->steps_cause().empty();
     }
     // Flights end where the case is sampled; the first one makes what all of them need.
     const long long few = part.flies ? std::max(chunk, prepared.steps / std::max(1, case_.samples)) : chunk;
     const double begin = thread_seconds();
-    if (prepared.steps > few_steps / 2) marcher.march(part.flies ? few : first_steps, observer.get());
-    const long long before = marcher.step(), visited = marcher.steps_visited(), held = marcher.steps_held(),
-                    closed = marcher.steps_closed();
+    if (prepared.steps > few_steps / 2) marcher.march(part.flies ? few : first_steps, observers);
+    const long long before = marcher.step(), visited = marcher.steps_visited(), held = marcher.closed_left_out(),
+                    closed = marcher.closed_steps();
     const double start = thread_seconds();
     double now = start;
     while (marcher.step() < prepared.steps && marcher.any_running() && now - start < long_enough) {
-      marcher.march(std::min(few, prepared.steps - marcher.step()), observer.get());
+      marcher.march(std::min(few, prepared.steps - marcher.step()), observers);
       now = thread_seconds();
     }
     if (marcher.step() <= before) return std::nullopt;
@@ -192,8 +193,8 @@ class Pace {
     part.whole = part.standing && marcher.step() == prepared.steps;
     part.steps = marcher.step() - before;
     part.visited = marcher.steps_visited() - visited;
-    part.held = marcher.steps_held() - held;
-    part.closed = marcher.steps_closed() - closed;
+    part.held = marcher.closed_left_out() - held;
+    part.closed = marcher.closed_steps() - closed;
     part.seconds = now - start;
     part.once = std::max(0.0, start - begin - part.step_seconds() * static_cast<double>(before));
     return part;

@@ -1,5 +1,5 @@
 #pragma once
-#include <ricochet/measure/statistics/resolved_effect.hpp>
+#include <ricochet/measure/statistics/effects.hpp>
 #include <string>
 #include <vector>
 

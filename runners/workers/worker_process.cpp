@@ -14,7 +14,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <ricochet/engine/available_memory.hpp>
+#include <ricochet/engine/cost_model.hpp>
 #include <stdexcept>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
 
 #include "tests/allocations.hpp"
 #include "tests/eigen.hpp"

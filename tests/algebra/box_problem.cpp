@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <vector>
 
 #include "tests/allocations.hpp"

@@ -1,8 +1,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/algebra/constrained_modes.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 using namespace ricochet;
 using Eigen::Index;

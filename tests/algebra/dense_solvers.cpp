@@ -2,7 +2,7 @@
 // that occur.
 #include <catch2/catch.hpp>
 #include <random>
-#include <ricochet/algebra/dense_solvers.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 
 using namespace ricochet;
 using Eigen::MatrixXd;

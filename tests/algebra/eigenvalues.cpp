@@ -1,6 +1,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 using namespace ricochet;
 using Eigen::MatrixXd;

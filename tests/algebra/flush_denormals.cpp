@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/flush_denormals.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flush_denormals.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <thread>
 
 using namespace ricochet;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/held_band.hpp>
+#include <ricochet/contact_solvers/held_band.hpp>
 
 #include "tests/allocations.hpp"
 #include "tests/eigen.hpp"

@@ -1,7 +1,7 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <random>
-#include <ricochet/algebra/inverse_form.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 #include "tests/eigen.hpp"
 

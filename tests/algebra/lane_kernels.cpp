@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/band_ldlt.hpp>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
+#include <ricochet/kernels/band_ldlt.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 
 #include "tests/eigen.hpp"
 #include "tests/instruction_sets.hpp"

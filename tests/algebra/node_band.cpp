@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/combined_form.hpp>
-#include <ricochet/algebra/node_band.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/combined_form.hpp>
+#include <ricochet/kernels/node_band.hpp>
 
 #include "tests/instruction_sets.hpp"
 

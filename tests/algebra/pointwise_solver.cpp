@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/pointwise_solver.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/pointwise_solver.hpp>
 #include <vector>
 
 #include "tests/allocations.hpp"

@@ -1,4 +1,4 @@
-#include <ricochet/algebra/quadratic_form.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 
 #include "tests/scene/working_set.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/restoring_solver.hpp>
+#include <ricochet/contact_solvers/restoring_solver.hpp>
 #include <vector>
 
 #include "tests/allocations.hpp"

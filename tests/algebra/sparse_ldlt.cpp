@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 #include "tests/allocations.hpp"
 #include "tests/eigen.hpp"

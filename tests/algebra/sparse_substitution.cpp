@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/sparse_substitution.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 
 #include "tests/instruction_sets.hpp"
 

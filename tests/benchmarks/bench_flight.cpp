@@ -79,13 +79,13 @@ Outcome march(const Scene& scene, MarchWay way, Registry& registry) {
     return out;
   }
   Marcher marcher(std::move(std::get<Program>(program)));
-  EnergyAudit audit(marcher, Looks::seldom);
-  ImpactRecorder recorder(marcher, &audit);
+  EnergyAudit audit(marcher, SamplingMode::seldom);
+  ImpactRecorder recorder(marcher);
   const double start = thread_nanoseconds();
   out.set_up = start - begin;
-  marcher.start(&recorder);
+  marcher.start({&audit, &recorder});
   out.steps = options.expected_steps;
-  marcher.march(out.steps - marcher.step(), &recorder);
+  marcher.march(out.steps - marcher.step(), {&audit, &recorder});
   out.nanoseconds = thread_nanoseconds() - start;
   recorder.finish(marcher);
   out.visited = marcher.steps_visited();

@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ricochet/algebra/block.hpp>
-#include <ricochet/algebra/lane_kernels.hpp>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/lane_kernels.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -37,10 +37,10 @@ struct Case {
   std::vector<double> nanoseconds;
   std::unique_ptr<Marcher> marcher;
   std::unique_ptr<EnergyAudit> audit;
-  std::unique_ptr<ImpactRecorder> recorder;  ///< before the audit
-  std::unique_ptr<MotionSampler> sampler;    ///< reads the motion every `steps_per_sample` steps, contact at each
+  std::unique_ptr<ImpactRecorder> recorder;
+  std::unique_ptr<MotionSampler> sampler;  ///< reads the motion every `steps_per_sample` steps, contact at each
   long long contact_steps = 0;
-  StepObserver* observer() const { return recorder ? static_cast<StepObserver*>(recorder.get()) : audit.get(); }
+  Observers observers() const { return {audit.get(), recorder.get()}; }
 };
 
 // What looks at the march: nothing, the energy audit at every step, the same behind a recorder of impacts, or samples
@@ -112,7 +112,7 @@ double measure_rounds(std::vector<Case>& cases, int rounds) {
       if (one.sampler)
         for (int k = 0; k < steps / steps_per_sample; ++k) one.sampler->next();
       else
-        one.marcher->march(steps, one.observer());
+        one.marcher->march(steps, one.observers());
       const double elapsed = thread_nanoseconds() - start;
       one.nanoseconds.push_back(elapsed / static_cast<double>(steps) / one.lanes);
     }
@@ -233,10 +233,10 @@ int main(int argc, char** argv) {
         one.sampler = std::make_unique<MotionSampler>(*one.marcher, grid);
         for (int k = 0; k < 24000 / steps_per_sample; ++k) one.sampler->next();
       } else {
-        if (watch != Watch::nothing) one.audit = std::make_unique<EnergyAudit>(*one.marcher, Looks::seldom);
-        if (watch == Watch::impacts) one.recorder = std::make_unique<ImpactRecorder>(*one.marcher, one.audit.get());
-        one.marcher->start(one.observer());
-        one.marcher->march(24000, one.observer());  // into the impacting regime
+        if (watch != Watch::nothing) one.audit = std::make_unique<EnergyAudit>(*one.marcher, SamplingMode::seldom);
+        if (watch == Watch::impacts) one.recorder = std::make_unique<ImpactRecorder>(*one.marcher);
+        one.marcher->start(one.observers());
+        one.marcher->march(24000, one.observers());  // into the impacting regime
       }
       cases.push_back(std::move(one));
     }

@@ -22,9 +22,9 @@
 #include <cstring>
 #include <numbers>
 #include <optional>
-#include <ricochet/algebra/flush_denormals.hpp>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/flush_denormals.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -96,10 +96,10 @@ struct Audited {
   EnergyAudit audit;
   ImpactRecorder recorder;
   Audited(const std::shared_ptr<const SemiDiscrete>& problem, double h, MarchWay way, Registry& registry)
-      : marcher(program(problem, h, way, registry)), audit(marcher, Looks::seldom), recorder(marcher, &audit) {
-    marcher.start(&recorder);
+      : marcher(program(problem, h, way, registry)), audit(marcher, SamplingMode::seldom), recorder(marcher) {
+    marcher.start({&audit, &recorder});
   }
-  void march(long long until) { marcher.march(until - marcher.step(), &recorder); }
+  void march(long long until) { marcher.march(until - marcher.step(), {&audit, &recorder}); }
 
   static Program program(const std::shared_ptr<const SemiDiscrete>& problem, double h, MarchWay way,
                          Registry& registry) {

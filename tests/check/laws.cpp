@@ -1,8 +1,8 @@
 // Laws with one thing wrong, each caught by the check that looks at it.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ricochet/algebra/box_problem.hpp>
-#include <ricochet/algebra/pointwise_contact.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
+#include <ricochet/contact_solvers/pointwise_contact.hpp>
 #include <ricochet/contract/contact_structure.hpp>
 
 #include "runners/check/allocation_count.hpp"

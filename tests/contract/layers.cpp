@@ -151,7 +151,9 @@ TEST_CASE("the scanner of this test sees literals and not comments") {
   REQUIRE(method_names().size() >= 10);
 }
 
-TEST_CASE("plugins include the contract, algebra helpers, their own headers, the standard library, Eigen and fmt") {
+TEST_CASE(
+    "plugins include the contract, kernels and contact solvers, their own headers, the standard library, Eigen and "
+    "fmt") {
   for (const Source& source : sources("plugins"))
     for (const std::string& include : includes(source)) {
       INFO(source.name << " includes " << include);
@@ -161,8 +163,9 @@ TEST_CASE("plugins include the contract, algebra helpers, their own headers, the
       const fs::path folder = (root / source.name).parent_path(), role = root / "plugins" / role_of(source.name);
       const bool own = bare && (fs::exists(folder / header) || fs::exists(role / header));
       const bool standard = include[0] == '<' && include.find_first_of("/.") == std::string::npos;
-      CHECK((standard || include.starts_with("<ricochet/contract/") || include.starts_with("<ricochet/algebra/") ||
-             include.starts_with("<Eigen/") || include.starts_with("<fmt/") || own));
+      CHECK((standard || include.starts_with("<ricochet/contract/") || include.starts_with("<ricochet/kernels/") ||
+             include.starts_with("<ricochet/contact_solvers/") || include.starts_with("<Eigen/") ||
+             include.starts_with("<fmt/") || own));
     }
 }
 
@@ -183,10 +186,11 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
   const std::map<std::string, std::set<std::string>> below = {
       {"core/contract", {}},
       {"core/loader", {"core/contract"}},
-      {"core/algebra", {"core/contract", "core/loader"}},
-      {"core/scene", {"core/contract", "core/algebra"}},
-      {"core/engine", {"core/contract", "core/algebra", "core/scene"}},
-      {"core/measure", {"core/contract", "core/algebra", "core/scene", "core/engine"}},
+      {"core/kernels", {"core/contract", "core/loader"}},
+      {"core/contact_solvers", {"core/contract", "core/kernels"}},
+      {"core/scene", {"core/contract", "core/kernels", "core/contact_solvers"}},
+      {"core/engine", {"core/contract", "core/kernels", "core/contact_solvers", "core/scene"}},
+      {"core/measure", {"core/contract", "core/kernels", "core/contact_solvers", "core/scene", "core/engine"}},
       {"runners/table", {}},
       {"runners/study", {"core/contract", "core/loader", "core/scene", "runners/table"}},
       {"runners/store", {"runners/table", "runners/study"}},
@@ -204,7 +208,8 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
         "runners/march", "runners/kinds", "runners/workers", "runners/report"}},
       {"runners/check",
-       {"core/contract", "core/loader", "core/algebra", "core/scene", "core/engine", "core/measure", "runners/study"}},
+       {"core/contract", "core/loader", "core/kernels", "core/contact_solvers", "core/scene", "core/engine",
+        "core/measure", "runners/study"}},
       {"runners/command",
        {"core/contract", "core/loader", "core/scene", "core/measure", "runners/table", "runners/study", "runners/store",
         "runners/march", "runners/kinds", "runners/workers", "runners/run", "runners/report", "runners/check"}},

@@ -1,7 +1,7 @@
 // Why a march ended: a cause with its numbers; status and sentence follow from it, never the other way round.
 #include <catch2/catch.hpp>
 #include <limits>
-#include <ricochet/engine/lane_status.hpp>
+#include <ricochet/engine/lane_state.hpp>
 #include <set>
 
 using namespace ricochet;

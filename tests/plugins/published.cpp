@@ -36,9 +36,9 @@ TEST_CASE("code_aster SDND101: force, instants, duration and impulse of shocks o
   const auto run = [&](double duration) {
     Marcher march = marcher(scene, 1, methods, h);
     LargestForce largest;
-    ImpactRecorder recorder(march, &largest);
-    march.start(&recorder);
-    march.march(std::llround(duration / h) - march.step(), &recorder);
+    ImpactRecorder recorder(march);
+    march.start({&largest, &recorder});
+    march.march(std::llround(duration / h) - march.step(), {&largest, &recorder});
     recorder.finish(march);
     return std::pair(largest, recorder.impacts(0));
   };

@@ -1,9 +1,63 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ricochet/engine/flight/clear_steps.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
+
+StepReadings::StepReadings(const StepRows& rows, const FlightWatch& watch, int point)
+    : size_(rows.slots() * rows.modes()),
+      drives_(rows.drive().count()),
+      weights_(static_cast<std::size_t>(rows_read * size_)),
+      drive_(static_cast<std::size_t>(rows_read * drives_)) {
+  const int modes = rows.modes(), slots = rows.slots();
+  const Eigen::MatrixXd turn = rows.drive().change(1);
+  const auto add_drive = [&](int at, const auto& more) {
+    for (int k = 0; k < drives_; ++k) drive_[static_cast<std::size_t>(at * drives_ + k)] += more[k];
+  };
+  // `own` at each step, and its differences: `differ`() is what it changes by from step to step.
+  const auto put_all = [&](const Eigen::RowVectorXd& own, auto&& put, auto&& differ) {
+    Eigen::RowVectorXd now = own;
+    for (int step = 0; step <= block; ++step) {
+      put(step, now);
+      now += differ(now);
+    }
+    now = own;
+    for (int order = 0; order < differences_read; ++order) {
+      put(differences_from + order, now);
+      now = differ(now);
+    }
+  };
+  Eigen::RowVectorXd change(rows.width());
+  for (int mode = 0; mode < modes; ++mode)
+    put_all(
+        watch.rows(point, mode) * rows.of(mode, watch.stage, watch.value),
+        [&](int at, const Eigen::RowVectorXd& own) {
+          for (int j = 0; j < slots; ++j) weights_[static_cast<std::size_t>(at * size_ + j * modes + mode)] = own[j];
+          add_drive(at, own.tail(drives_));
+        },
+        [&](const Eigen::RowVectorXd& own) -> const Eigen::RowVectorXd& {
+          change.noalias() = own.head(slots).lazyProduct(rows.change(mode));
+          if (drives_ > 0) change.tail(drives_) += own.tail(drives_).lazyProduct(turn);
+          return change;
+        });
+  put_all(watch.drive.row(point), add_drive,
+          [&](const Eigen::RowVectorXd& own) -> Eigen::RowVectorXd { return own * turn; });
+}
+
+double StepReadings::operator()(int step, const double* x, const double* e) const {
+  double value;
+  read(step, 1, x, e, &value);
+  return value;
+}
+
+void StepReadings::read(int first, int count, const double* x, const double* e, double* out) const {
+  flight_kernels().dots(size_, count, weights_.data() + static_cast<std::ptrdiff_t>(first) * size_, x, out);
+  for (int row = 0; row < count; ++row)
+    for (int k = 0; k < drives_; ++k) out[row] += drive_[static_cast<std::size_t>((first + row) * drives_ + k)] * e[k];
+}
+
 namespace {
 
 constexpr int block = StepReadings::block;
@@ -19,7 +73,8 @@ double steps_within(double g, double d, double s, double z) {
 
 // Whether gap + k d₁ + C(k, 2) d₂ + C(k, 3) d₃ − C(k, 4) m₄ > 0 for all k ≤ steps, by its Bernstein coefficients. The
 // first difference that round-off hides is put at its least, −m, for all of these steps, and ends the sum.
-bool stays(double gap, double sign, const double* now, const FlightBound::Pace& most, double lost, double steps) {
+bool stays(double gap, double sign, const double* now, const FlightBound::Differences& most, double lost,
+           double steps) {
   const double bounds[] = {most.first, most.second, most.third, most.fourth};
   double d[5] = {gap, 0, 0, 0, 0};
   for (int order = 1; order <= 4; ++order) {
@@ -49,7 +104,7 @@ void ClearSteps::advance(long long k) {
   motion_.advance(k, x_.data(), e_);
 }
 
-long long ClearSteps::count(const std::vector<double>& x, const double* e, long long most, long long& pace) {
+long long ClearSteps::count(const std::vector<double>& x, const double* e, long long most, long long& ask) {
   x_ = x;
   std::copy_n(e, 3, e_);
   read_ = 0;
@@ -57,11 +112,11 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
   while (done < most) {
     const long long left = std::min(most - done, bound_.longest());
     bound_.look(x_.data(), e_);
-    long long k = std::min(pace, left);
+    long long k = std::min(ask, left);
     while (!bound_.find_exposed(k, exposed_, k > block ? few : static_cast<std::size_t>(-1))) k /= 2;
     const bool all = exposed_.empty();
     while (all && k < left && bound_.holds(std::min(2 * k, left))) k = std::min(2 * k, left);
-    pace = std::max<long long>(k, block);
+    ask = std::max<long long>(k, block);
     if (all) {
       if (done + k < most) advance(k);
       done += k;
@@ -70,7 +125,7 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
     const long long clear = follow(k);
     if (clear < k) return done + clear;
     done += k;
-    pace = 2 * k;
+    ask = 2 * k;
   }
   return done;
 }
@@ -80,7 +135,7 @@ long long ClearSteps::count(const std::vector<double>& x, const double* e, long 
 long long ClearSteps::follow(long long steps) {
   followed_.clear();
   for (const auto& [watch, point] : exposed_)
-    followed_.push_back({&readings(watch, point), bound_.pace(watch, point),
+    followed_.push_back({&readings(watch, point), bound_.differences(watch, point),
                          bound_.watch(watch).lower[static_cast<std::size_t>(point)],
                          bound_.watch(watch).upper[static_cast<std::size_t>(point)]});
   long long gone = 0;
@@ -114,23 +169,23 @@ long long ClearSteps::follow(long long steps) {
 // How many steps a point stays between its bounds from here on: by where it is, how it moves now, and what its
 // differences can be at most. −1: it is not between them.
 long long ClearSteps::clear_steps(const Followed& one) {
-  const auto& pace = one.pace;
+  const auto& bounds = one.most;
   read_ += 4;
   double now[4];
   one.reading->differences(x_.data(), e_, now);
-  const double below = now[0] - one.lower - pace.margin, above = one.upper - now[0] - pace.margin;
+  const double below = now[0] - one.lower - bounds.margin, above = one.upper - now[0] - bounds.margin;
   if (!(below > 0 && above > 0)) return -1;
   // The round-off of a difference is that of the values, once a step.
-  const double lost = 1e-3 * pace.margin;
-  const double by_bend = std::min(steps_within(below, now[1] - lost, pace.first, pace.second),
-                                  steps_within(above, -now[1] - lost, pace.first, pace.second));
+  const double lost = 1e-3 * bounds.margin;
+  const double by_bend = std::min(steps_within(below, now[1] - lost, bounds.first, bounds.second),
+                                  steps_within(above, -now[1] - lost, bounds.first, bounds.second));
   const auto most = static_cast<long long>(std::min(by_bend, static_cast<double>(motion_.longest())));
   // Of powers of two: leaps have no other lengths.
   long long steps = most < least_leap
                         ? least_leap
                         : 2 * static_cast<long long>(std::bit_floor(static_cast<unsigned long long>(most)));
-  while (steps <= motion_.longest() && stays(below, 1, now, pace, lost, static_cast<double>(steps)) &&
-         stays(above, -1, now, pace, lost, static_cast<double>(steps)))
+  while (steps <= motion_.longest() && stays(below, 1, now, bounds, lost, static_cast<double>(steps)) &&
+         stays(above, -1, now, bounds, lost, static_cast<double>(steps)))
     steps *= 2;
   return steps / 2 > most && steps > least_leap ? steps / 2 : most;
 }
@@ -139,7 +194,7 @@ long long ClearSteps::clear_steps(const Followed& one) {
 bool ClearSteps::inside(const Followed& one, int step) {
   ++read_;
   const double value = (*one.reading)(step, x_.data(), e_);
-  return value - one.pace.margin > one.lower && value + one.pace.margin < one.upper;
+  return value - one.most.margin > one.lower && value + one.most.margin < one.upper;
 }
 
 }  // namespace ricochet

@@ -24,11 +24,11 @@ Flight::Flight(const Program& program, double layer, long long steps)
           flight_set_bytes(program.model->rows(), static_cast<int>(program.plan.slots.size()), powers_))) {
   const LaneSpec& lane = program.lanes.front();
   crossed_ = (lane.lower.array() > lane.upper.array()).any();
-  free_ = std::make_unique<FlightSet>(program, layer, std::vector<HeldPoint>{}, powers_);
+  free_ = std::make_unique<FlightSet>(program, layer, std::vector<ClosedPoint>{}, powers_);
   set_ = free_.get();
-  held_cause_ = why_not_held(program);
-  steps_cause_ = HeldSteps::why_not(program);
-  tells_slots_ = program.stages.size() == 1 && program.width == 1 && (!program.contact || held_cause_.empty());
+  closed_cause_ = why_not_closed(program);
+  steps_cause_ = ClosedSteps::why_not(program);
+  tells_slots_ = program.stages.size() == 1 && program.width == 1 && (!program.contact || closed_cause_.empty());
   if (tells_slots_) {
     slots_.assign(program.plan.slots.size(), std::vector<double>(static_cast<std::size_t>(program.model->rows())));
     for (std::vector<double>& slot : slots_) slot_pointers_.push_back(slot.data());
@@ -36,7 +36,7 @@ Flight::Flight(const Program& program, double layer, long long steps)
   legs_.resize(static_cast<std::size_t>(powers_) + 2);
 }
 
-std::string Flight::why_not_held(const Program& program) {
+std::string Flight::why_not_closed(const Program& program) {
   if (!program.contact) return "there is none";
   if (program.law->reads()) return "the law is compliant";
   if (program.stages.size() != 1) return "the step has several stages";
@@ -50,108 +50,108 @@ std::string Flight::why_not_held(const Program& program) {
   return "";
 }
 
-// Points that are held elsewhere move otherwise: their sets are made anew.
+// Points that are closed elsewhere move otherwise: their sets are made anew.
 void Flight::place(const LaneSpec& lane, double layer) {
   layer_ = layer;
   crossed_ = (lane.lower.array() > lane.upper.array()).any();
-  closed_ = nullptr;
+  latest_ = nullptr;
   free_->place(lane, layer);
   sets_.clear();
   set_ = free_.get();
 }
 
 void Flight::forget() {
-  pace_ = {};
-  closed_ = nullptr;
+  schedule_ = {};
+  latest_ = nullptr;
   for (auto& one : sets_) {
     one->seen = 0;
-    one->pace = {};
+    one->schedule = {};
   }
 }
 
-Flight::Kept& Flight::kept(std::span<const HeldPoint> held) {
+Flight::ContactSet& Flight::contact_set(std::span<const ClosedPoint> closed) {
   for (auto& one : sets_)
-    if (std::equal(held.begin(), held.end(), one->held.begin(), one->held.end())) return *one;
+    if (std::equal(closed.begin(), closed.end(), one->closed.begin(), one->closed.end())) return *one;
   if (sets_.size() == most_sets_) {
     // The one that was seen least makes room.
     const auto least_seen =
         std::min_element(sets_.begin(), sets_.end(), [](const auto& a, const auto& b) { return a->seen < b->seen; });
     sets_.erase(least_seen);
   }
-  Kept& one = *sets_.emplace_back(std::make_unique<Kept>());
-  one.held.assign(held.begin(), held.end());
+  ContactSet& one = *sets_.emplace_back(std::make_unique<ContactSet>());
+  one.closed.assign(closed.begin(), closed.end());
   return one;
 }
 
 // A set of the same points, otherwise closed, that was seen often enough to be made; null: there is none.
-const FlightSet* Flight::twin_of(const Kept& one, long long enough) const {
-  const auto same_point = [](const HeldPoint& a, const HeldPoint& b) { return a.point == b.point; };
+const FlightSet* Flight::twin_of(const ContactSet& one, long long enough) const {
+  const auto same_point = [](const ClosedPoint& a, const ClosedPoint& b) { return a.point == b.point; };
   for (const auto& other : sets_)
     if (other.get() != &one && other->set && other->set->cause().empty() && other->seen >= enough &&
-        std::equal(other->held.begin(), other->held.end(), one.held.begin(), one.held.end(), same_point))
+        std::equal(other->closed.begin(), other->closed.end(), one.closed.begin(), one.closed.end(), same_point))
       return other->set.get();
   return nullptr;
 }
 
-bool Flight::due(const Program& program, std::span<const HeldPoint> held) {
+bool Flight::due(const Program& program, std::span<const ClosedPoint> closed) {
   set_ = free_.get();
   steps_ = nullptr;
-  set_pace_ = &pace_;
-  // Stops that pass each other push from both sides: no point is held by one of them alone.
-  if (!held.empty() && crossed_) return false;
-  const Kept* const before = std::exchange(closed_, nullptr);
-  if (!held.empty() && !held_cause_.empty()) {
+  set_schedule_ = &schedule_;
+  // Stops that pass each other push from both sides: no point is closed by one of them alone.
+  if (!closed.empty() && crossed_) return false;
+  const ContactSet* const before = std::exchange(latest_, nullptr);
+  if (!closed.empty() && !closed_cause_.empty()) {
     if (!steps_cause_.empty()) return false;
-    Kept& one = kept(held);
+    ContactSet& one = contact_set(closed);
     // Their numbers cost about as much as so many steps.
-    const long long points = static_cast<long long>(held.size());
+    const long long points = static_cast<long long>(closed.size());
     if (++one.seen < std::max(brief, program.model->rows() * points / 2)) return false;
-    if (!one.steps) one.steps = std::make_unique<HeldSteps>(program, *free_, one.held);
+    if (!one.steps) one.steps = std::make_unique<ClosedSteps>(program, *free_, one.closed);
     steps_ = one.steps.get();
-    set_pace_ = &one.pace;
-  } else if (!held.empty()) {
-    Kept& one = kept(held);
-    closed_ = &one;
-    closed_for_ = &one == before ? closed_for_ + 1 : 1;
+    set_schedule_ = &one.schedule;
+  } else if (!closed.empty()) {
+    ContactSet& one = contact_set(closed);
+    latest_ = &one;
+    latest_for_ = &one == before ? latest_for_ + 1 : 1;
     // Its modes cost about as much as so many steps with all the dofs. Points that come back to one stop come back to
     // the other one. What a short contact has before it rests cannot be left out, and does not count.
     const long long rows = program.model->rows(), enough = std::max(brief, rows * rows / modes_of_step);
     const FlightSet* const twin = twin_of(one, enough);
-    if (closed_for_ > least) ++one.seen;
+    if (latest_for_ > least) ++one.seen;
     if (one.seen < (twin ? brief : enough)) return false;
-    if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.held, powers_, twin);
+    if (!one.set) one.set = std::make_unique<FlightSet>(program, layer_, one.closed, powers_, twin);
     if (!one.set->cause().empty()) return false;
-    set_pace_ = &one.pace;
+    set_schedule_ = &one.schedule;
     set_ = one.set.get();
   }
-  if (set_pace_->wait == 0) return true;
-  --set_pace_->wait;
+  if (set_schedule_->wait == 0) return true;
+  --set_schedule_->wait;
   return false;
 }
 
 // A run of steps ends where contact changes, or where another point might close.
-long long Flight::step_held(Columns columns, const double* e, HeldSteps::Past past, long long most) {
-  const long long asked = std::min(most, set_pace_->next), k = steps_->march(columns[0], e, past, asked);
+long long Flight::step_closed(Columns columns, const double* e, ClosedSteps::Past past, long long most) {
+  const long long asked = std::min(most, set_schedule_->next), k = steps_->march(columns[0], e, past, asked);
   if (k < least) {
-    set_pace_->wait = std::max(set_pace_->penalty, least);
-    set_pace_->penalty = std::min(2 * set_pace_->wait, longest_wait);
-    set_pace_->next = 2 * least;
+    set_schedule_->wait = std::max(set_schedule_->penalty, least);
+    set_schedule_->penalty = std::min(2 * set_schedule_->wait, longest_wait);
+    set_schedule_->next = 2 * least;
     return 0;
   }
-  set_pace_->penalty = least;
-  set_pace_->next = std::min(2 * k, HeldSteps::longest);
+  set_schedule_->penalty = least;
+  set_schedule_->next = std::min(2 * k, ClosedSteps::longest);
   return k;
 }
 
-long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, long long most) {
+long long Flight::look(Columns columns, const double* e, ClosedSteps::Past past, long long most) {
   clear_ = 0;
-  if (steps_) return step_held(columns, e, past, most);
+  if (steps_) return step_closed(columns, e, past, most);
   FlightSet* const set = set_;
-  Pace* const pace = set_pace_;
+  Schedule* const schedule = set_schedule_;
   most = std::min(most, set->motion().longest());
   const auto fails = [&] {
-    pace->wait = pace->penalty;
-    pace->penalty = std::clamp<long long>(2 * pace->penalty, 1, longest_wait);
+    schedule->wait = schedule->penalty;
+    schedule->penalty = std::clamp<long long>(2 * schedule->penalty, 1, longest_wait);
     return 0LL;
   };
   std::copy_n(e, 3, start_.e);
@@ -160,24 +160,24 @@ long long Flight::look(Columns columns, const double* e, HeldSteps::Past past, l
   for (std::size_t k = 0; k < tangents_.size(); ++k)
     if (!set->enter(columns[k + 1], tangents_[k].e, tangents_[k].x)) return fails();
   // The steps that begin 0 to `last` steps from now are clear.
-  const long long last = set->clear_steps().count(start_.x, e, most, pace->next);
+  const long long last = set->clear_steps().count(start_.x, e, most, schedule->next);
   const long long k = tells_slots_ ? std::min(last + 1, most) : last;
   const long long clear_after = last + 1 - (k < least ? 0 : k);
-  if (set->held().empty() && last >= 0) clear_ = clear_after;
+  if (set->closed().empty() && last >= 0) clear_ = clear_after;
   // What is reached is known to the step: until then there is nothing to look for.
-  if (last < most) pace->wait = clear_after;
+  if (last < most) schedule->wait = clear_after;
   if (last < 0) return fails();
-  pace->penalty = 0;
+  schedule->penalty = 0;
   if (k < least) return 0;
   // Points that are near a bound in nearly every step cost as much to follow as steps that are marched: those come
   // next.
   const bool dear = set->clear_steps().read() > k * worth_reading_;
-  pace->dear = dear ? std::min(std::max(2 * pace->dear, k), longest_march) : pace->dear / 2;
-  pace->wait = std::max(pace->wait, pace->dear);
+  schedule->dear = dear ? std::min(std::max(2 * schedule->dear, k), longest_march) : schedule->dear / 2;
+  schedule->wait = std::max(schedule->wait, schedule->dear);
   return k;
 }
 
-FlightSums Flight::fly(long long k, Columns columns, HeldSteps::Past past, bool works) {
+FlightSums Flight::fly(long long k, Columns columns, ClosedSteps::Past past, bool works) {
   FlightSums sums;
   if (steps_) {
     steps_->leave(columns[0], past);
@@ -214,7 +214,7 @@ long long Flight::find_efforts(long long first) {
     after_efforts_ = start_;
     advance(first, after_efforts_);
   }
-  const std::size_t points = set_->held().size();
+  const std::size_t points = set_->closed().size();
   efforts_.resize(static_cast<std::size_t>(effort_block) * points);
   for (long long k = 0; k < count; k += StepReadings::block) {
     const int steps = static_cast<int>(std::min<long long>(StepReadings::block, count - k));

@@ -1,26 +1,12 @@
 #pragma once
 #include <memory>
+#include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
-#include <ricochet/engine/flight/held_steps.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace ricochet {
-
-class Flight;
-
-/// Steps that a march left out: one lane's, whose contact stayed what it was in all of them; in the step after too,
-/// where the flight does not tell its slots.
-struct SkippedSteps {
-  long long steps = 0;
-  double from = 0, to = 0;          ///< s
-  FlightSums works;                 ///< over these steps, where the plan has work forms
-  std::span<const HeldPoint> held;  ///< points that stayed closed; none: nothing was touched
-  int instants = 0;                 ///< looks at contact in a step where they did
-  double penetration = 0;           ///< largest after any of these steps, m
-  Flight* flight = nullptr;         ///< what else may be asked of them
-};
 
 /// Leaves out the steps of one lane in which nothing happens. Allocates when constructed, and when points close
 /// together that it does not remember.
@@ -35,8 +21,8 @@ class Flight {
   /// Why it cannot fly at all; empty where it can.
   const std::string& cause() const { return free_->cause(); }
   /// Whether closed contact is composed too, and if not, why.
-  const std::string& held_cause() const { return held_cause_; }
-  /// Whether steps of closed contact are left to HeldSteps where they are not composed, and if not, why.
+  const std::string& closed_cause() const { return closed_cause_; }
+  /// Whether steps of closed contact are left to ClosedSteps where they are not composed, and if not, why.
   const std::string& steps_cause() const { return steps_cause_; }
 
   /// Whether the state before any step that is left out can be told. Nobody then has to see a step for what comes
@@ -53,15 +39,15 @@ class Flight {
   using Columns = std::span<double* const* const>;
 
   /// Whether a look may find something in a lane with these closed points; to be asked once a step.
-  bool due(const Program& program, std::span<const HeldPoint> held);
+  bool due(const Program& program, std::span<const ClosedPoint> closed);
   /// How many of the next `most` steps may be left out, such that nothing changes in them, nor in the one after where
   /// slots are not told; 0: march. `columns`, `e`: the lane's state; `past`: its efforts. Where a look is due.
-  long long look(Columns columns, const double* e, HeldSteps::Past past, long long most);
+  long long look(Columns columns, const double* e, ClosedSteps::Past past, long long most);
   /// How many steps that come next, the one after a flight among them, no open point can close in, as far as the last
   /// look has seen; no lane without contact then needs to be measured.
   long long clear() const { return clear_; }
   /// Leaves them out: the slots k steps later, of tangents without what drives the lane. Right after look().
-  FlightSums fly(long long k, Columns columns, HeldSteps::Past past, bool works);
+  FlightSums fly(long long k, Columns columns, ClosedSteps::Past past, bool works);
   /// Largest penetration after any of them, m.
   double penetration() const { return steps_ ? steps_->penetration() : 0.0; }
 
@@ -80,13 +66,13 @@ class Flight {
     last_ = start_;
     set_->tip_readings().each(set_->motion(), flown_, last_.x.data(), last_.e, see);
   }
-  /// Each stage of each of them: `see`(stage, efforts of the held points in their order, N, and their absolute places
+  /// Each stage of each of them: `see`(stage, efforts of the closed points in their order, N, and their absolute places
   /// before the stage, m; none where they rest). A stage that reads no contact has no efforts. Found once for all who
   /// ask.
   template <class See>
   void each_stage(See&& see) {
     if (steps_) return steps_->each_stage(see);
-    const std::size_t points = set_->held().size();
+    const std::size_t points = set_->closed().size();
     for (long long first = 0; first < flown_; first += effort_block) {
       const long long count = find_efforts(first);
       for (long long k = 0; k < count; ++k)
@@ -100,27 +86,27 @@ class Flight {
  private:
   static constexpr long long effort_block = 4096;
 
-  struct Pace {
+  struct Schedule {
     long long next = 16;              // steps to ask for first
     long long wait = 0, penalty = 0;  // steps between two looks
     long long dear = 0;               // steps to march after one that cost as much as marching
   };
-  struct Kept {
-    std::vector<HeldPoint> held;
+  struct ContactSet {
+    std::vector<ClosedPoint> closed;
     long long seen = 0;  // steps that began with these points closed, and might have been left out
     std::unique_ptr<FlightSet> set;
-    std::unique_ptr<HeldSteps> steps;
-    Pace pace;
+    std::unique_ptr<ClosedSteps> steps;
+    Schedule schedule;
   };
   /// A state in the modes of set_.
   struct Leg {
     std::vector<double> x;
     double e[3] = {};
   };
-  static std::string why_not_held(const Program& program);
-  long long step_held(Columns columns, const double* e, HeldSteps::Past past, long long most);
-  Kept& kept(std::span<const HeldPoint> held);
-  const FlightSet* twin_of(const Kept& one, long long enough) const;
+  static std::string why_not_closed(const Program& program);
+  long long step_closed(Columns columns, const double* e, ClosedSteps::Past past, long long most);
+  ContactSet& contact_set(std::span<const ClosedPoint> closed);
+  const FlightSet* twin_of(const ContactSet& one, long long enough) const;
   /// `leg` moved on by k steps.
   void advance(long long k, Leg& leg) const { set_->motion().advance(k, leg.x.data(), leg.e); }
   /// Those of the steps from `first`, a multiple of effort_block, on; returns how many.
@@ -135,16 +121,16 @@ class Flight {
   int powers_;
   std::size_t most_sets_;
   std::unique_ptr<FlightSet> free_;
-  Pace pace_;
-  std::string held_cause_, steps_cause_;
+  Schedule schedule_;
+  std::string closed_cause_, steps_cause_;
   bool tells_slots_ = false;
-  std::vector<std::unique_ptr<Kept>> sets_;
-  const Kept* closed_ = nullptr;  // of the last step, and for how many it has been
-  long long closed_for_ = 0;
+  std::vector<std::unique_ptr<ContactSet>> sets_;
+  const ContactSet* latest_ = nullptr;  // of the last step, and for how many it has been
+  long long latest_for_ = 0;
   // Of the look that is due and the flight after it:
   FlightSet* set_ = nullptr;
-  HeldSteps* steps_ = nullptr;  // null: composed
-  Pace* set_pace_ = nullptr;
+  ClosedSteps* steps_ = nullptr;  // null: composed
+  Schedule* set_schedule_ = nullptr;
   Leg start_, last_;
   std::vector<Leg> tangents_;  // where they start
   long long flown_ = 0, clear_ = 0;

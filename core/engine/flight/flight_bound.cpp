@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 namespace ricochet {
 namespace {
@@ -101,7 +101,7 @@ FlightBound::FlightBound(const StepRows& rows, std::vector<FlightWatch> watches,
       watched.sizes[at] = std::abs(watched.points[at]);
     }
     reached_.resize(std::max(reached_.size(), 4 * all));
-    watched.paces.assign(5 * n, 0.0);
+    watched.differences.assign(5 * n, 0.0);
     watched.widest.assign(n, 0.0);
     for (std::size_t at = 0; at < watched.points.size(); ++at)
       watched.widest[at % n] = std::max(watched.widest[at % n], std::abs(watched.points[at]));

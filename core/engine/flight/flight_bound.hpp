@@ -72,10 +72,10 @@ class FlightBound {
   Range range(int watch, int point, long long k);
   /// What a point can do from the last look on, forever: the largest of its first, second, third and fourth differences
   /// from step to step; and what its values have for round-off.
-  struct Pace {
+  struct Differences {
     double first = 0, second = 0, third = 0, fourth = 0, margin = 0;
   };
-  Pace pace(int watch, int point);
+  Differences differences(int watch, int point);
   /// Its value in the state itself.
   double value(int watch, int point);
   /// Values of all points of one measure in a state that is not looked at otherwise.
@@ -98,8 +98,8 @@ class FlightBound {
     // Of the last look:
     std::vector<double> now, step, amplitude, bend, growth;
     std::vector<double> offset, offset_step, offset_bend;  // of the points, by e
-    std::vector<double> paces;                             // of each mode, what Pace adds up, five arrays
-    bool paced = false;                                    // whether they are of this look
+    std::vector<double> differences;                       // of each mode, what Differences adds up, five arrays
+    bool differences_known = false;                        // whether they are of this look
     std::size_t tightest = 0;
   };
   void place(Watched& watched, long long k);

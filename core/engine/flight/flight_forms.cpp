@@ -1,5 +1,5 @@
-#include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/step_rows.hpp>
 
 namespace ricochet {
 namespace {
@@ -15,12 +15,12 @@ MatrixXd product(const RowVectorXd& a, const RowVectorXd& b) {
 
 }  // namespace
 
-// The balance of a step as quadratic forms. M couples what is held to what moves; K does not.
+// The balance of a step as quadratic forms. M couples what is closed to what moves; K does not.
 FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows, const VectorXd& mass,
                                     const MatrixXd& lifted) {
   FlightWorks::Forms forms;
   const int width = rows.width(), drives = drive_.count();
-  const bool holds = !held_.empty();
+  const bool touching = !closed_.empty();
   const auto begin = [&](FlightWorks::Form& form) {
     if (form.empty()) form.assign(static_cast<std::size_t>(modes_), MatrixXd::Zero(width, width));
   };
@@ -40,9 +40,9 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
       const RowVectorXd row_a = rows.of(mode, stage, a), row_b = rows.of(mode, stage, b);
       MatrixXd& Q = form[static_cast<std::size_t>(mode)];
       Q += (m * mass[mode] + k) * product(row_a, row_b);
-      if (holds) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
+      if (touching) Q += m * (product(row_a, padded(inert_b.row(mode))) + product(padded(inert_a.row(mode)), row_b));
     }
-    if (!holds) return;
+    if (!touching) return;
     const MatrixXd common = m * lift_a.transpose() * own_mass_.asDiagonal() * lift_b + k * lift_a.transpose() * lift_b;
     form.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
   };
@@ -65,7 +65,7 @@ FlightWorks::Forms FlightSet::forms(const Program& program, const StepRows& rows
     for (int mode = 0; mode < modes_; ++mode)
       forms.loads[static_cast<std::size_t>(mode)] +=
           product(rows.of(mode, stage, work.displacement), padded(modal.row(mode)));
-    if (!holds) continue;
+    if (!touching) continue;
     const MatrixXd common = lift_of(work.displacement, lifted).transpose() * load;
     forms.loads.front().bottomRightCorner(drives, drives) += 0.5 * (common + common.transpose());
     if (!program.support) continue;

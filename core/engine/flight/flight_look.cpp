@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
 #include <ricochet/engine/flight/flight_bound.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 // What is asked of a bound while a march goes on; how it is made stands in flight_bound.cpp.
 namespace ricochet {
@@ -25,7 +25,7 @@ void FlightBound::look(const double* x, const double* e) {
   for (int k = 0; k < drives_; ++k)
     for (int l = 0; l < drives_; ++l) turned[k] += turn_(k, l) * e[l];
   for (Watched& watched : watches_) {
-    watched.paced = false;
+    watched.differences_known = false;
     kernels.row(modes_, slots_, drives_, watched.value.data(), x, e, watched.now.data());
     kernels.row(modes_, slots_, drives_, watched.change.data(), x, e, watched.step.data());
     for (std::size_t j = 0; j < watched.amplitude.size(); ++j) {
@@ -179,25 +179,25 @@ FlightBound::Range FlightBound::range(int watch, int point, long long k) {
 
 // Of a share c λⁱ the m-th difference is |λ − 1|ᵐ |c|: the first at most the root of its amplitude times its bend, as
 // their sums have it; the third and fourth by the fastest share.
-FlightBound::Pace FlightBound::pace(int watch, int point) {
+FlightBound::Differences FlightBound::differences(int watch, int point) {
   Watched& watched = watches_[static_cast<std::size_t>(watch)];
   const auto at = static_cast<std::size_t>(point);
   if (!watched.grows.empty()) return {infinity, infinity, infinity, infinity, range(watch, point, 1).margin};
   const auto n = static_cast<std::size_t>(modes_);
-  double* const paces = watched.paces.data();
-  if (!watched.paced) {
+  double* const differences = watched.differences.data();
+  if (!watched.differences_known) {
     const double *amplitude = watched.amplitude.data(), *bend = watched.bend.data(), *swift = watched.swiftest.data();
     for (std::size_t j = 0; j < n; ++j) {
-      paces[j] = amplitude[j];
-      paces[n + j] = std::sqrt(amplitude[j] * bend[j]);
-      paces[2 * n + j] = bend[j];
-      paces[3 * n + j] = bend[j] * swift[j];
-      paces[4 * n + j] = bend[j] * swift[j] * swift[j];
+      differences[j] = amplitude[j];
+      differences[n + j] = std::sqrt(amplitude[j] * bend[j]);
+      differences[2 * n + j] = bend[j];
+      differences[3 * n + j] = bend[j] * swift[j];
+      differences[4 * n + j] = bend[j] * swift[j] * swift[j];
     }
-    watched.paced = true;
+    watched.differences_known = true;
   }
   double sums[5];
-  flight_kernels().dots(modes_, 5, paces, watched.sizes.data() + at * n, sums);
+  flight_kernels().dots(modes_, 5, differences, watched.sizes.data() + at * n, sums);
   const double bent = watched.offset_bend[at], turn = std::abs(2 * std::sin(drive_.angle / 2));
   return {sums[1] + (turn != 0 ? bent / turn : 0.0), sums[2] + bent, sums[3] + turn * bent,
           sums[4] + turn * turn * bent, slack * (sums[0] + std::abs(watched.offset[at]))};

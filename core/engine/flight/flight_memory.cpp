@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <ricochet/engine/flight/flight_memory.hpp>
-#include <ricochet/engine/flight/step_readings.hpp>
+#include <ricochet/engine/flight/flight_set.hpp>
 
 namespace ricochet {
 namespace {

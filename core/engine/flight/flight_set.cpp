@@ -1,12 +1,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/constrained_modes.hpp>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/flight_kernels.hpp>
-#include <ricochet/algebra/infinity.hpp>
-#include <ricochet/engine/flight/drive_rows.hpp>
 #include <ricochet/engine/flight/flight_set.hpp>
+#include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/flight_kernels.hpp>
 
 namespace ricochet {
 namespace {
@@ -55,7 +55,7 @@ RowVectorXd FlightSet::unknown_at_rest(const Stage& plan, const MatrixXd& steady
   return best;
 }
 
-// ξ of the held points: the scheme's own steady answer to stops that move with the clamp.
+// ξ of the closed points: the scheme's own steady answer to stops that move with the clamp.
 bool FlightSet::rest(const Program& program) {
   const Stage& plan = program.plan.stages.front();
   const StageProgram& stage = program.stages.front();
@@ -64,17 +64,17 @@ bool FlightSet::rest(const Program& program) {
   using Real = long double;
   using Complex = std::complex<Real>;
   const Real push = stage.measure.z;
-  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> held(slots_, slots_);
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> closed(slots_, slots_);
   Eigen::Matrix<Real, Eigen::Dynamic, 1> moves(slots_);
   for (int j = 0; j < slots_; ++j) {
     const Combination& update = plan.update[static_cast<std::size_t>(j)];
     moves[j] = update.z;
     for (int i = 0; i < slots_; ++i)
-      held(j, i) = weight_at(update.slots, i) - update.z * weight_at(stage.measure.slots, i) / push;
+      closed(j, i) = weight_at(update.slots, i) - update.z * weight_at(stage.measure.slots, i) / push;
   }
-  const auto identity = decltype(held)::Identity(slots_, slots_);
+  const auto identity = decltype(closed)::Identity(slots_, slots_);
   const RowVectorXd carried = harmonic(stage.measure_phase, drive_);
-  for (const HeldPoint& point : held_) {
+  for (const ClosedPoint& point : closed_) {
     const LaneSpec& lane = program.lanes.front();
     RowVectorXd bound = -carried;
     bound[drive_.one()] += point.lower ? lane.lower[point.point] : lane.upper[point.point];
@@ -83,14 +83,14 @@ bool FlightSet::rest(const Program& program) {
       const Real angle = drive_.angle;
       const Complex turned(std::cos(angle), std::sin(angle));
       const Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic> shifted =
-          turned * identity.cast<Complex>() - held.cast<Complex>();
+          turned * identity.cast<Complex>() - closed.cast<Complex>();
       const Eigen::Matrix<Complex, Eigen::Dynamic, 1> phasor =
           shifted.fullPivLu().solve((Complex(bound[1], -bound[0]) / push) * moves.cast<Complex>());
       steady.col(0) = -phasor.imag().cast<double>();
       steady.col(1) = phasor.real().cast<double>();
     }
     const int one = drive_.one();
-    steady.col(one) = (identity - held).fullPivLu().solve(moves * (bound[one] / push)).cast<double>();
+    steady.col(one) = (identity - closed).fullPivLu().solve(moves * (bound[one] / push)).cast<double>();
     if (!steady.allFinite()) return false;
     rest_unknown_.push_back(unknown_at_rest(plan, steady));
     rest_.push_back(std::move(steady));
@@ -99,17 +99,17 @@ bool FlightSet::rest(const Program& program) {
 }
 
 MatrixXd FlightSet::project(const MatrixXd& all) const {
-  return held_.empty() ? all : MatrixXd(basis_.transpose() * all);
+  return closed_.empty() ? all : MatrixXd(basis_.transpose() * all);
 }
 MatrixXd FlightSet::onto(const MatrixXd& points) const {
-  return held_.empty() ? points : MatrixXd(points * basis_);
+  return closed_.empty() ? points : MatrixXd(points * basis_);
 }
 
-void FlightSet::hold(const Program& program, const FlightSet* twin) {
-  apart_.resize(static_cast<Index>(held_.size()), slots_);
+void FlightSet::close(const Program& program, const FlightSet* twin) {
+  apart_.resize(static_cast<Index>(closed_.size()), slots_);
   if (twin) {
-    held_rows_ = twin->held_rows_;
-    held_mass_ = twin->held_mass_;
+    closed_rows_ = twin->closed_rows_;
+    closed_mass_ = twin->closed_mass_;
     basis_ = twin->basis_;
     basis_rows_ = twin->basis_rows_;
     settle_ = twin->settle_;
@@ -117,59 +117,59 @@ void FlightSet::hold(const Program& program, const FlightSet* twin) {
     return;
   }
   const MatrixXd H = dense(program.model->contact(), rows_);
-  held_rows_.resize(static_cast<Index>(held_.size()), rows_);
-  for (std::size_t i = 0; i < held_.size(); ++i) held_rows_.row(static_cast<Index>(i)) = H.row(held_[i].point);
+  closed_rows_.resize(static_cast<Index>(closed_.size()), rows_);
+  for (std::size_t i = 0; i < closed_.size(); ++i) closed_rows_.row(static_cast<Index>(i)) = H.row(closed_[i].point);
   // K = 1 in these coordinates.
-  ConstrainedModes modes = constrained_modes(own_mass_, held_rows_);
+  ConstrainedModes modes = constrained_modes(own_mass_, closed_rows_);
   basis_ = std::move(modes.basis);
-  held_mass_ = std::move(modes.mass);
+  closed_mass_ = std::move(modes.mass);
   basis_rows_ = basis_.transpose();
-  // Along these columns a step itself moves what is held: what round-off leaves there is taken off without work, while
-  // a static lever would move the whole structure by it.
+  // Along these columns a step itself moves what is closed: what round-off leaves there is taken off without work,
+  // while a static lever would move the whole structure by it.
   const FoldedStage& folded = program.stages.front().folded;
   const MatrixXd response =
-      (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * held_rows_.transpose();
-  const MatrixXd one = MatrixXd::Identity(held_rows_.rows(), held_rows_.rows());
-  settle_ = basis_.transpose() * response * definite_solve(held_rows_ * response, one);
-  lever_ = held_rows_.transpose() * definite_solve(held_rows_ * held_rows_.transpose(), one);
+      (folded.mass * own_mass_.array() + folded.stiffness).inverse().matrix().asDiagonal() * closed_rows_.transpose();
+  const MatrixXd one = MatrixXd::Identity(closed_rows_.rows(), closed_rows_.rows());
+  settle_ = basis_.transpose() * response * definite_solve(closed_rows_ * response, one);
+  lever_ = closed_rows_.transpose() * definite_solve(closed_rows_ * closed_rows_.transpose(), one);
 }
 
-FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,
+FlightSet::FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
                      const FlightSet* twin)
-    : held_(std::move(held)), rows_(program.model->rows()), slots_(static_cast<int>(program.plan.slots.size())) {
-  const bool holds = !held_.empty();
+    : closed_(std::move(closed)), rows_(program.model->rows()), slots_(static_cast<int>(program.plan.slots.size())) {
+  const bool touching = !closed_.empty();
   for (const auto& [position, velocity] : program.plan.initial)
     metres_.push_back(position != 0 ? 1.0 : velocity != 0 ? program.h / velocity : program.h * program.h);
-  drive_ = {program.support, program.load || holds, program.problem->support.pulsation * program.h};
+  drive_ = {program.support, program.load || touching, program.problem->support.pulsation * program.h};
   own_mass_ = program.model->inertia().mass.diagonal();
   VectorXd mass = own_mass_;
-  if (holds) {
-    hold(program, twin);
+  if (touching) {
+    close(program, twin);
     if (!rest(program)) {
       cause_ = "the scheme never rests at a stop";
       return;
     }
-    mass = held_mass_;
+    mass = closed_mass_;
     // What holds of the structure's own massless modes holds of these.
     const double most = mass.maxCoeff(), nothing = 1e-14;
-    const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - held_rows_.rows();
+    const auto massless = static_cast<Index>(program.model->inertia().kernel_dimension) - closed_rows_.rows();
     for (Index k = 0; k < massless; ++k)
       if (mass[k] <= nothing * most) mass[k] = 0;
   }
   modes_ = static_cast<int>(mass.size());
   for (int j = 0; j < slots_; ++j) {
     MatrixXd lift = MatrixXd::Zero(rows_, drive_.count());
-    for (std::size_t i = 0; i < held_.size(); ++i) lift += lever_.col(static_cast<Index>(i)) * rest_[i].row(j);
+    for (std::size_t i = 0; i < closed_.size(); ++i) lift += lever_.col(static_cast<Index>(i)) * rest_[i].row(j);
     lift_.push_back(std::move(lift));
   }
   MatrixXd lifted = MatrixXd::Zero(rows_, drive_.count());  // of z
-  for (std::size_t i = 0; i < held_.size(); ++i) lifted += lever_.col(static_cast<Index>(i)) * rest_unknown_[i];
+  for (std::size_t i = 0; i < closed_.size(); ++i) lifted += lever_.col(static_cast<Index>(i)) * rest_unknown_[i];
   std::vector<FlightStage> stages;
   for (std::size_t k = 0; k < program.stages.size(); ++k)
     stages.push_back({program.stages[k].folded, program.plan.stages[k].update,
                       load_over_drive(program, program.plan.stages[k].load, drive_)});
   MatrixXd inertia;  // M L(s_M H z − Σ β^M_j ξ_j) of the stage that holds
-  if (holds) {
+  if (touching) {
     FlightStage& stage = stages.front();
     MatrixXd weighed = stage.folded.mass * lifted;
     for (int j = 0; j < slots_; ++j)
@@ -223,7 +223,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
     if (watches.empty() || layer != 0 || program.problem->changed_by_law() || !same(rows, watches.back(), end))
       watches.push_back(std::move(end));
   }
-  if (holds) {
+  if (touching) {
     const FoldedStage& folded = stages.front().folded;
     FlightWatch pushed;
     pushed.value.z = folded.mass;
@@ -236,7 +236,7 @@ FlightSet::FlightSet(const Program& program, double layer, std::vector<HeldPoint
       elastic -= weight_at(folded.stiffness_history, j) * lift_[static_cast<std::size_t>(j)];
     pushed.drive =
         lever_.transpose() * (inertia + elastic - load_over_drive(program, program.plan.stages.front().load, drive_));
-    for (const HeldPoint& point : held_) {
+    for (const ClosedPoint& point : closed_) {
       pushed.lower.push_back(point.lower ? 0 : -infinity);
       pushed.upper.push_back(point.lower ? infinity : 0);
     }
@@ -273,7 +273,7 @@ void FlightSet::set_bounds(FlightWatch& watch, const LaneSpec& lane, double laye
     watch.lower[i] = lane.lower[static_cast<Index>(i)] + shift;
     watch.upper[i] = lane.upper[static_cast<Index>(i)] - shift;
   }
-  for (const HeldPoint& point : held_) {
+  for (const ClosedPoint& point : closed_) {
     watch.lower[static_cast<std::size_t>(point.point)] = -infinity;
     watch.upper[static_cast<std::size_t>(point.point)] = infinity;
   }
@@ -293,7 +293,7 @@ MatrixXd FlightSet::lift_of(const Combination& c, const MatrixXd& lifted) const 
 
 bool FlightSet::enter(const double* const* slots, const double* e, std::vector<double>& x) const {
   x.resize(static_cast<std::size_t>(slots_) * static_cast<std::size_t>(modes_));
-  if (held_.empty()) {
+  if (closed_.empty()) {
     for (int j = 0; j < slots_; ++j) std::copy_n(slots[j], modes_, x.data() + static_cast<std::ptrdiff_t>(j) * modes_);
     return true;
   }
@@ -301,8 +301,8 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
   double size = 0;
   for (int j = 0; j < slots_; ++j) {
     const Eigen::Map<const VectorXd> slot(slots[j], rows_);
-    for (std::size_t i = 0; i < held_.size(); ++i) {
-      const auto row = held_rows_.row(static_cast<Index>(i));
+    for (std::size_t i = 0; i < closed_.size(); ++i) {
+      const auto row = closed_rows_.row(static_cast<Index>(i));
       if (j == 0) size = std::max(size, row.cwiseAbs().dot(slot.cwiseAbs()));
       apart_(static_cast<Index>(i), j) = row.dot(slot) - rest_[i].row(j).dot(drive);
       if (!(std::abs(metres_[static_cast<std::size_t>(j)] * apart_(static_cast<Index>(i), j)) <= over * size))
@@ -317,7 +317,7 @@ bool FlightSet::enter(const double* const* slots, const double* e, std::vector<d
 }
 
 void FlightSet::leave(const std::vector<double>& x, const double* e, double* const* slots) const {
-  if (held_.empty()) {
+  if (closed_.empty()) {
     for (int j = 0; j < slots_; ++j) std::copy_n(x.data() + static_cast<std::ptrdiff_t>(j) * modes_, modes_, slots[j]);
     return;
   }

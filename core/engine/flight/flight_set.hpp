@@ -1,10 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <ricochet/engine/compile.hpp>
-#include <ricochet/engine/flight/clear_steps.hpp>
+#include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/engine/flight/flight_motion.hpp>
-#include <ricochet/engine/flight/flight_works.hpp>
-#include <ricochet/engine/held_point.hpp>
 
 /// \file
 /// The motion between two changes of contact, as uncoupled modes. With no point closed they are the modes of the
@@ -16,21 +15,111 @@
 /// (L is K-orthogonal to Ψ, so that only M couples them), and the efforts are p = Lᵀ(S z − b).
 namespace ricochet {
 
+/// A contact point closed at one of its stops.
+struct ClosedPoint {
+  int point = 0;  ///< row of H
+  bool lower = true;
+  bool operator==(const ClosedPoint&) const = default;
+};
+
+/// One point of a watch in each of `block` steps that begin one after the other, from the state before them alone: by
+/// rows h r, h r A, h r A², …; h is the point over the modes.
+class StepReadings {
+ public:
+  static constexpr int block = 8;
+
+  StepReadings(const StepRows& rows, const FlightWatch& watch, int point);
+
+  /// `step` ≤ block steps after (x, e).
+  double operator()(int step, const double* x, const double* e) const;
+  /// It in each of the first `steps` ≤ block steps.
+  void first(int steps, const double* x, const double* e, double* out) const { read(0, steps, x, e, out); }
+  /// Its value in the step that begins now, and its first, second and third differences over those that follow: by h r,
+  /// h r D, h r D² and h r D³, so that what they differ by is not lost in their sizes.
+  void differences(const double* x, const double* e, double out[4]) const {
+    read(differences_from, differences_read, x, e, out);
+  }
+  /// `see`(value) in each of `steps` steps from (x, e) on, which go on to where the last block ends.
+  template <class See>
+  void each(const FlightMotion& motion, long long steps, double* x, double* e, See&& see) const {
+    for (long long first = 0; first < steps; first += block) {
+      const int count = static_cast<int>(std::min<long long>(block, steps - first));
+      double values[block];
+      this->first(count, x, e, values);
+      for (int step = 0; step < count; ++step) see(values[step]);
+      motion.advance(block, x, e);
+    }
+  }
+
+ private:
+  static constexpr int differences_from = block + 1, differences_read = 4,
+                       rows_read = differences_from + differences_read;
+
+  void read(int first, int count, const double* x, const double* e, double* out) const;
+
+  int size_, drives_;
+  std::vector<double> weights_, drive_;  // of each step, then of each difference: slots × modes, drives
+};
+
+/// How many steps lie ahead in which every measure of a motion stays between its bounds. The bound of the motion alone
+/// would say it of few steps where some point is near a bound or a fast mode is strong: so it is asked again from where
+/// it ends, and the few points that it leaves open are read, as often as they could have reached their bound since: in
+/// every step just before they do. What ends it is then the first step in which one does, up to round-off.
+class ClearSteps {
+ public:
+  ClearSteps(const StepRows& rows, FlightBound& bound, const FlightMotion& motion)
+      : rows_(rows), bound_(bound), motion_(motion) {}
+
+  /// The largest k ≤ `most` for which they do in the steps that begin 0, 1, …, k steps after (x, e); −1: not in the
+  /// first. `ask`: of how many steps to ask first, kept from one count to the next.
+  long long count(const std::vector<double>& x, const double* e, long long most, long long& ask);
+  /// How many times a point was read for the last count: what it cost beside steps that are marched, which measure all.
+  long long read() const { return read_; }
+  /// A point of a watch in each step.
+  const StepReadings& readings(int watch, int point);
+
+ private:
+  // Points that are followed one by one.
+  static constexpr std::size_t few = 6;
+  struct Followed {
+    const StepReadings* reading;
+    FlightBound::Differences most;
+    double lower, upper;
+    long long clear = -1;  // the last step of which it is known to be
+  };
+
+  long long follow(long long steps);
+  long long clear_steps(const Followed& one);
+  bool inside(const Followed& one, int step);
+  void advance(long long k);
+
+  const StepRows& rows_;
+  FlightBound& bound_;
+  const FlightMotion& motion_;
+  // Of each watch and point; made when first asked for.
+  std::vector<std::vector<std::unique_ptr<StepReadings>>> readings_;
+  std::vector<double> x_;
+  double e_[3] = {};
+  std::vector<WatchedPoint> exposed_;
+  std::vector<Followed> followed_;
+  long long read_ = 0;
+};
+
 class FlightSet {
  public:
   /// `program` marches one lane in modal coordinates; its `lanes.front()` says where the stops are. `layer` (m): the
   /// law acts from so far before them. `twin`: one that holds the same points, on whatever side; their modes are one.
-  FlightSet(const Program& program, double layer, std::vector<HeldPoint> held, int powers,
+  FlightSet(const Program& program, double layer, std::vector<ClosedPoint> closed, int powers,
             const FlightSet* twin = nullptr);
 
   /// Why this motion cannot fly; empty where it can.
   const std::string& cause() const { return cause_; }
-  const std::vector<HeldPoint>& held() const { return held_; }
+  const std::vector<ClosedPoint>& closed() const { return closed_; }
 
-  /// Takes the stops of another lane, where none of them is held.
+  /// Takes the stops of another lane, where none of them is closed.
   void place(const LaneSpec& lane, double layer);
 
-  /// x of these modes from the slots (rows each), and back. False where the held points are not where they come to
+  /// x of these modes from the slots (rows each), and back. False where the closed points are not where they come to
   /// rest, up to round-off: the transient is not over.
   bool enter(const double* const* slots, const double* e, std::vector<double>& x) const;
   void leave(const std::vector<double>& x, const double* e, double* const* slots) const;
@@ -46,8 +135,10 @@ class FlightSet {
   FlightBound* tip_by_four() { return tip_by_four_.get(); }
   /// The tip after each step; made when first asked for.
   const StepReadings& tip_readings();
-  /// The effort of a held point in each step, N.
-  const StepReadings& effort(std::size_t held) { return clear_steps_->readings(effort_watch_, static_cast<int>(held)); }
+  /// The effort of a closed point in each step, N.
+  const StepReadings& effort(std::size_t closed) {
+    return clear_steps_->readings(effort_watch_, static_cast<int>(closed));
+  }
   int modes() const { return modes_; }
   /// Of one step.
   const StepRows& step_rows() const { return *step_rows_; }
@@ -56,7 +147,7 @@ class FlightSet {
   /// Loads and the like in these modes, and rows of points.
   Eigen::MatrixXd project(const Eigen::MatrixXd& all) const;
   Eigen::MatrixXd onto(const Eigen::MatrixXd& points) const;
-  void hold(const Program& program, const FlightSet* twin);
+  void close(const Program& program, const FlightSet* twin);
   bool rest(const Program& program);
   Eigen::RowVectorXd unknown_at_rest(const Stage& plan, const Eigen::MatrixXd& steady) const;
   void set_bounds(FlightWatch& watch, const LaneSpec& lane, double layer) const;
@@ -64,22 +155,22 @@ class FlightSet {
   FlightWorks::Forms forms(const Program& program, const StepRows& rows, const Eigen::VectorXd& mass,
                            const Eigen::MatrixXd& lifted);
 
-  std::vector<HeldPoint> held_;
+  std::vector<ClosedPoint> closed_;
   int rows_ = 0, modes_ = 0, slots_ = 0;
   FlightDrive drive_;
   std::string cause_;
-  std::vector<double> metres_;  // what a slot has to be multiplied by to be a length
-  Eigen::VectorXd own_mass_;    // M of the structure's modes
-  Eigen::VectorXd held_mass_;   // ΨᵀMΨ
-  Eigen::MatrixXd basis_;       // Ψ; empty: the modes of the structure
-  Eigen::MatrixXd basis_rows_;  // Ψᵀ
-  Eigen::MatrixXd settle_;      // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
+  std::vector<double> metres_;   // what a slot has to be multiplied by to be a length
+  Eigen::VectorXd own_mass_;     // M of the structure's modes
+  Eigen::VectorXd closed_mass_;  // ΨᵀMΨ
+  Eigen::MatrixXd basis_;        // Ψ; empty: the modes of the structure
+  Eigen::MatrixXd basis_rows_;   // Ψᵀ
+  Eigen::MatrixXd settle_;       // ΨᵀR, R = S⁻¹H_Iᵀ(H_I S⁻¹H_Iᵀ)⁻¹
   mutable Eigen::MatrixXd apart_;
-  Eigen::MatrixXd lever_;                         // L, rows × held
-  std::vector<Eigen::MatrixXd> rest_;             // of each held point: ξ over e, slots × drives
+  Eigen::MatrixXd lever_;                         // L, rows × closed
+  std::vector<Eigen::MatrixXd> rest_;             // of each closed point: ξ over e, slots × drives
   std::vector<Eigen::RowVectorXd> rest_unknown_;  // and H z
   std::vector<Eigen::MatrixXd> lift_;             // of each slot: Σ_i L_i ξ_i, rows × drives
-  Eigen::MatrixXd held_rows_;                     // H_I
+  Eigen::MatrixXd closed_rows_;                   // H_I
   std::unique_ptr<const StepRows> step_rows_;
   FlightWatch tip_watch_;
   std::unique_ptr<FlightBound> bound_, tip_, tip_by_four_;

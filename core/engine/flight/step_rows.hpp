@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <ricochet/engine/compile.hpp>
 #include <ricochet/engine/stage_operator.hpp>
 #include <vector>
 
@@ -59,6 +60,42 @@ class StepRows {
   int slots_;
   FlightDrive drive_;
   std::vector<std::vector<StageMap>> maps_;  // of each mode: before each stage, and after the last
+};
+
+// What stands on the right of a step, over what drives it.
+
+/// Rows of H and the like as a dense matrix, rows × columns.
+Eigen::MatrixXd dense(const RowMatrix& rows, int columns);
+
+/// `factor` times a combination of levels of the clamp's motion, over e.
+Eigen::RowVectorXd harmonic(const PhaseWeights& phase, const FlightDrive& drive, double factor = 1);
+
+/// A load over e, in the coordinates of the march (rows × drives): of the clamp's inertia, and of a distributed load
+/// that is constant in time.
+Eigen::MatrixXd load_over_drive(const Program& program, const Levels& levels, const FlightDrive& drive);
+
+/// The weight of slot j; trailing ones may be left out.
+inline double weight_at(const std::vector<double>& weights, int j) {
+  return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
+}
+
+/// What an effort of 1 N along one row of modes does to a step, over modes with φᵀKφ = 1 and φᵀMφ = μ: the effort that
+/// stage `stage` found `ago` steps before, as far as the stages of this step weigh it, the slots zero where it begins.
+class EffortResponse {
+ public:
+  EffortResponse(const Program& program, int stage, int ago, const Eigen::VectorXd& row);
+
+  /// Whether no stage of this step weighs it.
+  bool none() const { return none_; }
+  /// Σ_j c_j x_j + c_z z before stage `at` and with its unknown; `at` = number of stages: after the step. One per mode.
+  Eigen::VectorXd of(int at, const Combination& c) const;
+  /// The slots after the step, modes × slots.
+  const Eigen::MatrixXd& change() const { return slots_.back(); }
+
+ private:
+  bool none_ = true;
+  std::vector<Eigen::MatrixXd> slots_;    // before each stage, and after the last
+  std::vector<Eigen::VectorXd> unknown_;  // of each stage
 };
 
 }  // namespace ricochet

@@ -5,8 +5,10 @@
 #include <numeric>
 #include <ricochet/measure/attractors/attractors.hpp>
 #include <set>
+#include <utility>
 
 namespace ricochet {
+
 namespace {
 
 /// Sets that merge, each with the owners in it.
@@ -90,6 +92,18 @@ Proportion wilson_interval(double share, double trials) {
   const double half = z / (1 + spread) * std::sqrt(share * (1 - share) / trials + spread / (4 * trials));
   // At 0 and 1 the interval ends there exactly; round-off must not say otherwise.
   return {share, std::clamp(middle - half, 0.0, share), std::clamp(middle + half, share, 1.0)};
+}
+
+int OrbitEnds::label(SettledSection section) {
+  int label = static_cast<int>(met_.size());
+  double nearest = 1;
+  for (std::size_t k = 0; k < met_.size(); ++k)
+    if (const double distance = relative_distance(met_[k], section, rule_); distance <= nearest) {
+      nearest = distance;
+      label = static_cast<int>(k);
+    }
+  if (label == static_cast<int>(met_.size())) met_.push_back(std::move(section));
+  return label;
 }
 
 }  // namespace ricochet

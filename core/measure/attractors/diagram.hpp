@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
-#include <ricochet/measure/orbits/motion_class.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 #include <string>
 #include <vector>
 

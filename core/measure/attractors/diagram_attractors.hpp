@@ -5,6 +5,7 @@
 #include <ricochet/measure/attractors/diagram.hpp>
 #include <ricochet/measure/attractors/presence.hpp>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -41,5 +42,20 @@ Presence presence_of(const Diagram& diagram, const AttractorExtent& extent, int 
 /// Share of the starts that lead there, where a case shows it at all: of the random ones where there are two or more. A
 /// start counts once in the interval, however many values and cases repeat it: those are no independent trials.
 Proportion fraction_of(const Diagram& diagram, const AttractorExtent& extent, int attractor);
+
+/// A change of the motion along the parameter, as one case located it.
+struct DiagramChange {
+  std::string start, from, to, kind;    ///< the start that met it, the classes before and after it
+  double value = 0, low = 0, high = 0;  ///< of the parameter
+  /// Whether it may be the same change, seen by another case.
+  bool like(const DiagramChange& other) const {
+    return start == other.start && from == other.from && to == other.to && kind == other.kind;
+  }
+};
+
+/// What each change of a reference became in another case: its index there, −1 where none like it is left within
+/// `reach`. The nearest pairs come first; each change is taken once.
+std::vector<int> match_changes(const std::vector<DiagramChange>& reference, const std::vector<DiagramChange>& here,
+                               double reach);
 
 }  // namespace ricochet

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <utility>
 
@@ -18,8 +18,8 @@ double mean_speed(double a, double b) {
 
 }  // namespace
 
-ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std::size_t most)
-    : model_(*marcher.program().model), behind_(behind), most_(most), h_(marcher.program().h), T_(marcher.width()) {
+ImpactRecorder::ImpactRecorder(const Marcher& marcher, std::size_t most)
+    : model_(*marcher.program().model), most_(most), h_(marcher.program().h), T_(marcher.width()) {
   const int points = model_.problem().points();
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     Lane& state = lanes_.emplace_back(points, StartContact(marcher, lane));
@@ -30,13 +30,13 @@ ImpactRecorder::ImpactRecorder(const Marcher& marcher, StepObserver* behind, std
   // Of steps that are left out an increment is known where their slots are.
   tells_slots_ = marcher.program().flight && marcher.program().flight->tells_slots();
   if (!marcher.program().flight || tells_slots_) increment_slot_ = marcher.program().increment_slot;
+  asks_.next_shown = next_shown(marcher);
   if (!marcher.program().contact || increment_slot_ >= 0) return;
   earlier_.resize(static_cast<std::size_t>(model_.rows()) * static_cast<std::size_t>(T_));
   latest_.resize(earlier_.size());
 }
 
 void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view) {
-  if (behind_) behind_->stage_solved(marcher, view);
   if (!view.effort) return;
   const StageProgram& program = *view.program;
   if (program.opens_instant) open_instant(marcher, view);
@@ -61,60 +61,60 @@ void ImpactRecorder::stage_solved(const Marcher& marcher, const StageView& view)
 }
 
 void ImpactRecorder::step_done(Marcher& marcher) {
-  if (behind_) behind_->step_done(marcher);
+  asks_.next_shown = next_shown(marcher);
 }
 
-// Without contact it waits for nothing, and the slot that holds what positions moved by is there when a point closes.
-long long ImpactRecorder::next_shown(const Marcher& marcher) {
-  const bool waits = marcher.program().contact && (busy_ != 0 || known_ < 2 || increment_slot_ < 0);
-  return !behind_ || waits ? 0 : behind_->next_shown(marcher);
+// Without contact it waits for nothing. Where a slot holds what positions moved by, it is there when a point closes. Of
+// a flight the velocities over two sub-steps have to be known of what opened, and those over the last of what closes
+// next.
+long long ImpactRecorder::next_shown(const Marcher& marcher) const {
+  if (!marcher.program().contact) return never;
+  const bool waits =
+      marcher.program().flight ? !tells_slots_ && !lanes_.front().leaving.empty() : busy_ != 0 || increment_slot_ < 0;
+  return known_ < 2 || waits ? 0 : never;
 }
 
-void ImpactRecorder::quiet(const Marcher& marcher, const QuietSteps& steps) {
-  behind_->quiet(marcher, steps);
+void ImpactRecorder::interval(Marcher& marcher, const StepInterval& steps) {
   if (!marcher.program().contact) return;
-  latest_time_ = steps.last + marcher.program().stages.front().facts.from * h_;
+  if (!steps.flight) {
+    latest_time_ = static_cast<double>(marcher.step() - 1) * h_ + marcher.program().stages.front().facts.from * h_;
+    return;
+  }
+  if (tells_slots_) know_left_out(marcher, steps);
+  if (!steps.closed.empty()) press_left_out(marcher, steps);
+  asks_.next_shown = next_shown(marcher);
 }
 
-// The velocities over two sub-steps have to be known of what opened, and those over the last one of what closes next.
-long long ImpactRecorder::may_skip(const Marcher& marcher) {
-  if (marcher.program().contact && (known_ < 2 || (!tells_slots_ && !lanes_.front().leaving.empty()))) return 0;
-  return behind_ ? behind_->may_skip(marcher) : std::numeric_limits<long long>::max();
-}
-
-void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
-  if (behind_) behind_->skipped(marcher, steps);
-  if (tells_slots_ && marcher.program().contact) know_left_out(marcher, steps);
-  if (steps.held.empty()) return;
+void ImpactRecorder::press_left_out(const Marcher& marcher, const StepInterval& steps) {
   Lane& lane = lanes_.front();
   const std::vector<StageProgram>& stages = marcher.program().stages;
   double begins = steps.from, lasts = 0;
   if (!tells_slots_) {
     const double lifted = marcher.support(0, latest_time_);
-    for (const HeldPoint& held : steps.held)
-      lane.points[static_cast<std::size_t>(held.point)].place =
-          model_.contact().times(held.point, latest_.data()) + lifted;
+    for (const ClosedPoint& closed : steps.closed)
+      lane.points[static_cast<std::size_t>(closed.point)].place =
+          model_.contact().times(closed.point, latest_.data()) + lifted;
     left_at_ = latest_time_;
   }
-  steps.flight->each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
+  steps.each_stage([&](int at, std::span<const double> efforts, std::span<const double> places) {
     const StageProgram& stage = stages[static_cast<std::size_t>(at)];
     if (!efforts.empty() && stage.opens_instant) {
       const double time = begins + stage.facts.from * h_;
       lasts = 0;
       // Without places they rest.
-      for (std::size_t i = 0; i < steps.held.size(); ++i)
+      for (std::size_t i = 0; i < steps.closed.size(); ++i)
         if (places.empty())
-          move(lane, steps.held[i].point, 0);
+          move(lane, steps.closed[i].point, 0);
         else
-          move_to_place(lane, steps.held[i].point, places[i], time);
+          move_to_place(lane, steps.closed[i].point, places[i], time);
       left_at_ = time;
     }
     if (!efforts.empty()) lasts = std::max(lasts, stage.momentum);
     for (std::size_t i = 0; i < efforts.size(); ++i)
-      lane.points[static_cast<std::size_t>(steps.held[i].point)].given += stage.momentum * std::abs(efforts[i]);
+      lane.points[static_cast<std::size_t>(steps.closed[i].point)].given += stage.momentum * std::abs(efforts[i]);
     if (stage.closes_instant) {
       lane.force = 0;
-      for (const HeldPoint& held : steps.held) press(lane, held.point, lasts);
+      for (const ClosedPoint& closed : steps.closed) press(lane, closed.point, lasts);
     }
     if (at + 1 == static_cast<int>(stages.size())) begins += h_;
   });
@@ -122,7 +122,7 @@ void ImpactRecorder::skipped(Marcher& marcher, const SkippedSteps& steps) {
 }
 
 // The first of them, of what opened before them, and the last one, for what closes in the step after them.
-void ImpactRecorder::know_left_out(const Marcher& marcher, const SkippedSteps& steps) {
+void ImpactRecorder::know_left_out(const Marcher& marcher, const StepInterval& steps) {
   const double offset = marcher.program().stages.front().facts.from * h_;
   const long long first = marcher.step() - steps.steps;
   const auto time = [&](long long step) { return static_cast<double>(first + step) * h_ + offset; };

@@ -59,7 +59,7 @@ struct StopTotals {
   double rms_force() const { return contact_time > 0 ? std::sqrt(squares / contact_time) : 0; }
 };
 
-/// Writes down the impacts of every contact point of every lane. Passes everything on to the observer behind it.
+/// Writes down the impacts of every contact point of every lane.
 ///
 /// A step costs one copy of the positions where no slot of the plan holds what they moved by; a point that is open
 /// costs nothing more. Nothing is allocated but by an impact, when the list grows. Beyond `most` impacts of a lane the
@@ -68,15 +68,11 @@ class ImpactRecorder final : public StepObserver {
  public:
   static constexpr std::size_t most_impacts = 100000;
 
-  explicit ImpactRecorder(const Marcher& marcher, StepObserver* behind = nullptr, std::size_t most = most_impacts);
+  explicit ImpactRecorder(const Marcher& marcher, std::size_t most = most_impacts);
 
-  SquareSum* squares(int stage) override { return behind_ ? behind_->squares(stage) : nullptr; }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
-  long long next_shown(const Marcher& marcher) override;
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override;
+  void interval(Marcher& marcher, const StepInterval& steps) override;
   /// To be called once, when the march is over: what its last sub-step was, for those who wait for it.
   void finish(const Marcher& marcher);
 
@@ -124,7 +120,9 @@ class ImpactRecorder final : public StepObserver {
   void open_instant(const Marcher& marcher, const StageView& view);
   void move_to(const Marcher& marcher, const double* const* slots, double time);
   bool know(const double* const* slots, double time);
-  void know_left_out(const Marcher& marcher, const SkippedSteps& steps);
+  void know_left_out(const Marcher& marcher, const StepInterval& steps);
+  void press_left_out(const Marcher& marcher, const StepInterval& steps);
+  long long next_shown(const Marcher& marcher) const;
   void moved(const Marcher& marcher, int lane);
   void leave(const Marcher& marcher, int lane, double lifted);
   double velocity(const Marcher& marcher, int lane, int point, double lift) const;
@@ -137,7 +135,6 @@ class ImpactRecorder final : public StepObserver {
   static void press(Lane& lane, int point, double lasts);
 
   const MarchModel& model_;
-  StepObserver* behind_;
   std::size_t most_;
   double h_;
   int T_;

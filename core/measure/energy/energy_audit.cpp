@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 namespace ricochet {
@@ -34,17 +33,18 @@ void EnergyTotals::add(const Works& works) {
   work_of_law += works.law;
 }
 
-EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
+EnergyAudit::EnergyAudit(const Marcher& marcher, SamplingMode sampling)
     : model_(*marcher.program().model),
       mass_(QuadraticForm::of(model_.inertia())),
       stiffness_(model_.stiffness()),
       energies_(marcher, mass_, stiffness_),
       works_(marcher, mass_, stiffness_),
-      looks_(looks),
+      sampling_(sampling),
       h_(marcher.program().h),
       T_(marcher.width()),
       compliant_(marcher.law().reads().has_value()),
-      mean_velocity_(marcher.program().velocity_offset != 0) {
+      mean_velocity_(marcher.program().velocity_offset != 0),
+      flies_(marcher.program().flight != nullptr) {
   for (int lane = 0; lane < marcher.lanes(); ++lane) {
     Lane& state = lanes_.emplace_back(model_.problem().points(), StartContact(marcher, lane));
     if (marcher.program().increment_slot < 0) state.increment = Block(model_.rows(), 1);
@@ -69,6 +69,8 @@ EnergyAudit::EnergyAudit(const Marcher& marcher, Looks looks)
     for (const StageProgram& stage : marcher.program().stages) ways_.emplace_back(stage.facts.increment);
   }
   scratch_ = Block(model_.rows(), 1);
+  for (int k = 0; k < static_cast<int>(marcher.program().stages.size()); ++k)
+    asks_.squares.push_back(works_.squares(k));
 }
 
 // After a step.
@@ -109,7 +111,7 @@ double EnergyAudit::potential(const Marcher& marcher, const double* place, doubl
 }
 
 bool EnergyAudit::asks(const Lane& state, long long step) const {
-  return looks_ == Looks::every_step || !state.balanced || !state.has_scheme || step == asked_;
+  return sampling_ == SamplingMode::every_step || !state.balanced || !state.has_scheme || step == asked_;
 }
 
 void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane& state) {
@@ -119,8 +121,8 @@ void EnergyAudit::begin_step(const Marcher& marcher, const StageView& view, Lane
   state.touched = view.starting;
   const long long step = marcher.step() + 1;
   state.asked = asks(state, step);
-  state.looking = state.asked || state.look_next || step % Marcher::check_interval == 0;
-  state.look_next = false;
+  state.sampled = state.asked || state.sample_next || step % Marcher::check_interval == 0;
+  state.sample_next = false;
 }
 
 // What the position moves by, where the energies after the step are looked at and no slot holds it.
@@ -152,12 +154,13 @@ void EnergyAudit::stage_solved(const Marcher& marcher, const StageView& view) {
     if (state.start.any()) state.start.look(marcher, view.slots, view.from);
     if (!state.has_scheme && balanced) start_balance(view, lane);
     if (moves) state.duration = (facts.to - facts.from) * h_;
-    if (state.looking && !ways_.empty()) follow_position(view, lane, moves);
+    if (state.sampled && !ways_.empty()) follow_position(view, lane, moves);
     const bool pushed = ((view.contact_lanes >> lane) & 1u) != 0;
-    state.quiet = pushed ? 0 : state.quiet + 1;
+    state.idle = pushed ? 0 : state.idle + 1;
     if (view.effort && (pushed || !state.still || ((view.touched_lanes >> lane) & 1u) != 0)) count_contact(view, lane);
-    works_.add(marcher, view, lane, balanced, state.quiet < memory_, state.step);
+    works_.add(marcher, view, lane, balanced, state.idle < memory_, state.step);
   }
+  if (view.starting) asks_.next_shown = next_shown(marcher);
 }
 
 void EnergyAudit::count_contact(const StageView& view, int lane) {
@@ -248,25 +251,43 @@ void EnergyAudit::step_done(Marcher& marcher) {
     const double worked = std::abs(state.step.loads) + std::abs(state.step.damping) + std::abs(state.step.contact) +
                           std::abs(state.step.scheme);
     state.step = {};
-    if (state.looking) look(marcher, lane);
-    state.look_next = alarms(state, worked);
+    if (state.sampled) take_sample(marcher, lane);
+    state.sample_next = alarms(state, worked);
   }
+  asks_.next_shown = next_shown(marcher);
 }
 
-long long EnergyAudit::next_shown(const Marcher& marcher) {
+// Of one lane: the next step after which energies are read, where the squares that a step adds up are all that its
+// works ask without contact. Flights may leave out steps that cannot gain energy.
+long long EnergyAudit::next_shown(const Marcher& marcher) const {
   const Lane& state = lanes_.front();
+  if (flies_) {
+    const Flight& flight = *marcher.program().flight;
+    bool told = state.energy.own_energy && state.has_scheme && flight.free_never_gains();
+    // What springs give in a step only its works tell.
+    if (state.contact.active > 0 && !flight.closed_cause().empty()) told = told && state.balanced;
+    return told ? never : 0;
+  }
   const bool contact = marcher.program().contact;
-  const bool seldom = looks_ == Looks::seldom && state.balanced && state.has_scheme && !state.look_next;
+  const bool seldom = sampling_ == SamplingMode::seldom && state.balanced && state.has_scheme && !state.sample_next;
   if (!seldom || !works_.squares_alone() || memory_ > 1) return 0;
   if (contact && !(ends_measured_ && state.still)) return 0;
-  const long long step = marcher.step(), look = (step / Marcher::check_interval + 1) * Marcher::check_interval;
-  return asked_ > step ? std::min(asked_, look) : look;
+  const long long step = marcher.step(), regular = (step / Marcher::check_interval + 1) * Marcher::check_interval;
+  return asked_ > step ? std::min(asked_, regular) : regular;
 }
 
-void EnergyAudit::quiet(const Marcher& marcher, const QuietSteps& steps) {
+void EnergyAudit::interval(Marcher& marcher, const StepInterval& steps) {
+  if (steps.flight)
+    add_flown(marcher, steps);
+  else
+    add_marched(marcher, steps.marched);
+  asks_.next_shown = next_shown(marcher);
+}
+
+void EnergyAudit::add_marched(const Marcher& marcher, std::span<const FreeStep> steps) {
   Lane& state = lanes_.front();
   double most = 0;
-  for (const QuietSteps::Step& step : steps.steps) {
+  for (const FreeStep& step : steps) {
     Works works;
     works_.add(marcher, step, works);
     state.since.loads += works.loads;
@@ -274,11 +295,11 @@ void EnergyAudit::quiet(const Marcher& marcher, const QuietSteps& steps) {
     state.gain = std::max(state.gain, works.gain());
     most = std::max(most, std::abs(works.loads) + std::abs(works.damping));
   }
-  const int count = static_cast<int>(steps.steps.size());
+  const int count = static_cast<int>(steps.size());
   state.steps += count;
-  state.quiet += count;
+  state.idle += count;
   state.penetration = 0;
-  state.look_next = alarms(state, most);
+  state.sample_next = alarms(state, most);
 }
 
 // Whether that much may be the beginning of a lane that blows up.
@@ -286,7 +307,7 @@ bool EnergyAudit::alarms(const Lane& state, double worked) {
   return !(worked <= alarming * std::max(state.now.common(), state.energy.brought_in()));
 }
 
-void EnergyAudit::look(Marcher& marcher, int lane) {
+void EnergyAudit::take_sample(Marcher& marcher, int lane) {
   Lane& state = lanes_[static_cast<std::size_t>(lane)];
   const double t = marcher.time();
   const EnergySample sample = this->sample(marcher, lane);
@@ -301,8 +322,8 @@ void EnergyAudit::look(Marcher& marcher, int lane) {
     marcher.freeze(lane, {.cause = EndCause::energy_beyond, .value = energy, .bound = marcher.energy_bound(lane)});
 }
 
-// The works since the last look enter the totals, and explain what the scheme's energy has become; a single step needs
-// no explanation.
+// The works since the last sample enter the totals, and explain what the scheme's energy has become; a single step
+// needs no explanation.
 void EnergyAudit::confirm(Lane& state, double scheme, bool flown) {
   EnergyTotals& totals = state.energy;
   totals.add(state.since);
@@ -320,17 +341,7 @@ void EnergyAudit::confirm(Lane& state, double scheme, bool flown) {
   state.steps = 0;
 }
 
-long long EnergyAudit::may_skip(const Marcher& marcher) {
-  const Lane& state = lanes_.front();
-  const Flight& flight = *marcher.program().flight;
-  bool told = state.energy.own_energy && state.has_scheme && flight.free_never_gains();
-  // What springs give in a step only its works tell.
-  if (state.contact.active > 0 && !flight.held_cause().empty()) told = told && state.balanced;
-  return told ? std::numeric_limits<long long>::max() : 0;
-}
-
-// Flights march one lane.
-void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
+void EnergyAudit::add_flown(const Marcher& marcher, const StepInterval& steps) {
   Lane& state = lanes_.front();
   Works flown;
   flown.loads = steps.works.loads;
@@ -338,18 +349,17 @@ void EnergyAudit::skipped(Marcher& marcher, const SkippedSteps& steps) {
   flown.scheme = steps.works.scheme;
   flown.contact = steps.works.contact;
   flown.law = steps.works.law;
-  // The step after them is looked at. None without contact gains, so that what round-off makes of many is no step's
-  // gain.
-  state.look_next = true;
+  // The step after them is sampled. No free step gains: what round-off makes of many is no step's gain.
+  state.sample_next = true;
   state.gain = std::max(state.gain, steps.works.gain);
   state.since += flown;
   confirm(state, energies_.scheme(marcher.slots(), 0), true);
-  if (steps.held.empty()) return;
+  if (steps.closed.empty()) return;
   ContactTotals& contact = state.contact;
   contact.contact_steps += steps.instants * steps.steps;
   contact.deepest_penetration = std::max(contact.deepest_penetration, steps.penetration);
   const std::vector<StageProgram>& stages = marcher.program().stages;
-  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+  steps.each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
     const double momentum = stages[static_cast<std::size_t>(stage)].momentum;
     for (const double p : efforts) contact.impulse += momentum * std::abs(p);
   });

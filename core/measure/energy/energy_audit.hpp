@@ -3,7 +3,6 @@
 #include <ricochet/measure/contact/closed_points.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/stage_works.hpp>
-#include <ricochet/measure/energy/state_energies.hpp>
 #include <vector>
 
 namespace ricochet {
@@ -60,49 +59,49 @@ struct ContactTotals {
   int active = 0;                                ///< points active in the last step
 };
 
-/// When the energies of an audit are read off the state, which costs more than a step.
-enum class Looks {
+/// When an audit reads the energies off the state, which costs more than a step.
+enum class SamplingMode {
   every_step,
-  /// At every check_interval-th step of the march and where somebody asks (look_after). The works of every step are
-  /// added up between: where the scheme has an energy of its own and every stage a work form, the gain of a step is
-  /// contact − damping − scheme, and a look confirms the sum. One that finds more than a share `confirmed` of the
-  /// energy that it does not explain adds it to the gain, and the energies of that lane are read at every step from
-  /// there on; so are those of a scheme that has no such balance.
+  /// At every check_interval-th step and where somebody asks (sample_after). The works of every step are added up
+  /// between. Where the scheme has an energy of its own and every stage a work form, the gain of a step is contact −
+  /// damping − scheme, and a sample confirms the sum. A sample may find more than a share `confirmed` of the energy
+  /// that the works do not explain. The gain then counts it, and that lane is sampled at every step from there on. So
+  /// is a scheme that has no such balance.
   seldom,
 };
 
-/// The energy audit. It adds up the works of every step, and looks at energies at every step or seldom; a march without
-/// it pays nothing. Where it looks seldom, steps that touch no stop need not be shown to it: the squares that a free
-/// step adds up say their works. What energy() and totals() say is that of the last look. A lane whose common energy
-/// passes the marcher's bound is frozen where that is seen.
+/// The energy audit. It adds up the works of every step and samples energies at every step or seldom. Where it samples
+/// seldom, steps that touch no stop need not be shown to it: the squares that a free step adds up tell their works.
+/// Flights may leave out any number of steps where the scheme has an energy of its own that no free step can gain.
+/// energy() and totals() are those of the last sample. A lane whose common energy passes the marcher's bound is stopped
+/// where that is seen.
 class EnergyAudit final : public StepObserver {
  public:
   static constexpr double confirmed = 1e-10;
-  /// Share of the energy that is there or was brought in: works of one step beyond it have the next one that is shown
-  /// looked at, so that a lane that blows up is seen at once where stops work in it.
+  /// Share of the energy that is there or was brought in. Works of one step beyond it have the next shown step sampled:
+  /// a lane that blows up is seen at once where stops work in it.
   static constexpr double alarming = 0.1;
 
-  explicit EnergyAudit(const Marcher& marcher, Looks looks = Looks::every_step);
+  explicit EnergyAudit(const Marcher& marcher, SamplingMode sampling = SamplingMode::every_step);
 
   /// The energies after this step (counted as Marcher::step) are asked for.
-  void look_after(long long step) { asked_ = step; }
-  void look_at_every_step() { looks_ = Looks::every_step; }
+  void sample_after(long long step) {
+    asked_ = step;
+    if (!flies_) asks_.next_shown = std::min(asks_.next_shown, step);
+  }
+  void sample_every_step() {
+    sampling_ = SamplingMode::every_step;
+    if (!flies_) asks_.next_shown = 0;
+  }
 
-  SquareSum* squares(int stage) override { return works_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
-  /// Any number, where the scheme has an energy of its own whose balance no step can gain by.
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
-  /// The next step whose energies are read, where the squares that a step adds up are all that its works ask without
-  /// contact.
-  long long next_shown(const Marcher& marcher) override;
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override;
+  void interval(Marcher& marcher, const StepInterval& steps) override;
 
   const EnergySample& energy(int lane) const { return lanes_[static_cast<std::size_t>(lane)].now; }
   const EnergyTotals& totals(int lane) const { return lanes_[static_cast<std::size_t>(lane)].energy; }
   const ContactTotals& contact(int lane) const { return lanes_[static_cast<std::size_t>(lane)].contact; }
-  /// What the stops took and do not store until now, J; what they store is that of the last look.
+  /// What the stops took and do not store until now, J; what they store is that of the last sample.
   double lost_at_stops(int lane) const;
   /// Largest distance by which a contact point lies beyond its stop, m, after the last step.
   double penetration(int lane) const { return lanes_[static_cast<std::size_t>(lane)].penetration; }
@@ -124,19 +123,19 @@ class EnergyAudit final : public StepObserver {
     StartContact start;
     double force = 0;  // of the present instant
     Works step;        // of the step under way
-    Works since;       // of the steps since the last look
+    Works since;       // of the steps since the last sample
     double gain = 0;   // largest of one of them, by their works
     int steps = 0;     // how many
-    int quiet = 0;     // stages since the last effort
+    int idle = 0;      // stages since the last effort
     double penetration = 0;
     double tip_way = 0;  // of the tip over the last sub-step, absolute; where that was asked for
     bool has_scheme = false;
-    bool balanced = false;   // whether works are believed between looks
-    bool asked = true;       // for the energies after the step under way
-    bool looking = true;     // at it, asked or not
-    bool look_next = false;  // whatever the plan of looks: steps were left out, or much was worked in one
-    bool touched = false;    // whether the law looked at contact where the step ends
-    bool still = false;      // no effort acts, none did at the instant before, and that has been counted
+    bool balanced = false;     // whether works are believed between samples
+    bool asked = true;         // for the energies after the step under way
+    bool sampled = true;       // after it, asked or not
+    bool sample_next = false;  // in any mode: steps were left out, or much was worked in one
+    bool touched = false;      // whether the law looked at contact where the step ends
+    bool still = false;        // no effort acts, none did at the instant before, and that has been counted
   };
   EnergySample initial_energy(const Marcher& marcher, int lane);
   double potential(const Marcher& marcher, const double* place, double support, int lane) const;
@@ -147,7 +146,10 @@ class EnergyAudit final : public StepObserver {
   void follow_position(const StageView& view, int lane, bool moves);
   double tip_increment(const Marcher& marcher, int lane) const;
   static bool alarms(const Lane& state, double worked);
-  void look(Marcher& marcher, int lane);
+  void take_sample(Marcher& marcher, int lane);
+  void add_marched(const Marcher& marcher, std::span<const FreeStep> steps);
+  void add_flown(const Marcher& marcher, const StepInterval& steps);
+  long long next_shown(const Marcher& marcher) const;
   void confirm(Lane& state, double scheme, bool flown);
   void count_contact(const StageView& view, int lane);
   void close_instant(const StageView& view, Lane& state);
@@ -156,11 +158,11 @@ class EnergyAudit final : public StepObserver {
   QuadraticForm mass_, stiffness_;
   StateEnergies energies_;
   StageWorks works_;
-  Looks looks_;
+  SamplingMode sampling_;
   long long asked_ = -1;
   double h_;
   int T_;
-  bool compliant_, mean_velocity_, balances_ = false, ends_measured_ = false;
+  bool compliant_, mean_velocity_, flies_, balances_ = false, ends_measured_ = false;
   int memory_ = 1;  // stages back to which an effort may still act
   std::vector<Lane> lanes_;
   std::vector<WeighedTerms> start_ways_, ways_;  // of the position, by stage; none where a slot holds it

@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <ricochet/scene/assembly.hpp>
 
@@ -46,9 +45,8 @@ void sample_places(double length, int cells, SampleGrid& grid) {
     }
 }
 
-ContactLog::ContactLog(const Marcher& marcher, StepObserver* behind)
-    : behind_(behind),
-      model_(*marcher.program().model),
+ContactLog::ContactLog(const Marcher& marcher)
+    : model_(*marcher.program().model),
       problem_(*marcher.program().problem),
       T_(marcher.width()),
       h_(marcher.program().h),
@@ -59,6 +57,7 @@ ContactLog::ContactLog(const Marcher& marcher, StepObserver* behind)
       start_(marcher, 0),
       momentum_(marcher.program()) {
   events_.reserve(64);
+  ask(marcher);
 }
 
 // When the gap of a point closes, from the state before the stage.
@@ -86,7 +85,11 @@ double ContactLog::onset(const Marcher& marcher, const StageView& view, int poin
 }
 
 void ContactLog::stage_solved(const Marcher& marcher, const StageView& view) {
-  if (behind_) behind_->stage_solved(marcher, view);
+  see(marcher, view);
+  if (view.starting) ask(marcher);
+}
+
+void ContactLog::see(const Marcher& marcher, const StageView& view) {
   if (!view.effort) {
     momentum_.stage(view.starting, static_cast<std::size_t>(view.stage), 0);
     return;
@@ -124,17 +127,21 @@ void ContactLog::look(const Marcher& marcher, const StageView& view) {
   if (view.program->momentum != 0) force_ += force;
 }
 
-// What efforts of some steps ago still give has to be followed.
-long long ContactLog::may_skip(const Marcher& marcher) {
-  if (momentum_.moving() && !closed_[0] && !closed_[1]) return 0;
-  return behind_ ? behind_->may_skip(marcher) : std::numeric_limits<long long>::max();
+void ContactLog::step_done(Marcher& marcher) {
+  momentum_.step_done();
+  ask(marcher);
 }
 
-void ContactLog::skipped(Marcher& marcher, const SkippedSteps& steps) {
-  if (behind_) behind_->skipped(marcher, steps);
-  if (steps.held.empty()) return;
+// What efforts of some steps ago still give has to be followed.
+void ContactLog::ask(const Marcher& marcher) {
+  const bool follows = momentum_.moving() && !closed_[0] && !closed_[1];
+  asks_.next_shown = marcher.program().flight && !follows ? never : 0;
+}
+
+void ContactLog::interval(Marcher& marcher, const StepInterval& steps) {
+  if (steps.closed.empty()) return;
   const std::vector<StageProgram>& stages = marcher.program().stages;
-  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+  steps.each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
     const auto at = static_cast<std::size_t>(stage);
     double force = 0;
     for (const double p : efforts) force += p;
@@ -143,6 +150,7 @@ void ContactLog::skipped(Marcher& marcher, const SkippedSteps& steps) {
     if (stages[at].opens_instant) force_ = 0;
     if (stages[at].momentum != 0) force_ += force;
   });
+  ask(marcher);
 }
 
 void ContactLog::close_instant(const StageView& view) {
@@ -164,7 +172,8 @@ void ContactLog::close_instant(const StageView& view) {
 MotionSampler::MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObserver* beside)
     : marcher_(marcher),
       grid_(grid),
-      log_(marcher, beside),
+      log_(marcher),
+      observers_{beside, &log_},
       mass_(QuadraticForm::of(marcher.program().problem->inertia)),
       stiffness_(marcher.program().problem->stiffness),
       places_(displacement_rows(marcher.program().problem->space, grid.places)),
@@ -184,7 +193,7 @@ void MotionSampler::keep() {
 const MotionSampler::State* MotionSampler::at(long long step) {
   for (const State& state : states_)
     if (state.step == step) return &state;
-  if (marcher_.step() < step) marcher_.march(step - marcher_.step(), &log_);
+  if (marcher_.step() < step) marcher_.march(step - marcher_.step(), observers_);
   if (!marcher_.status(0).running || marcher_.step() != step) return nullptr;
   keep();
   return &states_.back();
@@ -196,7 +205,7 @@ bool MotionSampler::next() {
   if (!started_) {
     started_ = true;
     states_.push_back({0, problem.position, 0});
-    marcher_.start(&log_);
+    marcher_.start(observers_);
     if (marcher_.step() > 0) keep();
   }
   const double h = marcher_.program().h, t = grid_.times[next_], ratio = t / h;

@@ -1,8 +1,8 @@
 #pragma once
 #include <deque>
-#include <ricochet/algebra/quadratic_form.hpp>
 #include <ricochet/contract/reference.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <ricochet/measure/contact/start_contact.hpp>
 #include <ricochet/measure/energy/momentum_ledger.hpp>
 #include <vector>
@@ -19,19 +19,12 @@ void sample_places(double length, int cells, SampleGrid& grid);
 /// The time of an impact is where the gap of the point that closes, carried on at its velocity, is zero, kept within a
 /// sub-step of the one that closed it; a release is the beginning of the first sub-step without contact on that side.
 /// Contact that is there from the start (StartContact) is no impact, and has a release only.
-/// Passes everything on to the observer behind it.
 class ContactLog final : public StepObserver {
  public:
-  explicit ContactLog(const Marcher& marcher, StepObserver* behind = nullptr);
-  SquareSum* squares(int stage) override { return behind_ ? behind_->squares(stage) : nullptr; }
+  explicit ContactLog(const Marcher& marcher);
   void stage_solved(const Marcher& marcher, const StageView& view) override;
-  void step_done(Marcher& marcher) override {
-    if (behind_) behind_->step_done(marcher);
-    momentum_.step_done();
-  }
-
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  void step_done(Marcher& marcher) override;
+  void interval(Marcher& marcher, const StepInterval& steps) override;
 
   const std::vector<ContactEvent>& events() const { return events_; }
   double impulse() const { return momentum_.momentum(); }  ///< ∫₀ᵗ Σp, signed, N s
@@ -42,8 +35,9 @@ class ContactLog final : public StepObserver {
   void look(const Marcher& marcher, const StageView& view);
   void close_instant(const StageView& view);
   double onset(const Marcher& marcher, const StageView& view, int point, int side);
+  void see(const Marcher& marcher, const StageView& view);
+  void ask(const Marcher& marcher);
 
-  StepObserver* behind_;
   const MarchModel& model_;
   const SemiDiscrete& problem_;
   int T_;
@@ -98,6 +92,7 @@ class MotionSampler {
   Marcher& marcher_;
   SampleGrid grid_;
   ContactLog log_;
+  Observers observers_;
   QuadraticForm mass_, stiffness_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> places_, strains_;
   double offset_ = 0;  // of the impulses kept, in steps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/algebra/inverse_form.hpp>
+#include <ricochet/kernels/quadratic_form.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/scene/massless_part.hpp>
@@ -147,7 +147,7 @@ ImpactJump::ImpactJump(Marcher& marcher) {
   for (std::size_t i = 0; i < massive_.size(); ++i) massive_[i] = massive_[i] && resolved[i];
   needed_ = some();
   if (!needed_) return;
-  marcher.hold_tangents(massive_, longest_impact);
+  marcher.delay_tangents(massive_, longest_impact);
   offset_ = program.velocity_offset;
   restitution_ = plan_restitution(program.plan, program.h);
   for (int lane = 0; lane < marcher.lanes(); ++lane) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/measure/orbits/section_march.hpp>
 
 namespace ricochet {
@@ -33,6 +33,8 @@ class SectionMarch::Watch final : public StepObserver {
         h_(marcher.program().h),
         offset_(marcher.program().velocity_offset) {
     tips_.resize(orbits.size());
+    // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
+    if (marcher.program().flight) asks_.next_shown = never;
   }
 
   bool begin_period() {
@@ -57,14 +59,13 @@ class SectionMarch::Watch final : public StepObserver {
       look(marcher, view, std::countr_zero(mask));
   }
 
-  // Contact alone is read of most steps, and flights keep it; where extrema are wanted, the tip is told of each.
-  long long may_skip(const Marcher&) override { return std::numeric_limits<long long>::max(); }
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override {
+  void interval(Marcher& marcher, const StepInterval& steps) override {
     if ((keeping_ & 1U) == 0) return;
-    if (plan_.section == SectionKind::extremum) steps.flight->each_tip([&](double tip) { see_tip(0, tip); });
-    if (steps.held.empty()) return;
+    if (plan_.section == SectionKind::extremum) steps.each_tip([&](double tip) { see_tip(0, tip); });
+    if (steps.closed.empty()) return;
     Orbit& orbit = *orbits_.front();
-    for (const HeldPoint& held : steps.held) push(orbit, held.point, held.lower ? 0 : 1, kept_step(marcher, orbit));
+    for (const ClosedPoint& closed : steps.closed)
+      push(orbit, closed.point, closed.lower ? 0 : 1, kept_step(marcher, orbit));
     orbit.contact_steps += steps.instants * steps.steps;
     for (BriefContact& contact : orbit.brief)
       if (contact.point >= 0) contact.steps += steps.instants * steps.steps;

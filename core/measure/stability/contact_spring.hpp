@@ -1,6 +1,9 @@
 #pragma once
+#include <functional>
 #include <optional>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
+#include <vector>
 
 namespace ricochet {
 
@@ -16,5 +19,24 @@ struct ContactSpring {
 ///
 /// a dense problem of n dofs. Nothing where it has no points, no modes are found, or that one has no mass.
 std::optional<ContactSpring> contact_spring(const SemiDiscrete& problem, double stiffness);
+
+/// How much a contact law gives way, m/N: 0 for a rigid law; 1/κ of one that declares a constant stiffness κ; of any
+/// other the secant d²/2U(d) of the energy U that it stores at the depth `depth` (m). Nothing for a compliant law that
+/// says neither. It follows from the law alone, whatever its parameters are called. The law is prepared for one point.
+std::optional<double> contact_compliance(ContactLaw& law, const Parameters& parameters, double depth);
+
+/// A value of a parameter at which the periodic motion without contact touches a stop for the first time.
+struct Grazing {
+  bool opens_below = false;  ///< whether the motion is without contact below the value
+  double value = 0, low = 0, high = 0;
+  int steps = 0;  ///< halvings made
+};
+
+/// Zeros of the overlap of a motion with its stops along a parameter. `overlap` (< 0: no contact, see
+/// linear_response.hpp; nothing where it is not known) is looked at in about 17 of the values (ascending); where its
+/// sign changes from one to the next, the zero is bisected to 1e-12 of its size, at most 60 times. Two zeros between
+/// two of these values are not seen.
+std::vector<Grazing> find_grazings(const std::vector<double>& values,
+                                   const std::function<std::optional<double>(double value)>& overlap);
 
 }  // namespace ricochet

@@ -2,12 +2,12 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <complex>
-#include <ricochet/algebra/eigenvalues.hpp>
-#include <ricochet/algebra/sparse_ldlt.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
-#include <ricochet/measure/stability/structure_modes.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
 #include <vector>
 
 namespace ricochet {

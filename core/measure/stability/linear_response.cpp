@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/engine/stage_operator.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
 namespace ricochet {

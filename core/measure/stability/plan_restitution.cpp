@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ricochet/algebra/restoring_solver.hpp>
+#include <ricochet/contact_solvers/restoring_solver.hpp>
 #include <ricochet/contract/unit_mass.hpp>
 #include <ricochet/measure/stability/plan_restitution.hpp>
 

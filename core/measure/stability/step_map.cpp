@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/measure/stability/step_map.hpp>
 
 namespace ricochet {

@@ -1,6 +1,6 @@
 #include "box_set.hpp"
 
-#include <ricochet/algebra/box_problem.hpp>
+#include <ricochet/contact_solvers/box_problem.hpp>
 #include <utility>
 
 #include "stopped.hpp"

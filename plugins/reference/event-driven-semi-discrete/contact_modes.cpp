@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "pencil.hpp"
 

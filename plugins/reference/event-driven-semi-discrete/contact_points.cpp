@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "pencil.hpp"
 #include "stopped.hpp"

@@ -1,7 +1,7 @@
 #include "linear_structure.hpp"
 
 #include <cmath>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "pencil.hpp"
 

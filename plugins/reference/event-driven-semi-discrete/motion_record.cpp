@@ -1,7 +1,7 @@
 #include "motion_record.hpp"
 
 #include <algorithm>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 namespace ricochet::reference {
 namespace {

@@ -1,7 +1,7 @@
 #include "pencil.hpp"
 
-#include <ricochet/algebra/dense_solvers.hpp>
-#include <ricochet/algebra/eigenvalues.hpp>
+#include <ricochet/kernels/dense_solvers.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 namespace ricochet::reference {
 

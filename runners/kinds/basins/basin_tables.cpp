@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/measure/attractors/basin_grid.hpp>
-#include <ricochet/measure/attractors/uncertainty_exponent.hpp>
 #include <set>
 
 #include "runners/kinds/sweep/diagram_tables.hpp"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/branches.hpp>
 #include <ricochet/measure/attractors/grid_refinement.hpp>
-#include <ricochet/measure/attractors/orbit_ends.hpp>
 
 #include "runners/kinds/basins/cell_ends.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"

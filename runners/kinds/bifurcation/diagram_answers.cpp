@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ricochet/measure/orbits/motion_class.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 #include <set>
 
 #include "runners/kinds/kind.hpp"
@@ -86,7 +86,8 @@ std::map<double, double> single_impacts(const CaseRecord& record, const std::str
   std::map<double, double> speeds;
   const NumberTable* table = find_table(record.numbers, "impacts");
   if (!table) return speeds;
-  const std::vector<double> *parameter = &table->values.front().get(), *from = table->numbers("start"), *speed = table->numbers("speed");
+  const std::vector<double>*parameter = &table->values.front().get(), *from = table->numbers("start"),
+        *speed = table->numbers("speed");
   const std::vector<std::string>* words = table->words_of("start");
   if (!from || !speed || !words) return speeds;
   std::set<double> several;

@@ -7,8 +7,7 @@
 #include <limits>
 #include <map>
 #include <ricochet/measure/orbits/random_state.hpp>
-#include <ricochet/measure/stability/contact_compliance.hpp>
-#include <ricochet/measure/stability/grazing.hpp>
+#include <ricochet/measure/stability/contact_spring.hpp>
 #include <ricochet/measure/stability/linear_response.hpp>
 
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
@@ -51,10 +50,8 @@ class BifurcationRun {
     if (scenes_.groups() == 0) return refused();
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
-    OrbitScheduler scheduler(scenes_, {.section = section_,
-                                       .budget = budget_of(case_),
-                                       .blocks = desk_.blocks,
-                                       .case_id = case_.id});
+    OrbitScheduler scheduler(
+        scenes_, {.section = section_, .budget = budget_of(case_), .blocks = desk_.blocks, .case_id = case_.id});
     scheduler_ = &scheduler;
     OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
     ExponentCheckpoints batches(desk_.shelf, desk_.key);

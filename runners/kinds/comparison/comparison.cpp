@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ricochet/measure/contact/impact_recorder.hpp>
+#include <ricochet/measure/motion/motion_sampler.hpp>
 #include <set>
 
 #include "runners/kinds/comparison/references.hpp"
@@ -79,8 +80,15 @@ CaseRunner compare_cases(const RunContext& context) {
   return runner;
 }
 
-std::shared_ptr<StepObserver> recorded(const StudyCase&, const Marcher& marcher, long long) {
-  return std::make_shared<ImpactRecorder>(marcher);
+std::shared_ptr<const Observers> recorded(const StudyCase&, const Marcher& marcher, long long) {
+  struct Recorded {
+    ImpactRecorder recorder;
+    ContactLog log;
+    Observers observers;
+    explicit Recorded(const Marcher& of) : recorder(of), log(of), observers{&recorder, &log} {}
+  };
+  const auto all = std::make_shared<Recorded>(marcher);
+  return {all, &all->observers};
 }
 
 double seconds_beside(const ForecastContext& context) {

@@ -1,5 +1,5 @@
 #include <cmath>
-#include <ricochet/measure/attractors/diagram_changes.hpp>
+#include <ricochet/measure/attractors/diagram_attractors.hpp>
 
 #include "runners/kinds/sweep/diagram_tables.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,13 +1,9 @@
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
-#include <ricochet/measure/orbits/exponent_intervals.hpp>
 #include <ricochet/measure/orbits/impact_jump.hpp>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
-#include <ricochet/measure/orbits/lyapunov.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
 #include "runners/kinds/sweep/distributed_exponents.hpp"
@@ -18,22 +14,12 @@ namespace ricochet {
 namespace {
 
 constexpr int block_width = 16;
-constexpr double twin_offset = 1e-7;  // m
 
 // Orbits of one group that march together.
 struct Batch {
   int group = 0;
   std::vector<std::size_t> orbits;
 };
-
-bool usable(const std::vector<double>& rates) {
-  return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](double rate) { return std::isfinite(rate); });
-}
-
-// More than one period in a hundred: the mean is a lower bound.
-bool saturates(const LyapunovRates& twin) {
-  return 100 * twin.saturated > static_cast<int>(twin.rates[0].size());
-}
 
 }  // namespace
 
@@ -87,45 +73,9 @@ std::vector<OrbitExponents> measure_exponents(const ForcedScenes& scenes, const 
       states.push_back(orbits[i]->entry);
       one.rounds.push_back(task.rounds.at(i));
     }
-    bool tangents = true;
-    one.keep_orbit = !one.without_sawtooth;
-    std::vector<LyapunovRates> rates;
-    try {
-      rates = lyapunov_rates(scenes.program(batch.group, lanes, columns), states, one);
-      for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
-        OrbitExponents& exponents = found[batch.orbits[b]];
-        if (rates[b].end) continue;
-        exponents.superstable = columns > 0 && rates[b].told == 0;
-        exponents.untold = !exponents.superstable && rates[b].untold > 0;
-        if (exponents.superstable) exponents.method = "superstable";
-        if (exponents.superstable || exponents.untold) continue;
-        // A column beyond what the state can tell apart has no growth to speak of.
-        const auto& all = rates[b].rates;
-        const auto last = std::find_if_not(all.begin(), all.begin() + rates[b].told, usable);
-        exponents.values = exponent_intervals({all.begin(), last}, count, rates[b].turning);
-        exponents.method = rates[b].jumps > 0 ? "tangent+jump" : "tangent";
-      }
-    } catch (const Refusal&) {
-      tangents = false;  // the law has none: twins alone
-      one.keep_orbit = true;
-      rates = lyapunov_rates(scenes.program(batch.group, lanes), states, one);
-    }
-    // A twin carries the sawtooth of single steps, which its distance cannot be rid of.
-    if (!one.keep_orbit) return;
-    const auto twin = twin_rates(scenes.program(batch.group, lanes), states, rates, one, twin_offset);
-    for (std::size_t b = 0; b < batch.orbits.size(); ++b) {
-      OrbitExponents& exponents = found[batch.orbits[b]];
-      // Closer than a step's way, an orbit and its twin meet their stops at the same steps, as motions do not.
-      if (exponents.superstable || rates[b].jumps > 0 || twin[b].end || !usable(twin[b].rates[0])) continue;
-      if (saturates(twin[b])) {
-        exponents.saturated = !tangents;
-        continue;
-      }
-      exponents.twin = exponent_interval(twin[b].rates[0]);
-      if (tangents) continue;
-      exponents.values = {*exponents.twin};
-      exponents.method = fmt::format("twin({:g})", twin_offset);
-    }
+    const auto program = [&](int with) { return scenes.program(batch.group, lanes, with); };
+    const std::vector<OrbitExponents> measured = exponents_of(program, states, one, count, columns);
+    for (std::size_t b = 0; b < batch.orbits.size(); ++b) found[batch.orbits[b]] = measured[b];
   };
   const auto recall_batch = [&](std::size_t i) {
     const std::vector<std::size_t>& members = batches[i].orbits;

@@ -1,8 +1,7 @@
 #pragma once
 #include <atomic>
 #include <functional>
-#include <optional>
-#include <ricochet/measure/statistics/block_bootstrap.hpp>
+#include <ricochet/measure/orbits/exponents.hpp>
 #include <string>
 #include <vector>
 
@@ -10,19 +9,6 @@
 #include "runners/march/block_service.hpp"
 
 namespace ricochet {
-
-/// The Lyapunov exponents of one orbit, 1/s, with 95 % block bootstrap intervals.
-struct OrbitExponents {
-  std::vector<Interval> values;  ///< largest first; those owed to the scheme set apart
-  std::optional<Interval> twin;  ///< of the largest, by a twin trajectory
-  /// "tangent", "tangent+jump", "twin(1e-07)"; "superstable" where all are −∞; "" where none could be measured.
-  std::string method;
-  bool blind = false;        ///< none would see its impacts move: tangents_miss_impacts()
-  bool saturated = false;    ///< there are no tangents, and the twin is soon as far away as orbits are
-  bool superstable = false;  ///< all points come to rest on their stops: LyapunovRates::told is none
-  bool outlived = false;     ///< the orbit stays where its exponents would have it leave: outlives()
-  bool untold = false;       ///< it has impacts whose jump is not known: LyapunovRates::untold
-};
 
 /// Why saturated ones have none, and orbits with impacts where tangents_miss_impacts().
 constexpr const char* why_saturated =

@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
+#include <ricochet/measure/stability/contact_spring.hpp>
 #include <ricochet/measure/stability/equivalent_viscosity.hpp>
-#include <ricochet/measure/stability/grazing.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 #include <optional>
-#include <ricochet/measure/attractors/diagram_changes.hpp>
+#include <ricochet/measure/attractors/diagram_attractors.hpp>
 
 #include "runners/store/record.hpp"
 #include "runners/table/number_table.hpp"

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 
 namespace ricochet {
 
-ForceWindow::ForceWindow(const Json& settings, StepObserver& behind) : behind_(behind) {
+ForceWindow::ForceWindow(const Json& settings, const Marcher& marcher) {
+  // Of steps with several instants each has a weight of its own: they are all seen.
+  if (marcher.program().flight && marcher.program().stages.size() == 1) asks_.next_shown = never;
   if (!has_window(settings)) return;
   from_ = settings.at("window").at("from").get<double>();
   to_ = settings.at("window").at("to").get<double>();
 }
 
 void ForceWindow::stage_solved(const Marcher& marcher, const StageView& view) {
-  behind_.stage_solved(marcher, view);
   if (!view.effort) return;
   const StageProgram& program = *view.program;
   if (program.opens_instant) given_ = lasts_ = 0;
@@ -34,19 +35,13 @@ void ForceWindow::add(double force, double lasts) {
   squares_ += lasts * apart * (force - mean_);
 }
 
-// Of steps with several instants each has a weight of its own: they are all seen.
-long long ForceWindow::may_skip(const Marcher& marcher) {
-  return marcher.program().stages.size() > 1 ? 0 : behind_.may_skip(marcher);
-}
-
-void ForceWindow::skipped(Marcher& marcher, const SkippedSteps& steps) {
-  behind_.skipped(marcher, steps);
+void ForceWindow::interval(Marcher& marcher, const StepInterval& steps) {
   const StageProgram& program = marcher.program().stages.front();
   const double h = marcher.program().h, lasts = program.momentum, first = steps.from + program.facts.instant * h;
   if (!(lasts > 0) || !program.reads_contact) return;
-  if (!steps.held.empty()) {
+  if (!steps.closed.empty()) {
     long long step = 0;
-    steps.flight->each_stage([&](int, std::span<const double> efforts, std::span<const double>) {
+    steps.each_stage([&](int, std::span<const double> efforts, std::span<const double>) {
       const double t = first + static_cast<double>(step++) * h;
       double force = 0;
       for (const double p : efforts) force += p;

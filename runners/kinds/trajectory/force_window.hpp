@@ -15,18 +15,15 @@ inline bool has_window(const Json& settings) {
 /// what the instant weighs:
 ///     F̄ = Σ ω F / Σ ω,   s² = Σ ω (F − F̄)² / Σ ω   (N),
 /// so that F̄ times the interval is the impulse, whatever the stages of the scheme. An effort that gives no momentum, of
-/// a projection, is no force. Passes everything on to the observer behind it; allocates nothing.
+/// a projection, is no force. Allocates nothing.
 class ForceWindow final : public StepObserver {
  public:
   /// [from, to], s; `settings` are those of a trajectory. Without a window it has nothing to look at, and shall not.
-  ForceWindow(const Json& settings, StepObserver& behind);
+  ForceWindow(const Json& settings, const Marcher& marcher);
 
-  SquareSum* squares(int stage) override { return behind_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
-  void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
-
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
+  void step_done(Marcher&) override {}
+  void interval(Marcher& marcher, const StepInterval& steps) override;
 
   /// Whether any instant of contact fell into the window.
   bool told() const { return weight_ > 0; }
@@ -36,7 +33,6 @@ class ForceWindow final : public StepObserver {
  private:
   void add(double force, double lasts);
 
-  StepObserver& behind_;
   double from_ = 0, to_ = -1;
   double given_ = 0, lasts_ = 0;  // by the instant under way
   double weight_ = 0, mean_ = 0, squares_ = 0;

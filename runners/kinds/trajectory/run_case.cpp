@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>
@@ -28,46 +28,31 @@ namespace {
 constexpr double audit_seconds_per_step = 1e-7;
 
 // The sampled series of one lane, in the columns of a trajectory's curve, with the extremes of every step between two
-// samples. Passes everything on to the observer behind it.
+// samples. Audit and recorder look at a step before it.
 class Sampler final : public StepObserver {
  public:
-  Sampler(const Marcher& marcher, const EnergyAudit& audit, ImpactRecorder& recorder, StepObserver& behind)
-      : audit_(audit), recorder_(recorder), behind_(behind), gaps_(marcher) {
+  Sampler(const Marcher& marcher, const EnergyAudit& audit, ImpactRecorder& recorder)
+      : audit_(audit), recorder_(recorder), gaps_(marcher) {
     for (const Column& column : curves_head().columns) curve_.names.push_back(column.name);
     curve_.columns.resize(curve_.names.size());
+    asks_.next_shown = never;
+    asks_.tip = true;
   }
-  SquareSum* squares(int stage) override { return behind_.squares(stage); }
-  bool reads_tip() const override { return true; }
-  void stage_solved(const Marcher& marcher, const StageView& view) override {
-    behind_.stage_solved(marcher, view);
-    see_present(marcher);
-  }
-  long long next_shown(const Marcher& marcher) override { return behind_.next_shown(marcher); }
-  // Each tells where the step before it ended; nothing was at a stop.
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override {
-    behind_.quiet(marcher, steps);
-    for (const QuietSteps::Step& step : steps.steps.subspan(seen_ ? 1 : 0)) see(step.tip);
-    seen_ = false;
-  }
+  void stage_solved(const Marcher&, const StageView&) override {}
   void step_done(Marcher& marcher) override {
-    behind_.step_done(marcher);
     if (!marcher.status(0).running) return;
-    see(marcher.tip(0));
-    deepest_ = std::max(deepest_, audit_.penetration(0));
-    gaps_.see(marcher, audit_.penetration(0));
+    const double tip = marcher.tip(0);
+    low_ = std::min(low_, tip);
+    high_ = std::max(high_, tip);
+    see_depth(marcher, audit_.penetration(0));
   }
-  long long may_skip(const Marcher& marcher) override { return behind_.may_skip(marcher); }
-  // Where the tip went is searched for.
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override {
-    behind_.skipped(marcher, steps);
+  void interval(Marcher& marcher, const StepInterval& steps) override {
     if (!marcher.status(0).running) return;
-    deepest_ = std::max(deepest_, steps.penetration);
-    gaps_.see(marcher, steps.penetration);
-    steps.flight->tip_extremes(low_, high_);
-    largest_tip_ = std::max({largest_tip_, std::abs(low_), std::abs(high_)});
+    steps.tip_extremes(low_, high_);
+    if (steps.flight) see_depth(marcher, steps.penetration);
   }
   void take(const Marcher& marcher) {
-    see_present(marcher);
+    largest_tip_ = largest_tip();
     const EnergySample& energy = audit_.energy(0);
     const ContactTotals& contact = audit_.contact(0);
     const double row[] = {marcher.time(),
@@ -94,33 +79,27 @@ class Sampler final : public StepObserver {
     for (std::size_t c = 0; c < curve_.columns.size(); ++c) curve_.columns[c].push_back(row[c]);
   }
   Curve finish() { return std::move(curve_); }
-  double largest_tip() const { return largest_tip_; }
+  double largest_tip() const {
+    return low_ > high_ ? largest_tip_ : std::max({largest_tip_, std::abs(low_), std::abs(high_)});
+  }
   const GapWatch& gaps() const { return gaps_; }
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  void see(double tip) {
-    largest_tip_ = std::max(largest_tip_, std::abs(tip));
-    low_ = std::min(low_, tip);
-    high_ = std::max(high_, tip);
-    seen_ = true;
-  }
-  // Where the last of quiet steps ended.
-  void see_present(const Marcher& marcher) {
-    if (!seen_) see(marcher.tip(0));
+  void see_depth(const Marcher& marcher, double penetration) {
+    deepest_ = std::max(deepest_, penetration);
+    gaps_.see(marcher, penetration);
   }
 
   const EnergyAudit& audit_;
   ImpactRecorder& recorder_;
-  StepObserver& behind_;
   double low_ = infinity, high_ = -infinity, deepest_ = 0;  // since the last sample
-  double largest_tip_ = 0;
+  double largest_tip_ = 0;                                  // until then
   GapWatch gaps_;
-  bool seen_ = true;  // the tip where the march stands
   Curve curve_;
 };
 
-/// What looks at every step of a trajectory, the one before the other; what is not asked for does not.
+/// What looks at the steps of a trajectory, in turn; only what is asked for is among `observers`.
 struct Watched {
   EnergyAudit audit;
   ImpactRecorder recorder;
@@ -128,19 +107,19 @@ struct Watched {
   ForceWindow forces;
   SnapshotTaker snapshots;
   Sampler sampler;
+  Observers observers;
   Watched(const StudyCase& study_case, const Marcher& marcher, long long steps)
-      : audit(marcher, Looks::seldom),
-        recorder(marcher, &audit),
-        means(study_case.settings, audit, marcher.law().reads().has_value(), recorder),
-        forces(study_case.settings, means),
-        snapshots(marcher, steps, snapshots_asked(study_case.settings), behind_snapshots(study_case.settings)),
-        sampler(marcher, audit, recorder,
-                snapshots_asked(study_case.settings) > 0 ? snapshots : behind_snapshots(study_case.settings)) {}
-
- private:
-  StepObserver& behind_snapshots(const Json& settings) {
-    if (has_window(settings)) return forces;
-    return recorder;
+      : audit(marcher, SamplingMode::seldom),
+        recorder(marcher),
+        means(study_case.settings, marcher, audit),
+        forces(study_case.settings, marcher),
+        snapshots(marcher, steps, snapshots_asked(study_case.settings)),
+        sampler(marcher, audit, recorder),
+        observers{&audit, &recorder} {
+    if (means.asked()) observers.add(&means);
+    if (has_window(study_case.settings)) observers.add(&forces);
+    if (snapshots.taken()) observers.add(&snapshots);
+    observers.add(&sampler);
   }
 };
 
@@ -227,9 +206,9 @@ CasePlan plan_case(const StudyCase& study_case, const Registry& registry) {
   return plan;
 }
 
-std::shared_ptr<StepObserver> watched(const StudyCase& study_case, const Marcher& marcher, long long steps) {
+std::shared_ptr<const Observers> watched(const StudyCase& study_case, const Marcher& marcher, long long steps) {
   const auto all = std::make_shared<Watched>(study_case, marcher, steps);
-  return {all, &all->sampler};
+  return {all, &all->observers};
 }
 
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) {
@@ -241,7 +220,7 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   const std::shared_ptr<const SemiDiscrete> problem = prepared.problem;
   Marcher marcher(std::move(*prepared.program));
   Watched watched(study_case, marcher, prepared.steps);
-  auto& [audit, recorder, means, forces, snapshots, sampler] = watched;
+  auto& [audit, recorder, means, forces, snapshots, sampler, observers] = watched;
   record.setup_seconds = thread_seconds() - set_up - prepared.aside_seconds;
 
   const double run = thread_seconds(), budget = budget_of(study_case);
@@ -250,17 +229,17 @@ CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const
   // Steps between two looks at the clock; those that are left out cost it nothing.
   long long chunk = 16;
   const long long longest_chunk = marcher.program().flight ? 1000000 : 20000;
-  marcher.start(&sampler);
+  marcher.start(observers);
   if (marcher.step() > 0) sampler.take(marcher);
   const long long samples = std::min<long long>(std::max(study_case.samples, 1), prepared.steps);
   for (long long k = 1; k <= samples && marcher.any_running() && !spent; ++k) {
     // Samples at equal fractions of the run, on whole steps.
     const auto target = static_cast<long long>(
         std::llround(static_cast<double>(prepared.steps) * static_cast<double>(k) / static_cast<double>(samples)));
-    audit.look_after(target);
+    audit.sample_after(target);
     while (marcher.step() < target && marcher.any_running() && !spent) {
       if (stop) throw Interrupted{};
-      marcher.march(std::min(target - marcher.step(), chunk), &sampler);
+      marcher.march(std::min(target - marcher.step(), chunk), observers);
       const double now = thread_seconds();
       spent = now - run > budget;
       // Long enough to cost nothing, short enough to stop soon.

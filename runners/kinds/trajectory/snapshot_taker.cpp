@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/scene/assembly.hpp>
 
 namespace ricochet {
@@ -38,8 +38,8 @@ int snapshots_asked(const Json& settings) {
   return settings.is_object() ? settings.value("snapshots", 0) : 0;
 }
 
-SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count, StepObserver& behind)
-    : behind_(behind), steps_(steps), count_(std::min<long long>(count, steps)) {
+SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count)
+    : steps_(steps), count_(std::min<long long>(count, steps)) {
   if (count_ <= 0) return;
   const SemiDiscrete& problem = *marcher.program().problem;
   shape_.along = problem.space.basis == FiniteElementSpace::Basis::linear && !problem.space.elements.empty();
@@ -55,10 +55,10 @@ SnapshotTaker::SnapshotTaker(const Marcher& marcher, long long steps, int count,
   }
   given_.assign(static_cast<std::size_t>(points), 0);
   take(problem.position, marcher.support(0, 0), 0);
+  asks_.next_shown = step_of(next_);
 }
 
 void SnapshotTaker::stage_solved(const Marcher& marcher, const StageView& view) {
-  behind_.stage_solved(marcher, view);
   if (given_.empty() || !view.effort || (view.contact_lanes & 1u) == 0) return;
   const double weight = view.program->momentum;
   if (weight == 0) return;
@@ -68,26 +68,19 @@ void SnapshotTaker::stage_solved(const Marcher& marcher, const StageView& view) 
 }
 
 void SnapshotTaker::step_done(Marcher& marcher) {
-  behind_.step_done(marcher);
   if (next_ > count_ || marcher.step() < step_of(next_) || !marcher.status(0).running) return;
   take(marcher.position(0), marcher.support(0, marcher.time()), marcher.time());
   while (next_ <= count_ && step_of(next_) <= marcher.step()) ++next_;
+  asks_.next_shown = next_ > count_ ? never : step_of(next_);
 }
 
-// Up to the step before the next snapshot.
-long long SnapshotTaker::may_skip(const Marcher& marcher) {
-  const long long most = behind_.may_skip(marcher);
-  return next_ > count_ ? most : std::min(most, std::max(0LL, step_of(next_) - 1 - marcher.step()));
-}
-
-void SnapshotTaker::skipped(Marcher& marcher, const SkippedSteps& steps) {
-  behind_.skipped(marcher, steps);
-  if (steps.held.empty() || given_.empty()) return;
+void SnapshotTaker::interval(Marcher& marcher, const StepInterval& steps) {
+  if (steps.closed.empty() || given_.empty()) return;
   const std::vector<StageProgram>& stages = marcher.program().stages;
-  steps.flight->each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
+  steps.each_stage([&](int stage, std::span<const double> efforts, std::span<const double>) {
     const double weight = stages[static_cast<std::size_t>(stage)].momentum;
     for (std::size_t i = 0; i < efforts.size(); ++i)
-      given_[static_cast<std::size_t>(steps.held[i].point)] += weight * efforts[i];
+      given_[static_cast<std::size_t>(steps.closed[i].point)] += weight * efforts[i];
     any_given_ = any_given_ || weight != 0;
   });
 }

@@ -11,22 +11,14 @@ namespace ricochet {
 /// How many instants the settings of a case ask for; 0 for none.
 int snapshots_asked(const Json& settings);
 
-/// Takes snapshots of one lane at `count` equal fractions of its `steps` steps, and at the start. Passes everything on
-/// to the observer behind it; without any to take it does nothing else.
+/// Takes snapshots of one lane at `count` equal fractions of its `steps` steps, and at the start.
 class SnapshotTaker final : public StepObserver {
  public:
-  SnapshotTaker(const Marcher& marcher, long long steps, int count, StepObserver& behind);
+  SnapshotTaker(const Marcher& marcher, long long steps, int count);
 
-  SquareSum* squares(int stage) override { return behind_.squares(stage); }
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
-  long long next_shown(const Marcher& marcher) override {
-    const long long behind = behind_.next_shown(marcher);
-    return next_ > count_ ? behind : std::min(behind, step_of(next_));
-  }
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
+  void interval(Marcher& marcher, const StepInterval& steps) override;
 
   bool taken() const { return count_ > 0; }
   Snapshots finish() const;
@@ -35,7 +27,6 @@ class SnapshotTaker final : public StepObserver {
   void take(const Eigen::VectorXd& position, double support, double time);
   long long step_of(long long k) const { return (steps_ * k + count_ / 2) / count_; }
 
-  StepObserver& behind_;
   long long steps_, count_, next_ = 1;
   int group_ = 1;                                    // contact points that are one
   Eigen::SparseMatrix<double, Eigen::RowMajor> at_;  // places × n

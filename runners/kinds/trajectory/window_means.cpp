@@ -4,22 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 
 #include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/store/record_values.hpp"
 
 namespace ricochet {
 
-WindowMeans::WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind)
-    : audit_(audit), behind_(behind) {
+WindowMeans::WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit) : audit_(audit) {
   if (!has_window(settings)) return;
   const Json& window = settings.at("window");
   from_ = window.at("from").get<double>();
   to_ = window.at("to").get<double>();
   if (window.contains("parts") && window["parts"].is_number()) parts_ = window["parts"].get<int>();
-  if (parts_ > 0 && compliant) audit.look_at_every_step();
+  if (parts_ > 0 && marcher.law().reads()) audit.sample_every_step();
   for (std::vector<double>& one : series_) one.reserve(static_cast<std::size_t>(parts_));
+  asks_.next_shown = next_shown(marcher);
 }
 
 WindowMeans::Totals WindowMeans::now(const Marcher& marcher) const {
@@ -37,26 +37,31 @@ double WindowMeans::part_end() const {
   return from_ + (to_ - from_) * static_cast<double>(series_[tip].size() + 1) / parts_;
 }
 
-long long WindowMeans::may_skip(const Marcher& marcher) {
-  const long long most = behind_.may_skip(marcher);
-  if (series_[tip].size() >= static_cast<std::size_t>(parts_)) return most;
-  // The last step before the window is shown, and the one that ends a part; two steps for the rounding of times.
+// Every step, and of flights the last one before the window and the one that ends a part. Two steps are for the
+// rounding of times.
+long long WindowMeans::next_shown(const Marcher& marcher) const {
+  if (!marcher.program().flight) return 0;
+  if (over()) return never;
   const double h = marcher.program().h, step = static_cast<double>(marcher.step());
   const double begins = std::floor(from_ / h) - 2 - step, ends = std::floor(part_end() / h) - 3 - step;
   const double left = before_window(marcher) && begins > 0 ? begins : before_window(marcher) ? 0 : ends;
-  return left > 0 ? std::min(most, static_cast<long long>(std::min(left, 1e18))) : 0;
+  return left > 0 ? marcher.step() + 1 + static_cast<long long>(std::min(left, 1e18)) : 0;
 }
 
-void WindowMeans::skipped(Marcher& marcher, const SkippedSteps& steps) {
-  behind_.skipped(marcher, steps);
-  if (series_[tip].size() >= static_cast<std::size_t>(parts_) || before_window(marcher)) return;
-  steps.flight->each_tip([&](double displacement) { squares_ += displacement * displacement; });
-  steps_ += steps.steps;
+void WindowMeans::interval(Marcher& marcher, const StepInterval& steps) {
+  if (!over() && !before_window(marcher)) {
+    steps.each_tip([&](double displacement) { squares_ += displacement * displacement; });
+    steps_ += steps.steps;
+  }
+  asks_.next_shown = next_shown(marcher);
 }
 
 void WindowMeans::step_done(Marcher& marcher) {
-  behind_.step_done(marcher);
-  if (series_[tip].size() >= static_cast<std::size_t>(parts_) || !marcher.status(0).running) return;
+  if (!over() && marcher.status(0).running) see_step(marcher);
+  asks_.next_shown = next_shown(marcher);
+}
+
+void WindowMeans::see_step(const Marcher& marcher) {
   const double half_step = marcher.program().h / 2, t = marcher.time();
   if (before_window(marcher)) {
     begin_ = now(marcher);

@@ -19,18 +19,14 @@ class WindowMeans final : public StepObserver {
  public:
   static constexpr int fewest_parts = fewest_resampled;
 
-  /// `settings` are those of a trajectory, with or without a window in parts. What stops of a compliant law store is
-  /// asked for at every step.
-  WindowMeans(const Json& settings, EnergyAudit& audit, bool compliant, StepObserver& behind);
+  /// `settings` are those of a trajectory, with or without a window in parts; without, it has nothing to look at. What
+  /// stops of a compliant law store is asked for at every step. The audit looks at a step before it.
+  WindowMeans(const Json& settings, const Marcher& marcher, EnergyAudit& audit);
 
-  SquareSum* squares(int stage) override { return behind_.squares(stage); }
-  void stage_solved(const Marcher& marcher, const StageView& view) override { behind_.stage_solved(marcher, view); }
-  /// Up to the step before one at which a part begins or ends.
-  long long may_skip(const Marcher& marcher) override;
-  void skipped(Marcher& marcher, const SkippedSteps& steps) override;
-  long long next_shown(const Marcher& marcher) override { return parts_ > 0 ? 0 : behind_.next_shown(marcher); }
-  void quiet(const Marcher& marcher, const QuietSteps& steps) override { behind_.quiet(marcher, steps); }
+  bool asked() const { return parts_ > 0; }
+  void stage_solved(const Marcher&, const StageView&) override {}
   void step_done(Marcher& marcher) override;
+  void interval(Marcher& marcher, const StepInterval& steps) override;
 
   /// Puts each mean, and half the width of its interval as confidence.NAME; a note where the run ended before the
   /// window did. Nothing without parts.
@@ -42,11 +38,13 @@ class WindowMeans final : public StepObserver {
     double t = 0, lost = 0, impulse = 0, impacts = 0;
   };
   bool before_window(const Marcher& marcher) const;
+  bool over() const { return series_[tip].size() >= static_cast<std::size_t>(parts_); }
+  void see_step(const Marcher& marcher);
+  long long next_shown(const Marcher& marcher) const;
   double part_end() const;
   Totals now(const Marcher& marcher) const;
 
   const EnergyAudit& audit_;
-  StepObserver& behind_;
   double from_ = 0, to_ = 0;
   int parts_ = 0;
   Totals begin_;  // of the part under way

@@ -30,9 +30,10 @@ inline Ending march_to_end(Program program, long long steps) {
   EnergyAudit audit(marcher);
   // An audit of a scheme without an energy sees every step.
   const bool audited = !marcher.program().plan.energy.empty();
-  ImpactRecorder recorder(marcher, audited ? &audit : nullptr);
-  marcher.start(&recorder);
-  marcher.march(steps - marcher.step(), &recorder);
+  ImpactRecorder recorder(marcher);
+  const Observers observers{audited ? &audit : nullptr, &recorder};
+  marcher.start(observers);
+  marcher.march(steps - marcher.step(), observers);
   recorder.finish(marcher);
   Ending ending;
   ending.position = marcher.position(0);

@@ -1,6 +1,6 @@
 // What a flight is made of: k steps at once, what bounds them, what they bring, and where there is none.
 #include <random>
-#include <ricochet/engine/flight/flight.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
 
 #include "tests/marching.hpp"
@@ -32,22 +32,24 @@ std::string refusal_of(const SceneSpec& scene, const Methods& methods, double h,
   return refusal ? refusal->sentence : "";
 }
 
-// Marches nothing; what it may skip is what the test says.
+// Lets flights leave out as many steps as the test says.
 class Skipper final : public StepObserver {
  public:
-  long long most = 0, skipped_steps = 0, shown = 0, longest = 0;
+  explicit Skipper(long long most_steps = 0) : most(most_steps) { asks_.next_shown = most + 1; }
+  long long most, skipped_steps = 0, shown = 0, longest = 0;
   double low = 1e9, high = -1e9;
   void stage_solved(const Marcher&, const StageView&) override {}
   void step_done(Marcher& marcher) override {
     ++shown;
     low = std::min(low, marcher.tip(0));
     high = std::max(high, marcher.tip(0));
+    asks_.next_shown = marcher.step() + most + 1;
   }
-  long long may_skip(const Marcher&) override { return most; }
-  void skipped(Marcher&, const SkippedSteps& steps) override {
+  void interval(Marcher& marcher, const StepInterval& steps) override {
     skipped_steps += steps.steps;
     longest = std::max(longest, steps.steps);
-    steps.flight->tip_extremes(low, high);
+    steps.tip_extremes(low, high);
+    asks_.next_shown = marcher.step() + most + 1;
   }
 };
 
@@ -72,8 +74,7 @@ TEST_CASE("no flight is longer than its observer allows, and an observer that sa
   beam.march(3000, &every);
   CHECK(every.skipped_steps == 0);
   CHECK(beam.steps_visited() == 3000);
-  Skipper some;
-  some.most = 37;
+  Skipper some(37);
   beam.march(3000, &some);
   CHECK(some.longest <= 37);
   CHECK(some.skipped_steps + some.shown == 3000);
@@ -87,8 +88,7 @@ TEST_CASE("the extremes of the tip are those of every step, also of those that a
   every.kind = OperatorKind::modal;
   Marcher slow = marcher(scene, 6, free_of_contact, 2e-5, every),
           fast = marcher(scene, 6, free_of_contact, 2e-5, flights());
-  Skipper marched, flown;
-  flown.most = 1 << 30;
+  Skipper marched, flown(1 << 30);
   slow.start(&marched);
   slow.march(20000, &marched);
   fast.start(&flown);
@@ -101,15 +101,14 @@ TEST_CASE("the extremes of the tip are those of every step, also of those that a
 TEST_CASE("the tip is told after each step that is left out, with contact and without") {
   class Teller final : public StepObserver {
    public:
-    bool flies = false;
+    explicit Teller(bool flies = false) { asks_.next_shown = flies ? never : 0; }
     long long skipped_steps = 0;
     std::vector<double> tips;
     void stage_solved(const Marcher&, const StageView&) override {}
     void step_done(Marcher& marcher) override { tips.push_back(marcher.tip(0)); }
-    long long may_skip(const Marcher&) override { return flies ? 1 << 30 : 0; }
-    void skipped(Marcher&, const SkippedSteps& steps) override {
+    void interval(Marcher&, const StepInterval& steps) override {
       skipped_steps += steps.steps;
-      steps.flight->each_tip([&](double tip) { tips.push_back(tip); });
+      steps.each_tip([&](double tip) { tips.push_back(tip); });
     }
   };
   SceneSpec scene = swinging(1e-4, 0.02);
@@ -124,8 +123,7 @@ TEST_CASE("the tip is told after each step that is left out, with contact and wi
   every.march = MarchWay::every_step;
   every.kind = OperatorKind::modal;
   Marcher slow = marcher(scene, 6, methods, 2e-5, every), fast = marcher(scene, 6, methods, 2e-5, flights());
-  Teller marched, flown;
-  flown.flies = true;
+  Teller marched, flown(true);
   slow.start(&marched);
   slow.march(15000, &marched);
   fast.start(&flown);

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
-#include <ricochet/measure/attractors/diagram_changes.hpp>
 #include <ricochet/measure/attractors/opinions.hpp>
 
 using namespace ricochet;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <ricochet/measure/attractors/uncertainty_exponent.hpp>
+#include <ricochet/measure/attractors/basin_grid.hpp>
 #include <stdexcept>
 
 using namespace ricochet;

@@ -15,9 +15,9 @@ struct Recorded {
   ImpactRecorder recorder;
 
   Recorded(Marcher made, double duration, std::size_t most = ImpactRecorder::most_impacts)
-      : march(std::move(made)), audit(march), recorder(march, &audit, most) {
-    march.start(&recorder);
-    march.march(std::llround(duration / march.program().h) - march.step(), &recorder);
+      : march(std::move(made)), audit(march), recorder(march, most) {
+    march.start({&audit, &recorder});
+    march.march(std::llround(duration / march.program().h) - march.step(), {&audit, &recorder});
     recorder.finish(march);
   }
   const std::vector<Impact>& impacts() const { return recorder.impacts(0); }

@@ -21,9 +21,10 @@ struct Counted {
   ContactLog log;
 
   explicit Counted(Marcher made, double until = duration)
-      : march(std::move(made)), audit(march), recorder(march, &audit), log(march, &recorder) {
-    march.start(&log);
-    march.march(std::llround(until / march.program().h) - march.step(), &log);
+      : march(std::move(made)), audit(march), recorder(march), log(march) {
+    const Observers all{&audit, &recorder, &log};
+    march.start(all);
+    march.march(std::llround(until / march.program().h) - march.step(), all);
     recorder.finish(march);
     REQUIRE(march.status(0).running);
   }

@@ -170,8 +170,8 @@ TEST_CASE("what a scene at rest is given is what its loads bring in, at any step
 namespace {
 
 /// One march under both ways to look.
-struct BothLooks final : StepObserver {
-  explicit BothLooks(const Marcher& marcher) : every(marcher), seldom(marcher, Looks::seldom) {}
+struct BothModes final : StepObserver {
+  explicit BothModes(const Marcher& marcher) : every(marcher), seldom(marcher, SamplingMode::seldom) {}
   void stage_solved(const Marcher& marcher, const StageView& view) override {
     every.stage_solved(marcher, view);
     seldom.stage_solved(marcher, view);
@@ -183,9 +183,9 @@ struct BothLooks final : StepObserver {
   EnergyAudit every, seldom;
 };
 
-void march_both(Marcher& beam, BothLooks& both, long long steps) {
+void march_both(Marcher& beam, BothModes& both, long long steps) {
   beam.start(&both);
-  both.seldom.look_after(steps);
+  both.seldom.sample_after(steps);
   beam.march(steps - beam.step(), &both);
 }
 
@@ -206,7 +206,7 @@ TEST_CASE("an audit that looks seldom adds up the same works, and sees the same 
       compiled(problem_of(busy_scene(), 8, {"consistent"}), {{"consistent"}, law, time}, 1e-4, options);
   if (std::holds_alternative<Refusal>(program)) return;
   Marcher beam = marcher(busy_scene(), 8, {{"consistent"}, law, time}, 1e-4, options);
-  BothLooks both(beam);
+  BothModes both(beam);
   march_both(beam, both, 2003);  // no multiple of what it looks at by itself
   INFO(time.name << " " << law.name << " " << operator_name(kind));
   REQUIRE(beam.status(0).running);
@@ -244,7 +244,7 @@ TEST_CASE("a scheme whose balance does not close is looked at at every step once
   };
   for (const double share : {1.0, 1.01, 1.1}) {
     Marcher beam = wrong(share);
-    BothLooks both(beam);
+    BothModes both(beam);
     march_both(beam, both, 2003);
     const double every = both.every.totals(0).largest_step_gain, seldom = both.seldom.totals(0).largest_step_gain;
     INFO(share);
@@ -265,18 +265,18 @@ TEST_CASE("a lane that blows up is stopped where it is next looked at") {
   const SceneSpec scene = working_set();
   const Methods methods{{"lumped"}, {"none"}, {"central-difference"}};
   long long stopped[2] = {};
-  for (const Looks looks : {Looks::every_step, Looks::seldom}) {
+  for (const SamplingMode mode : {SamplingMode::every_step, SamplingMode::seldom}) {
     const auto problem = problem_of(scene, 8, {"lumped"});
     const Eigen::VectorXd squares = eigen::modes(problem->stiffness, dense_mass(problem->inertia)).values;
     const double h = 3 / std::sqrt(squares.maxCoeff());  // it can take 2
     Marcher beam = marcher(scene, 8, methods, h);
-    EnergyAudit audit(beam, looks);
+    EnergyAudit audit(beam, mode);
     beam.start(&audit);
     beam.march(2000, &audit);
     REQUIRE_FALSE(beam.status(0).running);
     CHECK(beam.status(0).end.cause == EndCause::energy_beyond);
     CHECK(audit.energy(0).common() > beam.energy_bound(0));
-    stopped[looks == Looks::seldom] = beam.status(0).step;
+    stopped[mode == SamplingMode::seldom] = beam.status(0).step;
   }
   CHECK(stopped[1] >= stopped[0]);
   CHECK(stopped[1] < stopped[0] + Marcher::check_interval);
@@ -288,14 +288,14 @@ TEST_CASE("a lane that a spring blows up is stopped at the step at which its ene
   const Choice law{"penalty", {{"stiffness", 1e12}, {"evaluation", std::string("explicit")}}};
   const Methods methods{{"lumped"}, law, {"newmark-dumont-paoli", {{"beta", 0.3}}}};
   long long stopped[2] = {};
-  for (const Looks looks : {Looks::every_step, Looks::seldom}) {
+  for (const SamplingMode mode : {SamplingMode::every_step, SamplingMode::seldom}) {
     Marcher beam = marcher(scene, 8, methods, 1e-4);
-    EnergyAudit audit(beam, looks);
+    EnergyAudit audit(beam, mode);
     beam.start(&audit);
     beam.march(20000, &audit);
     REQUIRE_FALSE(beam.status(0).running);
     CHECK(beam.status(0).end.cause == EndCause::energy_beyond);
-    stopped[looks == Looks::seldom] = beam.status(0).step;
+    stopped[mode == SamplingMode::seldom] = beam.status(0).step;
   }
   CHECK(stopped[1] >= stopped[0]);
   CHECK(stopped[1] <= stopped[0] + 1);

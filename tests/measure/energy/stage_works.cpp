@@ -171,10 +171,10 @@ TEST_CASE("works are those of the definition, and explain the energy of every st
       auto program = compiled(problem, methods, h, options, alone ? one_lane : Lanes(two_lanes));
       if (std::holds_alternative<Refusal>(program)) continue;
       Marcher beam(std::move(std::get<Program>(program)));
-      EnergyAudit audit(beam, Looks::seldom);
+      EnergyAudit audit(beam, SamplingMode::seldom);
       const int lane = beam.lanes() - 1;
       DefinedLedger ledger(beam, lane, audit);
-      audit.look_after(steps);
+      audit.sample_after(steps);
       beam.start(&ledger);
       beam.march(steps - beam.step(), &ledger);
       REQUIRE(beam.status(lane).running);
@@ -198,35 +198,38 @@ TEST_CASE("works are those of the definition, and explain the energy of every st
 
 namespace {
 
-/// What is behind it sees every step; the works that a step adds up by itself, or none of them.
-class EveryStep final : public StepObserver {
- public:
-  EveryStep(StepObserver& behind, bool squares) : behind_(behind), squares_(squares) {}
-  SquareSum* squares(int stage) override { return squares_ ? behind_.squares(stage) : nullptr; }
-  void stage_solved(const Marcher& marcher, const StageView& view) override {
-    behind_.stage_solved(marcher, view);
-    ++seen_;
-  }
-  void step_done(Marcher& marcher) override { behind_.step_done(marcher); }
-  int seen() const { return seen_; }
+/// Is shown every step, so that nobody else misses one.
+struct EveryStep final : StepObserver {
+  void stage_solved(const Marcher&, const StageView&) override { ++seen; }
+  void step_done(Marcher&) override {}
+  int seen = 0;
+};
 
- private:
-  StepObserver& behind_;
-  bool squares_;
-  int seen_ = 0;
+/// Shows another observer every step and asks for nothing: no operator adds up its squares.
+struct NoSquares final : StepObserver {
+  explicit NoSquares(StepObserver& of) : one(of) {}
+  void stage_solved(const Marcher& marcher, const StageView& view) override { one.stage_solved(marcher, view); }
+  void step_done(Marcher& marcher) override {
+    one.step_done(marcher);
+    if (marcher.program().flight) asks_.next_shown = one.asks().next_shown;
+  }
+  void interval(Marcher& marcher, const StepInterval& steps) override {
+    one.interval(marcher, steps);
+    asks_.next_shown = one.asks().next_shown;
+  }
+  StepObserver& one;
 };
 
 struct Observed {
   Marcher marcher;
   EnergyAudit audit;
   ImpactRecorder recorder;
-  explicit Observed(Marcher made)
-      : marcher(std::move(made)), audit(marcher, Looks::seldom), recorder(marcher, &audit) {}
+  explicit Observed(Marcher made) : marcher(std::move(made)), audit(marcher, SamplingMode::seldom), recorder(marcher) {}
   /// In parts, the last of which ends where energies are asked for.
-  void march(StepObserver& observer, const std::vector<int>& parts) {
-    marcher.start(&observer);
-    audit.look_after(std::accumulate(parts.begin(), parts.end(), marcher.step()));
-    for (const int steps : parts) marcher.march(steps, &observer);
+  void march(const Observers& observers, const std::vector<int>& parts) {
+    marcher.start(observers);
+    audit.sample_after(std::accumulate(parts.begin(), parts.end(), marcher.step()));
+    for (const int steps : parts) marcher.march(steps, observers);
   }
 };
 
@@ -249,16 +252,17 @@ TEST_CASE("steps that nobody was shown add up what they would have, bit for bit,
   };
   INFO(operator_name(kind) << ", " << mass.name << ", α = " << damping.stiffness << ", η = " << damping.mass
                            << (shaken ? ", shaken, " : ", ") << elements << " elements");
-  Observed shown(made()), passed(made()), quiet(made()), parted(made());
-  EveryStep every(shown.recorder, true), none(passed.recorder, false);
-  shown.march(every, {9000});
-  passed.march(none, {9000});
-  quiet.march(quiet.recorder, {9000});
-  parted.march(parted.recorder, {1, 7, 40, 3001, 16, 5935});
-  REQUIRE(every.seen() >= 9000);
+  Observed shown(made()), passed(made()), unseen(made()), parted(made());
+  EveryStep every;
+  NoSquares none(passed.audit);
+  shown.march({&shown.audit, &shown.recorder, &every}, {9000});
+  passed.march({&none, &passed.recorder}, {9000});
+  unseen.march({&unseen.audit, &unseen.recorder}, {9000});
+  parted.march({&parted.audit, &parted.recorder}, {1, 7, 40, 3001, 16, 5935});
+  REQUIRE(every.seen >= 9000);
   REQUIRE(shown.audit.contact(0).impacts > 2);
   const EnergyTotals& a = shown.audit.totals(0);
-  for (const Observed* other : {&passed, &quiet, &parted}) {
+  for (const Observed* other : {&passed, &unseen, &parted}) {
     CHECK(other->marcher.position(0) == shown.marcher.position(0));
     const EnergyTotals& b = other->audit.totals(0);
     const double slack = other == &passed ? 1e-13 * (a.brought_in() + a.work_of_damping) : 0;
@@ -301,21 +305,14 @@ TEST_CASE("squares that a visited step adds up leave a march by flights what it 
     return marcher(scene, 6, {{"consistent"}, {"signorini"}, {"newmark-dumont-paoli"}}, 1e-5, options);
   };
   Observed with(made()), without(made());
-  const auto march = [](Observed& observed, StepObserver& observer) {
-    observed.marcher.start(&observer);
-    observed.audit.look_after(20000);
-    observed.marcher.march(20000 - observed.marcher.step(), &observer);
+  const auto march = [](Observed& observed, const Observers& observers) {
+    observed.marcher.start(observers);
+    observed.audit.sample_after(20000);
+    observed.marcher.march(20000 - observed.marcher.step(), observers);
   };
-  struct Apart final : StepObserver {
-    explicit Apart(StepObserver& all) : behind(all) {}
-    void stage_solved(const Marcher& marcher, const StageView& view) override { behind.stage_solved(marcher, view); }
-    void step_done(Marcher& marcher) override { behind.step_done(marcher); }
-    long long may_skip(const Marcher& marcher) override { return behind.may_skip(marcher); }
-    void skipped(Marcher& marcher, const SkippedSteps& steps) override { behind.skipped(marcher, steps); }
-    StepObserver& behind;
-  } apart(without.recorder);
-  march(with, with.recorder);
-  march(without, apart);
+  NoSquares apart(without.audit);
+  march(with, {&with.audit, &with.recorder});
+  march(without, {&apart, &without.recorder});
   REQUIRE(with.audit.contact(0).impacts > 2);
   REQUIRE(with.marcher.steps_visited() < 10000);
   CHECK(with.marcher.steps_visited() == without.marcher.steps_visited());

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
-#include <ricochet/measure/orbits/exponent_intervals.hpp>
+#include <ricochet/measure/orbits/exponents.hpp>
 
 using namespace ricochet;
 

@@ -1,8 +1,8 @@
 // One spelling of the class of an orbit: what is written is read, and nothing else is.
 #include <catch2/catch.hpp>
 #include <limits>
-#include <ricochet/measure/orbits/motion_class.hpp>
 #include <ricochet/measure/orbits/recurrence.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 #include <set>
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include <ricochet/measure/stability/amplification.hpp>
 #include <ricochet/measure/stability/stability.hpp>
-#include <ricochet/measure/stability/structure_modes.hpp>
+#include <ricochet/measure/stability/structure_physics.hpp>
 
 #include "tests/amplification_roots.hpp"
 #include "tests/eigen.hpp"

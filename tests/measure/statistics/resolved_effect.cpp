@@ -1,6 +1,6 @@
 // A difference is told from what step and mesh leave open, or it is not told.
 #include <catch2/catch.hpp>
-#include <ricochet/measure/statistics/resolved_effect.hpp>
+#include <ricochet/measure/statistics/effects.hpp>
 
 using namespace ricochet;
 

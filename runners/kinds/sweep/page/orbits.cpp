@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ricochet/measure/orbits/motion_class.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 
 namespace ricochet::report {
 namespace {

@@ -1,0 +1,123 @@
+#pragma once
+#include <cstddef>
+#include <ricochet/contract/contact_law.hpp>
+#include <vector>
+
+namespace ricochet {
+
+/// Where one side of one contact point stands when its force is asked.
+struct ContactState {
+  double depth = 0;   ///< δ, beyond the bound that the solver was given, m (positive: beyond)
+  double rate = 0;    ///< δ̇, the speed of closing, m/s; 0 where the problem has no rate
+  double before = 0;  ///< δ⁻, the depth one step before, m; 0 where the problem has none
+  int point = 0, lane = 0;
+};
+
+/// The force of one side, and how it answers. Slopes ≥ 0 for a law that does not soften.
+struct PointForce {
+  double value = 0;        ///< p ≥ 0, N
+  double stiffness = 0;    ///< ∂p/∂δ, N/m
+  double viscosity = 0;    ///< ∂p/∂δ̇, N s/m
+  double before = 0;       ///< ∂p/∂δ⁻, N/m
+  double dissipation = 0;  ///< power that does not come back, (p − U′(δ)) δ̇ ≥ 0, W
+};
+
+/// A compliant law, one point and one side at a time: p = Φ(δ, δ̇, δ⁻), zero where neither δ nor δ⁻ is positive, and
+/// growing, at least not falling, with δ and δ̇. Both sides have the same law; what a point feels is Φ of the lower stop
+/// minus Φ of the upper one.
+class PointwiseLaw {
+ public:
+  virtual ~PointwiseLaw() = default;
+  virtual PointForce force(const ContactState& state) const = 0;
+};
+
+/// The efforts of one lane under a law that acts point by point. With y = y° + ηWp, u = u° + η_uWp,
+///
+///     p_i = F_i(y_i, u_i),   F_i = Φ(lower_i − y_i, −u_i, lower_i − y⁻_i) − Φ(y_i − upper_i, u_i, y⁻_i − upper_i) (1)
+///
+/// W (m × m) symmetric positive semidefinite, read by columns on demand; bounds may be ±∞, and pass each other (both
+/// sides then push). As F_i falls with x_i = (Wp)_i and depends on no other, (1) is where the convex function
+///
+///     E = ½ xᵀW⁻¹x − Σ_i ∫F_i dx_i,      its slope along δp:  E′ = (Wδp)ᵀ(p − F)                                  (2)
+///
+/// is least: p is unique wherever W is regular or F answers.
+///
+/// η = η_u = 0: closed form. One point: Newton between two bounds of p that close in, by halves where it would leave
+/// them, so that jumps and forces without bound are met too (a jump is bridged: p between its ends). Several points:
+/// Newton from the last effort, halved until the slope (2) does not turn steeply upwards,
+///
+///     (I + DW) δp = F − p,     D = η ∂p/∂δ + η_u ∂p/∂δ̇ ≥ 0                                                       (3)
+///
+/// in the symmetric form I + √D W √D, whose eigenvalues are ≥ 1: no set is ever singular. Where that does not end
+/// (Φ jumps, or is infinite), Gauss–Seidel with the one-point solve: each sweep lowers E.
+///
+/// Only columns of points that feel a force are asked for. Cost: O(m) to read the lane, and O(k³ + km) for each
+/// iteration with k points in contact.
+class PointwiseSolver {
+ public:
+  PointwiseSolver() = default;
+  /// Reserves for m points and the slopes of `lanes` lanes; solve() allocates nothing after this.
+  void prepare(int points, int lanes);
+
+  /// Solves (1) for one lane of the problem; `effort` holds the first guess, then p. The residual is the distance of
+  /// (y_i, p_i) from the force law, m. Convergence means equality to the round-off of forming y; where Φ jumps, that p
+  /// lies between the ends of the jump. Not converged, or data that are not finite: p = 0. The result depends on this
+  /// lane's numbers only, bit for bit.
+  LaneOutcome solve(const PointwiseLaw& law, ReducedProblem& problem, int lane);
+
+  /// Slopes at the last solve of that point and lane, both sides together.
+  const ContactSlopes& slopes(int point, int lane) const {
+    return slopes_[static_cast<std::size_t>(point) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];
+  }
+
+  /// Largest numbers of Newton iterations, then of sweeps (default 60 and 4000).
+  void limit(int iterations, int sweeps) {
+    most_iterations_ = iterations;
+    most_sweeps_ = sweeps;
+  }
+
+ private:
+  // F_i, its slopes, and the size of the bounds that it is measured from.
+  struct Answer {
+    double force = 0, stiffness = 0, viscosity = 0, before = 0, dissipation = 0, bound = 0;
+    bool finite() const;
+  };
+  struct Lane {
+    const PointwiseLaw& law;
+    const ReducedProblem& problem;
+    int lane;
+    std::size_t at(int i) const {
+      return static_cast<std::size_t>(i) * static_cast<std::size_t>(problem.lanes) + static_cast<std::size_t>(lane);
+    }
+    double weight(const Answer& answer) const;
+    Answer answer(int i, double x) const;
+    double round_off(int i, double terms, double p, const Answer& answer) const;
+    double slack(int i, double terms, const Answer& answer) const;
+    double dissipation_between(int i, double x, double terms, double p, const Answer& at) const;
+    bool on_law(int i, double x, double terms, double p, const Answer& answer) const;
+  };
+
+  static double solve_point(const Lane& lane, int i, double others, double mobility, double guess);
+  LaneOutcome solve_alone(const Lane& lane);
+  LaneOutcome solve_known(const Lane& lane);
+  LaneOutcome solve_coupled(const Lane& lane);
+  bool newton(const Lane& lane, int& iterations);
+  bool sweep(const Lane& lane, int& iterations);
+  bool find_direction(const Lane& lane);
+  double slope(const Lane& lane, double step) const;
+  void move(const Lane& lane);
+  bool settled(const Lane& lane) const;
+  LaneOutcome finish(const Lane& lane, bool converged, int iterations);
+
+  int points_ = 0, lanes_ = 0;
+  int most_iterations_ = 60, most_sweeps_ = 4000;
+  std::vector<double> effort_, moved_, terms_;  // p, x = Wp, Σ_j |W_ij p_j|
+  std::vector<double> step_, shift_;            // δp, Wδp
+  std::vector<double> factor_, right_, root_;   // k rows of m, k, √D of the set
+  std::vector<int> set_;                        // k: points whose force answers to what moves them
+  std::vector<const double*> column_;           // k
+  std::vector<Answer> answer_;                  // m
+  std::vector<ContactSlopes> slopes_;           // m × lanes
+};
+
+}  // namespace ricochet

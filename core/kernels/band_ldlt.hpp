@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <optional>
+#include <ricochet/kernels/lane_kernels.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// Half-bandwidth of a square matrix: max |i − j| over its non-zeros.
+int half_bandwidth(const SparseMatrix& matrix);
+
+/// A square band matrix as LaneKernels reads it: n × (2w+1) by rows, or by diagonals when `by_diagonals` (one lane).
+std::vector<double> band_storage(const SparseMatrix& matrix, int half_width, bool by_diagonals);
+
+/// A symmetric matrix A (n × n) and, for the quasi-definite form, its border:
+///
+///     [ A    G ᵀ ] [z]   [b]
+///     [ G   −C_v ] [r] = [g]        so that  (A + Gᵀ C_v⁻¹ G) z = b + Gᵀ C_v⁻¹ g                                 (1)
+///
+/// with A SPD and C_v SPD: L D Lᵀ exists without pivoting in any symmetric ordering (Vanderbei 1995, quasi-definite
+/// matrices). The r unknowns are interleaved among the z unknowns by the largest column of their row of G, which keeps
+/// the band narrow: after it, or before it where `border_first`. With G diagonal and regular, border first, A need only
+/// be semidefinite: every pivot of z then holds what its own r has brought.
+struct QuasiDefinite {
+  SparseMatrix A, G, Cv;  ///< G and Cv may be 0 × 0
+  bool border_first = false;
+  /// The whole matrix of (1), permuted; order[i] is the unknown of row i: dof, or n + j for r_j.
+  SparseMatrix assemble(std::vector<int>& order) const;
+};
+
+/// L D Lᵀ of a symmetric band matrix without pivoting, stored for LaneKernels::band_step.
+class BandLdlt {
+ public:
+  /// Fails (with a sentence) when a pivot vanishes, is not finite, or has not the sign it must have: positive for dofs,
+  /// negative for the border.
+  std::optional<std::string> factorise(const QuasiDefinite& matrix);
+
+  int rows() const { return rows_; }
+  int half_width() const { return width_; }
+  const double* factor() const { return factor_.data(); }
+  /// Lets a step end with the substitution through this factor; z as in BandStep.
+  void substitute_in(BandStep& step, double* z) const {
+    step.solve_rows = rows_;
+    step.solve_width = width_;
+    step.factor = factor_.data();
+    step.z = z;
+  }
+  /// Row of (b; g) for each row of the factor.
+  const std::vector<int>& order() const { return order_; }
+  /// Whether order() is the identity.
+  bool natural() const { return natural_; }
+
+ private:
+  int rows_ = 0, width_ = 0;
+  bool natural_ = true;
+  std::vector<double> factor_;
+  std::vector<int> order_;
+};
+
+}  // namespace ricochet
