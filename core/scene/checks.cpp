@@ -4,7 +4,6 @@
 #include <cmath>
 #include <ricochet/algebra/infinity.hpp>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/require_positive.hpp>

@@ -2,7 +2,6 @@
 #include <muParser.h>
 
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula_errors.hpp>
 
 namespace ricochet {

@@ -134,7 +134,7 @@ std::string facts_of(const PluginManual& manual, ContactLaw& law, const Paramete
     text += fmt::format("  reads the displacement, evaluated {}{}\n", evaluation_word(*reads),
                         law.reads_rate() ? ", and its rate" : "");
     if (law.conserves_energy()) text += "  gives back to the scheme's energy what it stores\n";
-    const auto stiffness = law.constant_stiffness(0);
+    const auto stiffness = constant_stiffness(law);
     if (law.changes_problem())
       text += "  changes the stiffness of the structure and what is measured at its stops, its own with them\n";
     else

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <string>
 
 #include "runners/study/study.hpp"

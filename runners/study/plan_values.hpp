@@ -1,6 +1,6 @@
 #pragma once
 #include <optional>
-#include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <ricochet/scene/named_formulas.hpp>
 #include <string>
 #include <vector>

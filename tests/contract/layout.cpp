@@ -1,5 +1,5 @@
 #include <catch2/catch.hpp>
-#include <ricochet/contract/layout.hpp>
+#include <ricochet/contract/abi.hpp>
 #include <ricochet/loader/library_symbols.hpp>
 
 using namespace ricochet;

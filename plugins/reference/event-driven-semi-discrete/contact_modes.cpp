@@ -5,7 +5,7 @@
 #include <ricochet/algebra/dense_solvers.hpp>
 #include <ricochet/algebra/eigenvalues.hpp>
 
-#include "pencil.hpp"
+#include "linear_structure.hpp"
 
 namespace ricochet::reference {
 namespace {
