@@ -1,8 +1,10 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/abi.hpp>
+#include <ricochet/loader/library_symbols.hpp>
 #include <string>
 
 using namespace ricochet;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -14,6 +16,15 @@ std::string replaced(std::string text, const std::string& part, const std::strin
 
 std::string mismatch(const std::string& tag) {
   return abi_mismatch(tag).value_or("none");
+}
+
+// As a plugin of this tree exports it.
+Layout own_layout() {
+  const std::string prefix = "ricochet_layout__";
+  Layout layout;
+  for (const auto& symbol : exported_symbols(std::string(RICOCHET_PLUGIN_DIR) + "/time.so", prefix))
+    layout[symbol.name.substr(prefix.size())] = symbol.size;
+  return layout;
 }
 
 }  // namespace
@@ -52,4 +63,28 @@ TEST_CASE("a tag with fields missing or added does not fit") {
   CHECK(mismatch("") == "contract: expected 4, found nothing");
   CHECK(mismatch("ricochet_abi__eigen_3_4") == "contract: expected 4, found nothing");
   CHECK(mismatch(abi_tag() + "__cuda_12") == "cuda: a field that this program does not know");
+}
+
+TEST_CASE("a plugin of this build has the sizes of this build") {
+  REQUIRE(own_layout().size() > 20);
+  CHECK_FALSE(layout_mismatch(own_layout()).has_value());
+}
+
+TEST_CASE("a type of another size is named with what was expected and what was found") {
+  const std::string expected = std::to_string(sizeof(Stage)), more = std::to_string(sizeof(Stage) + 8);
+  Layout layout = own_layout();
+  layout["Stage"] = sizeof(Stage) + 8;
+  CHECK(layout_mismatch(layout) == "layout: Stage: expected " + expected + " bytes, found " + more);
+  layout.erase("Stage");
+  CHECK(layout_mismatch(layout) == "layout: Stage: expected " + expected + " bytes, found nothing");
+  // What a debugging standard library does: named first, as everything that holds one differs as well.
+  layout["vector"] = 56;
+  CHECK(layout_mismatch(layout) == "layout: std::vector<double>: expected 24 bytes, found 56");
+}
+
+TEST_CASE("a library without sizes, or with one that is not known, does not fit") {
+  CHECK_THAT(layout_mismatch({}).value_or(""), StartsWith("layout: std::string: expected "));
+  Layout layout = own_layout();
+  layout["Wormhole"] = 8;
+  CHECK(layout_mismatch(layout) == "layout: Wormhole: a type that this program does not know");
 }

@@ -1,10 +1,11 @@
-#pragma once
 #include <fmt/format.h>
 
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
-namespace ricochet {
+namespace {
+
+using namespace ricochet;
 
 /// The three-level β scheme in increment form. With d_n = q_n − q_{n−1} and z = q_{n+1} − 2q_n + q_{n−1}:
 ///
@@ -102,4 +103,63 @@ class ThreeLevel final : public TimeScheme {
   bool second_order_;
 };
 
-}  // namespace ricochet
+void register_newmark_dumont_paoli(Registry& registry) {
+  registry.add_time(
+      {.name = "newmark-dumont-paoli",
+       .summary = "three-level β scheme with the constraint on (q_{n+1} + e q_{n−1})/(1+e)",
+       .text = R"(The β-Newmark scheme (γ = ½) written on three levels, its contact effort at the middle level. With
+          e = 0 the scheme's energy never increases at contact, for any β and any mass matrix. For e > 0 only the
+          combination (q_{n+1} + e q_{n−1})/(1+e) is constrained: q_{n+1} itself may pass the stop by O(h). On the
+          kernel of a singular mass β = ¼ leaves a double root −1, ¼ < β ≤ ½ roots on the unit circle (damped when α
+          > 0). No q₋₁ exists that contact could lean on: in the first step e = 0 holds q₁ between the stops, and
+          with e > 0 a point whose free q₁ passes its stop rebounds with (q₁ − q₀)/h = −e v₀. A start at a stop so
+          keeps order 1, as an impact on the way does.)",
+       .source = R"(Dumont and Paoli (2006), Vibrations of a beam between obstacles: convergence of a fully
+          discretized approximation; Paoli and Schatzman (2002) for the combination that carries the restitution)",
+       .parameters =
+           {real_parameter("beta", "1", 0.5, {.low = 0, .high = 0.5}, "β, weight of the outer levels in K q and F"),
+            with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+                      ParameterRole::restitution),
+            word_parameter(
+                "start", {"first-order", "second-order"}, "second-order",
+                R"(first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation; stops
+          hold either)")}},
+      [](const Parameters& p) {
+        return std::make_unique<ThreeLevel>(p.real("beta"), p.real("restitution"), p.word("start") == "second-order");
+      });
+}
+
+void register_paoli_schatzman(Registry& registry) {
+  registry.add_time({.name = "paoli-schatzman",
+                     .summary = "central differences with the constraint on (q_{n+1} + e q_{n−1})/(1+e)",
+                     .text = R"(Central differences whose effort keeps (q_{n+1} + e q_{n−1})/(1+e) between the stops:
+          newmark-dumont-paoli with β = 0. As the step shrinks a point leaves its stop at e times the speed of
+          arrival; q_{n+1} itself may pass the stop by O(h). Explicit where the mass is diagonal and nothing is
+          damped; stable up to hω = 2. In the first step e = 0 holds q₁ between the stops, and with e > 0 a point
+          whose free q₁ passes its stop rebounds with −e v₀: order 1, as an impact on the way.)",
+                     .source = "Paoli and Schatzman (2002), A numerical scheme for impact problems",
+                     .parameters = {with_role(
+                         real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
+                         ParameterRole::restitution)}},
+                    [](const Parameters& p) { return std::make_unique<ThreeLevel>(0.0, p.real("restitution"), true); });
+}
+
+void register_carpenter_taylor_katona(Registry& registry) {
+  registry.add_time(
+      {.name = "carpenter-taylor-katona",
+       .summary = "central differences, the multiplier keeps the next position admissible",
+       .text = R"(Central differences whose predicted position is corrected by the effort so that q_{n+1} lies
+          between the stops: newmark-dumont-paoli with β = 0 and e = 0. Explicit where the mass is diagonal and
+          nothing is damped; stable up to hω = 2. A point that meets a stop stays there until it is pulled off, and
+          contact never gives energy.)",
+       .source = R"(Carpenter, Taylor and Katona (1991), Lagrange constraints for transient finite element surface
+          contact)",
+       .parameters = {}},
+      [](const Parameters&) { return std::make_unique<ThreeLevel>(0.0, 0.0, true); });
+}
+
+}  // namespace
+
+RICOCHET_PLUGIN(time, newmark_dumont_paoli, register_newmark_dumont_paoli)
+RICOCHET_PLUGIN(time, paoli_schatzman, register_paoli_schatzman)
+RICOCHET_PLUGIN(time, carpenter_taylor_katona, register_carpenter_taylor_katona)

@@ -2,8 +2,41 @@
 #include <ricochet/contract/plugin.hpp>
 
 /// \file
-/// Steps in which an effort is the mean force of the step: it changes the momentum by h p.
+/// Stages and parts of stages that several schemes have.
 namespace ricochet {
+
+/// A plan whose slots are q, v and others that begin at zero; v is its velocity.
+inline StepPlan plan_with(std::vector<std::string> slots) {
+  StepPlan plan;
+  plan.initial.assign(slots.size(), {0, 0});
+  plan.initial[0] = {1, 0};
+  plan.initial[1] = {0, 1};
+  plan.velocity = plan_algebra::slots<2>()[1];
+  plan.slots = std::move(slots);
+  return plan;
+}
+
+/// The start stage of schemes with accelerations as their third slot,
+///
+///     M a₀ = F(0) − C v₀ − K q₀   (+ Hᵀp so that q₀ + d v₀ + d²/2 a₀ does not pass the stop of t + `bound` h).
+///
+/// On the kernel of a singular mass a₀ is not defined: `stiffening` K is added to M there, an O(h²) change of a₀ on the
+/// regular modes.
+inline Stage initial_acceleration(double d, double bound, double stiffening) {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
+  Stage stage;
+  stage.matrix = M + stiffening * K;
+  stage.history = -(K * q) - C * v;
+  stage.load = at(0);
+  stage.impact = {.value = q + d * v + 0.5 * d * d * z, .bound = at(bound)};
+  for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+    stage.at(evaluation) = {q, at(0), v, at(0), {1}};
+  stage.update = {q, v, z};
+  return stage;
+}
+
+// Steps in which an effort is the mean force of the step: it changes the momentum by h p.
 
 /// The mean of a slot before the stage and of what it becomes.
 inline Combination halfway(const Combination& from, const Combination& to) {
@@ -69,10 +102,7 @@ inline Stage mean_step(double h, const Levels& when) {
 /// A plan of such steps: slots q and v, energy and order; stages and other facts are the scheme's own.
 inline StepPlan mean_step_plan() {
   const auto [q, v] = plan_algebra::slots<2>();
-  StepPlan plan;
-  plan.slots = {"q", "v"};
-  plan.initial = {{1, 0}, {0, 1}};
-  plan.velocity = v;
+  StepPlan plan = plan_with({"q", "v"});
   plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
   plan.facts.order = 2;
   return plan;
