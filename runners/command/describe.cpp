@@ -11,8 +11,8 @@
 #include "runners/command/describe_words.hpp"
 #include "runners/command/plain.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/stated_plan.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {

@@ -1,8 +1,8 @@
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "runners/study/json_fault.hpp"
+#include "runners/json/json_fault.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;

@@ -1,4 +1,4 @@
-#include "runners/study/json_fault.hpp"
+#include "runners/json/json_fault.hpp"
 
 #include <fmt/format.h>
 

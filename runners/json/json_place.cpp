@@ -1,9 +1,8 @@
-#include "runners/study/json_place.hpp"
+#include "runners/json/json_place.hpp"
 
 #include <algorithm>
 
-#include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 

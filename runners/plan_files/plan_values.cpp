@@ -1,4 +1,4 @@
-#include "runners/study/plan_values.hpp"
+#include "runners/plan_files/plan_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace {

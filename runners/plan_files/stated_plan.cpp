@@ -1,11 +1,10 @@
-#include "runners/study/stated_plan.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 
-#include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace fs = std::filesystem;

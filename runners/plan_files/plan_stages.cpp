@@ -1,11 +1,10 @@
-#include "runners/study/plan_stages.hpp"
+#include "runners/plan_files/plan_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,12 +1,14 @@
 #pragma once
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <string>
-
-#include "runners/study/study.hpp"
+#include <vector>
 
 namespace ricochet {
+
+using Json = nlohmann::ordered_json;
 
 /// A place in a text, both counted from 1, columns in characters (UTF-8).
 struct TextPosition {
@@ -45,5 +47,11 @@ std::string pointer_to(const std::string& parent, std::size_t index);
 
 /// A value as it is quoted in a message: its JSON, cut short when long.
 std::string quote(const Json& value);
+
+/// "; did you mean "X"?" or "".
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
+
+/// "a", "b", "c".
+std::string quoted_list(const std::vector<std::string>& words);
 
 }  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/study/study.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 

@@ -1,15 +1,15 @@
 // A scheme without C++: what a plan says in formulas is the step that a plugin writes in numbers, and whatever is wrong
 // with it is told with its place.
-#include "runners/study/plan_scheme.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ricochet/loader/catalogue.hpp>
 #include <thread>
 
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 #include "tests/runners/scratch_folder.hpp"
-#include "tests/runners/study/step_numbers.hpp"
+#include "tests/runners/plan_files/step_numbers.hpp"
 
 using namespace ricochet;
 using namespace ricochet::tests;
@@ -157,21 +157,21 @@ std::string message(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("Newmark as a plan has the bits of its plugin", "[plan-file]") {
+TEST_CASE("Newmark as a plan equals its plugin bitwise", "[plan-file]") {
   require_twins("newmark.json", "newmark-as-plan", "newmark",
                 {{}, {{"beta", 0.3}, {"gamma", 0.6}}, {{"beta", 0.1}}, {{"beta", 0.4}, {"gamma", 0.7}}});
 }
 
-TEST_CASE("a plan at velocity level, with its gate, has the bits of its plugin", "[plan-file]") {
+TEST_CASE("a plan at velocity level, with its gate, equals its plugin bitwise", "[plan-file]") {
   require_twins("moreau-jean.json", "moreau-jean-as-plan", "moreau-jean",
                 {{}, {{"theta", 0.7}}, {{"theta", 0.7}, {"restitution", 0.8}}, {{"restitution", 1.0}}});
 }
 
-TEST_CASE("a plan that gives work back, its levels derived, has the bits of its plugin", "[plan-file]") {
+TEST_CASE("a plan that gives work back, its levels derived, equals its plugin bitwise", "[plan-file]") {
   require_twins("laursen-love.json", "laursen-love-as-plan", "laursen-love", {{}});
 }
 
-TEST_CASE("a plan whose stage has an impulse has the bits of its plugin", "[plan-file]") {
+TEST_CASE("a plan whose stage has an impulse equals its plugin bitwise", "[plan-file]") {
   require_twins("kane.json", "kane-as-plan", "kane",
                 {{{"beta", 0.3}}, {{"beta", 0.0}}, {{"beta", 0.4}, {"gamma", 0.6}}});
 }
@@ -205,7 +205,7 @@ TEST_CASE("w is a name where some stage has an impulse, and free where none has"
   CHECK(said(named.replace(at, 8, "\"let\": {\"w\": 2, ")) == "");
 }
 
-TEST_CASE("Bathe's two sub-steps as a plan have the bits of the same sums in C++", "[plan-file]") {
+TEST_CASE("Bathe's two sub-steps as a plan equal the same sums in C++ bitwise", "[plan-file]") {
   const Registry stated = registered(plans / "bathe.json");
   for (const auto& [rho, split] : {std::pair(0.0, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.0, 0.5}, {0.3, 0.25}})
     for (const double h : {1e-2, 3.1e-5})

@@ -1,11 +1,11 @@
 #pragma once
 #include <optional>
-#include <ricochet/contract/step_plan.hpp>
+#include <ricochet/contract/registry.hpp>
 #include <ricochet/scene/named_formulas.hpp>
 #include <string>
 #include <vector>
 
-#include "runners/study/json_place.hpp"
+#include "runners/json/json_place.hpp"
 
 namespace ricochet {
 
@@ -76,5 +76,16 @@ class PlanValues {
   LinearFormulas combinations_, matrices_;
   std::vector<std::pair<std::string, std::string>> taken_;  // name, what it is
 };
+
+/// What a plan says of itself: name, summary, text, source and parameters, as a plugin registers them; the keys of the
+/// whole plan are checked. Throws InputError.
+PluginManual read_plan_manual(const JsonPlace& plan);
+
+/// The first refusal of a plan whose condition holds, or nothing. All of them are read.
+std::optional<Refusal> plan_refusal(const JsonPlace& plan, PlanValues& values);
+
+/// The slots, stages, energy, velocity and facts of a plan, as numbers. Throws InputError for whatever is no plan; that
+/// the plan is well-formed is left to check_plan().
+StepPlan read_step_plan(const JsonPlace& plan, PlanValues& values);
 
 }  // namespace ricochet

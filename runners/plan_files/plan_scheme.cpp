@@ -1,13 +1,12 @@
-#include "runners/study/plan_scheme.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <ricochet/contract/stage_facts.hpp>
 
-#include "runners/study/json_text.hpp"
-#include "runners/study/plan_manual.hpp"
-#include "runners/study/plan_stages.hpp"
+#include "runners/json/json_text.hpp"
+#include "runners/plan_files/plan_reader.hpp"
 
 namespace ricochet {
 namespace {

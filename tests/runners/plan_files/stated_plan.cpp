@@ -1,5 +1,5 @@
 // Schemes that a study states itself, and those that stand as files beside the plugins.
-#include "runners/study/stated_plan.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,10 +1,10 @@
-#include "runners/study/plan_manual.hpp"
+#include "runners/plan_files/plan_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace {

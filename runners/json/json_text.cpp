@@ -1,4 +1,4 @@
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "runners/study/json_fault.hpp"
+#include "runners/json/json_fault.hpp"
 
 namespace ricochet {
 namespace {
@@ -231,6 +231,17 @@ std::string explained(const InputError& error, std::string place, const std::str
   if (!text.empty())
     if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
   return place + ": at " + shortened(error.pointer()) + ": " + error.what();
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string result;
+  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + shortened(word) + "\"";
+  return result;
 }
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "runners/study/plan_schema.hpp"
+#include "runners/plan_files/plan_file.hpp"
 
 #include <ricochet/contract/step_plan.hpp>
 
