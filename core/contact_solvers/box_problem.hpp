@@ -127,6 +127,11 @@ class BoxSolver {
   /// residual. The result depends on this lane's numbers only, bit for bit, whatever the stride.
   LaneOutcome solve(DelassusColumns& W, double reach, double compliance, const double* free, const double* lower,
                     const double* upper, double* p, int points, int stride = 1);
+  /// The same of one lane of a stage.
+  LaneOutcome solve(const LaneProblem& lane, double compliance) {
+    return solve(*lane.delassus, lane.reach, compliance, lane.free.first, lane.lower.first, lane.upper.first,
+                 lane.effort.first, lane.points, lane.free.stride);
+  }
 
   /// Largest number of sets that descent tries before it gives up (default, or negative: 50·m + 200).
   void limit_descent(int sets) { set_limit_ = sets; }

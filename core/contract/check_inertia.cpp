@@ -3,7 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <ricochet/contract/check_inertia.hpp>
-#include <ricochet/contract/semidefinite_rank.hpp>
+#include <ricochet/contract/mass_strategy.hpp>
 
 namespace ricochet {
 namespace {

@@ -10,7 +10,7 @@ namespace ricochet {
 ///
 ///     M is n × n (factored: B is N_v × n, C_v is N_v × N_v), finite, M_ii ≥ 0;
 ///     D M D is symmetric to 1e-12 of its norm, and D M D + 1e-11 I positive definite (factored: D C_v D − 1e-12 I);
-///     rank M = n − kernel_dimension (see semidefinite_rank.hpp).
+///     rank M = n − kernel_dimension (semidefinite_rank()).
 ///
 /// The cost is that of three band factorisations.
 std::optional<std::string> check_inertia(const Inertia& inertia, const FiniteElementSpace& space);

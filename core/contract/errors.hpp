@@ -35,4 +35,9 @@ class PluginError : public std::runtime_error {
 /// closer than half of the word.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 
+/// A text of the caller as a message quotes it: whole, or its first `longest_quoted` characters and "…". A character is
+/// one of UTF-8, and is not cut.
+inline constexpr std::size_t longest_quoted = 80;
+std::string shortened(std::string_view text);
+
 }  // namespace ricochet

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <new>
 #include <ricochet/contract/check_inertia.hpp>
-#include <ricochet/contract/contact_structure.hpp>
-#include <ricochet/contract/guarded.hpp>
+#include <ricochet/contract/contact_law.hpp>
+#include <ricochet/contract/registry.hpp>
 
 namespace ricochet {
 namespace {
@@ -117,7 +117,6 @@ class GuardedLaw final : public Guard<ContactLaw> {
   void prepare(int points, std::span<const Parameters> lanes) override { RICOCHET_FORWARD(prepare, points, lanes); }
   void solve(ReducedProblem& problem) override { RICOCHET_FORWARD(solve, problem); }
   double potential(double depth, int lane) const override { RICOCHET_FORWARD(potential, depth, lane); }
-  std::optional<double> constant_stiffness(int lane) const override { RICOCHET_FORWARD(constant_stiffness, lane); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override { RICOCHET_FORWARD(linear_slopes, lane); }
   bool offers_slopes() const override { RICOCHET_FORWARD(offers_slopes); }
   ContactSlopes slopes(int point, int lane) const override { RICOCHET_FORWARD(slopes, point, lane); }

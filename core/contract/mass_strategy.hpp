@@ -1,10 +1,53 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <array>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/finite_element_space.hpp>
+#include <string>
 #include <variant>
+#include <vector>
 
 namespace ricochet {
+
+/// The displacement space, as mass strategies need it: elements with local shape functions, and point masses.
+///
+/// Basis on an element [a, a+ℓ], ξ = (x−a)/ℓ in [0,1]:
+///   hermite  (4 functions, dofs w_a, w'_a, w_b, w'_b): 1−3ξ²+2ξ³, ℓ(ξ−2ξ²+ξ³), 3ξ²−2ξ³, ℓ(ξ³−ξ²)
+///   linear   (2 functions): 1−ξ, ξ
+/// Dofs eliminated by a boundary condition are −1. Lengths in m, line density ρS in kg/m.
+struct FiniteElementSpace {
+  enum class Basis { hermite, linear };
+  struct Element {
+    double left = 0, length = 0, line_density = 0;
+    std::array<int, 4> dof{-1, -1, -1, -1};
+  };
+  struct PointMass {
+    int dof = 0;
+    double mass = 0;  ///< kg
+  };
+  std::string structure;  ///< "beam", "bar", "oscillator": for sentences only
+  Basis basis = Basis::hermite;
+  int dofs = 0;                   ///< n
+  std::vector<Element> elements;  ///< ordered in x
+  std::vector<PointMass> point_masses;
+  bool left_fixed = false, right_fixed = false;  ///< displacement imposed at the ends: velocities vanish there too
+  /// Where a stop may push: the dofs of the columns of H that are not zero, in order, each once (of a contact point on
+  /// a node, its displacement; of one inside an element, all dofs of that element). Empty where no stop stands. For
+  /// strategies that leave such dofs without inertia; whether a contact law acts there is not known here.
+  std::vector<int> contact_dofs;
+
+  int functions() const { return basis == Basis::hermite ? 4 : 2; }
+};
+
+/// Values of the local shape functions at ξ in [0,1]; unused entries are 0.
+std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, double length, double xi);
+/// Second (hermite) or first (linear) derivatives in x: what the elastic energy integrates.
+std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, double length, double xi);
+
+/// Gauss–Legendre on [0,1] with 4 points: exact for polynomials of degree 7, hence for every product integrated here.
+struct GaussPoint {
+  double xi, weight;
+};
+const std::array<GaussPoint, 4>& gauss_points();
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
@@ -44,5 +87,14 @@ class MassStrategy {
 /// B_ij = ∫ρS ψ_i φ_j and M_ij = ∫ρS φ_i φ_j helpers shared by strategies: the consistent matrix of the space, point
 /// masses included.
 SparseMatrix consistent_mass(const FiniteElementSpace& space);
+
+/// Rank of a symmetric positive semidefinite A (n × n), rows and columns scaled by D = diag(A)^{-1/2} first so that no
+/// unit matters: how many eigenvalues of D A D are above 1e-11. By Sylvester's law of inertia these are the positive
+/// pivots of D A D − 1e-11 I = L Δ Lᵀ, at the cost of one sparse factorisation in the order given.
+int semidefinite_rank(const SparseMatrix& A);
+
+/// Rank of B (any shape): that of B̂ B̂ᵀ, its columns scaled to length 1; singular values below 3e-6 of the largest row
+/// count as zero.
+int row_rank(const SparseMatrix& B);
 
 }  // namespace ricochet

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contract/stage_facts.hpp>
-#include <ricochet/contract/uniform_motion.hpp>
+#include <ricochet/contract/unit_mass.hpp>
 
 /// \file
 /// What momentum an effort finally gives to a free mass.

@@ -4,25 +4,40 @@
 #include <map>
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/contract/guarded.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/parameters.hpp>
+#include <ricochet/contract/plugin_call.hpp>
 #include <ricochet/contract/reference.hpp>
-#include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <string>
 #include <vector>
 
 namespace ricochet {
 
+/// The factory of one method, as a plugin registers it.
+template <class Interface>
+using Maker = std::function<std::unique_ptr<Interface>(const Parameters&)>;
+
+/// The same factory, whose objects answer for what they do: every function runs inside a PluginCallScope; whatever it
+/// throws (but an InputError or a PluginError, which already say what to do) arrives as a PluginFault that names
+/// plugin, file and function; and so does an answer that the contract forbids: no object, an ill-formed plan, a refusal
+/// without a sentence, a mass that is none (check_inertia), a motion that does not fit its grid. The registry puts
+/// every factory through this, so that nobody holds an unguarded object.
+Maker<MassStrategy> guarded(PluginIdentity plugin, Maker<MassStrategy> make);
+Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make);
+Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make);
+Maker<ReferenceSolver> guarded(PluginIdentity plugin, Maker<ReferenceSolver> make);
+
 enum class Role { mass, contact, time, reference };
 inline constexpr std::array all_roles = {Role::mass, Role::contact, Role::time, Role::reference};
 const char* role_name(Role role);
 
-/// The manual of a plugin, registered together with its factory so that it cannot drift.
+/// The manual of a plugin, registered together with its factory so that it cannot drift. In its texts and those of its
+/// parameters each run of white space counts as one blank.
 struct PluginManual {
   std::string name;     ///< [a-z0-9-]+
   std::string summary;  ///< one line
-  std::string text;     ///< one paragraph; each run of white space counts as one blank
+  std::string text;     ///< one paragraph
   std::string source;   ///< author, year, equation
   std::vector<ParameterSpec> parameters;
 };
@@ -31,7 +46,7 @@ struct PluginManual {
 template <class Interface>
 struct Entry {
   PluginManual manual;
-  Maker<Interface> make;  ///< guarded (see guarded.hpp)
+  Maker<Interface> make;  ///< guarded()
   std::string file;       ///< library it came from
 };
 

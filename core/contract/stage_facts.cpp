@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contract/stage_facts.hpp>
-#include <ricochet/contract/uniform_motion.hpp>
+#include <ricochet/contract/unit_mass.hpp>
 
 namespace ricochet {
 namespace {

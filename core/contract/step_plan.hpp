@@ -103,7 +103,7 @@ struct VelocityGate {
 /// so that the stops do no work over both stages, point by point. y is a way, in metres: `value` is the stage's own
 /// test displacement, `bound` its work.support. The engine solves (4') in the place of any rigid law
 /// (restoring_solver.hpp); there is one solution wherever no λ_i δ_i is positive, as where the stage before began
-/// between the stops; else the lane ends.
+/// between the stops; else the trajectory is stopped and reported.
 ///
 /// Levels of stops, here and below, may be left empty: they are then those at which the combination itself stands
 /// (stage_facts.hpp). Given levels must agree with it on a motion at constant speed, to which check_plan() holds them.
@@ -222,5 +222,21 @@ std::optional<std::string> check_plan(const StepPlan& plan, double h);
 
 /// The plan as a person reads it: slots, S, b, measures, updates, with numbers.
 std::string print_plan(const StepPlan& plan);
+
+/// What a scheme may know of the problem when it writes its plan.
+struct ProblemFacts {
+  int dofs = 0;
+  int mass_kernel_dimension = 0;  ///< dim Ker M; 0 when the mass is regular
+  bool damped = false;            ///< C ≠ 0
+  bool contact = false;           ///< a law other than `none` and at least one stop
+};
+
+/// A time scheme: numbers, never a loop.
+class TimeScheme {
+ public:
+  virtual ~TimeScheme() = default;
+  /// The step as data for the step length h (s), or a sentence that says why it does not apply.
+  virtual PlanOrRefusal plan(double h, const ProblemFacts& facts) const = 0;
+};
 
 }  // namespace ricochet

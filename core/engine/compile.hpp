@@ -2,7 +2,7 @@
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/stage_facts.hpp>
-#include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/march_model.hpp>
 #include <ricochet/engine/stage_delassus.hpp>
 #include <ricochet/engine/stage_operator.hpp>

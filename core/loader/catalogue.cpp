@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <memory>
 #include <ricochet/contract/abi.hpp>
-#include <ricochet/contract/layout.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/loader/child.hpp>
 #include <ricochet/loader/float_control.hpp>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <ricochet/kernels/block.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>

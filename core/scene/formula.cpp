@@ -9,7 +9,6 @@
 #include <mutex>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <vector>
 

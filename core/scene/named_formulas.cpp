@@ -7,7 +7,6 @@
 #include <map>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 #include <ricochet/scene/formula.hpp>
 #include <ricochet/scene/named_formulas.hpp>
 #include <set>

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
-#include <ricochet/contract/contact_structure.hpp>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/scene.hpp>
@@ -55,7 +55,7 @@ class DistributedLoad {
 /// The semi-discrete problem for w = u − φ:
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
 /// with s_i = ∫ρS φ_i (whatever the mass strategy). Of a contact law that changes the problem, K is the K' and H the G
-/// of contact_structure.hpp; `contact` stays H.
+/// of ContactStructure; `contact` stays H.
 struct SemiDiscrete {
   FiniteElementSpace space;
   Inertia inertia;

@@ -29,26 +29,25 @@ class AugmentedLagrangian final : public ContactLaw {
   }
 
   void solve(ReducedProblem& problem) override {
-    for (const int lane : problem.touched) problem.outcome[lane] = solve_lane(problem, lane);
+    for (const int lane : problem.touched)
+      problem.outcome[lane] = solve_lane(problem.lane(lane), augmentation_[static_cast<std::size_t>(lane)]);
   }
   std::string how_solved() const override { return "augmentations, each an active-set solve"; }
 
  private:
-  LaneOutcome solve_lane(ReducedProblem& problem, int lane) {
-    const auto points = static_cast<std::size_t>(problem.points), stride = static_cast<std::size_t>(problem.lanes);
-    const auto at = [&](std::size_t i) { return i * stride + static_cast<std::size_t>(lane); };
-    const double r = augmentation_[static_cast<std::size_t>(lane)];
+  LaneOutcome solve_lane(const LaneProblem& lane, double r) {
+    const auto points = static_cast<std::size_t>(lane.points);
     for (std::size_t i = 0; i < points; ++i) {
-      lower_[i] = problem.lower[at(i)];
-      upper_[i] = problem.upper[at(i)];
-      multiplier_[i] = from_previous_ ? problem.effort[at(i)] : 0.0;
+      lower_[i] = lane.lower[i];
+      upper_[i] = lane.upper[i];
+      multiplier_[i] = from_previous_ ? lane.effort[i] : 0.0;
       effort_[i] = multiplier_[i];
     }
     LaneOutcome outcome;
     for (int k = 0; k < iterations_; ++k) {
-      for (std::size_t i = 0; i < points; ++i) free_[i] = problem.free[at(i)] - multiplier_[i] / r;
-      const LaneOutcome inner = solver_.solve(*problem.delassus, problem.reach, 1 / r, free_.data(), lower_.data(),
-                                              upper_.data(), effort_.data(), problem.points);
+      for (std::size_t i = 0; i < points; ++i) free_[i] = lane.free[i] - multiplier_[i] / r;
+      const LaneOutcome inner = solver_.solve(*lane.delassus, lane.reach, 1 / r, free_.data(), lower_.data(),
+                                              upper_.data(), effort_.data(), lane.points);
       outcome.converged = outcome.converged && inner.converged;
       outcome.iterations += inner.iterations;
       double change = 0, size = 0;
@@ -61,7 +60,7 @@ class AugmentedLagrangian final : public ContactLaw {
       outcome.residual = change / r;
       if (change <= tolerance_ * size) break;
     }
-    for (std::size_t i = 0; i < points; ++i) problem.effort[at(i)] = effort_[i];
+    for (std::size_t i = 0; i < points; ++i) lane.effort[i] = effort_[i];
     return outcome;
   }
 
@@ -72,7 +71,7 @@ class AugmentedLagrangian final : public ContactLaw {
   std::vector<double> augmentation_, free_, lower_, upper_, effort_, multiplier_;
 };
 
-void register_all(Registry& registry) {
+void register_augmented_lagrangian(Registry& registry) {
   ParameterSpec augmentation =
       real_parameter("augmentation", "N/m", std::nullopt, {.low = 0, .low_open = true},
                      "r, stiffness of each augmentation (per unit of the scheme's impact measure)");
@@ -99,4 +98,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, augmented_lagrangian, register_all)
+RICOCHET_PLUGIN(contact, augmented_lagrangian, register_augmented_lagrangian)

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "mean_force.hpp"
+#include "power_law.hpp"
 
 namespace {
 
@@ -57,7 +57,7 @@ class Barrier final : public PointwiseContact {
   std::vector<BarrierLaw> laws_;
 };
 
-void register_all(Registry& registry) {
+void register_barrier(Registry& registry) {
   ParameterSpec thickness = real_parameter("thickness", "m", 1e-3, {.low = 0, .low_open = true},
                                            "D, distance before the stop at which the barrier is first felt");
   thickness.per_lane = true;
@@ -65,16 +65,15 @@ void register_all(Registry& registry) {
       {.name = "barrier",
        .summary = "a logarithmic barrier in front of each stop: no penetration, ever",
        .text =
-           "From D before the stop on a point is pushed back by the barrier −κ δ² ln(1 − δ/D), δ = D − clearance, "
-           "smooth where it begins and without bound at the stop: with an evaluation at the end of the step a point "
-           "never reaches it. The smaller κ and D, the nearer to a rigid stop, and the stiffer. Nothing is lost by "
-           "the law; evaluated at the end of the step the scheme loses at each impact what the step does not "
-           "resolve. " +
+           R"(From D before the stop on a point is pushed back by the barrier −κ δ² ln(1 − δ/D), δ = D − clearance,
+          smooth where it begins and without bound at the stop: with an evaluation at the end of the step a point
+          never reaches it. The smaller κ and D, the nearer to a rigid stop, and the stiffer. Nothing is lost by the
+          law; evaluated at the end of the step the scheme loses at each impact what the step does not resolve. )" +
            std::string(evaluation_text) +
-           "Explicit, midpoint or hybrid, a step may land beyond the stop, where the law has no energy and the run "
-           "fails.",
-       .source = "Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang and Kaufman (2020), Incremental potential "
-                 "contact, eq. 6; " +
+           R"(Explicit, midpoint or hybrid, a step may land beyond the stop, where the law has no energy and the run
+          fails.)",
+       .source = R"(Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang and Kaufman (2020), Incremental potential
+          contact, eq. 6; )" +
                  std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m", "κ, scale of the barrier at each contact point"), thickness,
                       evaluation_parameter()}},
@@ -83,4 +82,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, barrier, register_all)
+RICOCHET_PLUGIN(contact, barrier, register_barrier)

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "mean_force.hpp"
+#include "power_law.hpp"
 
 namespace {
 
@@ -49,7 +49,7 @@ class Exponential final : public PointwiseContact {
   std::vector<ExponentialLaw> laws_;
 };
 
-void register_all(Registry& registry) {
+void register_exponential(Registry& registry) {
   ParameterSpec force = real_parameter("force", "N", std::nullopt, {.low = 0, .low_open = true},
                                        "F, force at the stop, but for the part cut off");
   ParameterSpec length = real_parameter("length", "m", 1e-3, {.low = 0, .high = 1, .low_open = true},
@@ -61,12 +61,12 @@ void register_all(Registry& registry) {
       {.name = "exponential",
        .summary = "a force that grows e times with each length of approach",
        .text =
-           "A point at depth x beyond the stop, or before it where x < 0, is pushed back with F (e^(x/l) − e^(−r)), "
-           "from r lengths before the stop on: continuous, elastic, without a corner at the stop. The shorter l, "
-           "the nearer to a rigid stop, and the stiffer: the slope at the stop is F/l. " +
+           R"(A point at depth x beyond the stop, or before it where x < 0, is pushed back with F (e^(x/l) − e^(−r)),
+          from r lengths before the stop on: continuous, elastic, without a corner at the stop. The shorter l, the
+          nearer to a rigid stop, and the stiffer: the slope at the stop is F/l. )" +
            std::string(evaluation_text) + "The restitution of the time scheme has no part in it.",
-       .source = "a regularisation of the stop by a smooth potential that no one author owns; the cut-off is this "
-                 "program's; " +
+       .source = R"(a regularisation of the stop by a smooth potential that no one author owns; the cut-off is this
+          program's; )" +
                  std::string(evaluation_source),
        .parameters = {force, length, reach, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<Exponential>(evaluation_of(p)); });
@@ -74,4 +74,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, exponential, register_all)
+RICOCHET_PLUGIN(contact, exponential, register_exponential)

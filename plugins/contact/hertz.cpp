@@ -8,9 +8,9 @@ using namespace ricochet;
 class Hertz final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  std::optional<double> constant_stiffness(int lane) const override {
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
     if (law(lane).exponent != 1) return std::nullopt;
-    return law(lane).stiffness;
+    return spring_slopes(law(lane).stiffness, reads());
   }
 
  private:
@@ -25,17 +25,17 @@ class Hertz final : public PointwiseContact {
   std::vector<PowerLaw> laws_;
 };
 
-void register_all(Registry& registry) {
+void register_hertz(Registry& registry) {
   registry.add_contact(
       {.name = "hertz",
        .summary = "elastic contact whose force grows with a power of the depth",
        .text =
-           "A point that passes a stop by δ is pushed back with k δⁿ, as a sphere on a plane is for n = 3/2; n = 1 is "
-           "the penalty. Nothing is lost: a mass m that arrives at speed v goes in by ((n+1) m v²/(2k))^(1/(n+1)) and "
-           "leaves at v. " +
+           R"(A point that passes a stop by δ is pushed back with k δⁿ, as a sphere on a plane is for n = 3/2; n = 1
+          is the penalty. Nothing is lost: a mass m that arrives at speed v goes in by ((n+1) m v²/(2k))^(1/(n+1)) and
+          leaves at v. )" +
            std::string(evaluation_text) +
-           "The restitution of the time scheme has no part in it. For n = 1 hybrid never gives energy; for other n it "
-           "may, little.",
+           R"(The restitution of the time scheme has no part in it. For n = 1 hybrid never gives energy; for other n
+          it may, little.)",
        .source = "Hertz (1881), Über die Berührung fester elastischer Körper; " + std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m^n", "k, force at a depth of 1 m at each contact point"),
                       exponent_parameter(), evaluation_parameter()}},
@@ -44,4 +44,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, hertz, register_all)
+RICOCHET_PLUGIN(contact, hertz, register_hertz)

@@ -1,4 +1,4 @@
-#include "damped_law.hpp"
+#include "power_law.hpp"
 
 namespace {
 
@@ -32,7 +32,7 @@ class HuntCrossley final : public PointwiseContact {
   std::vector<double> damping_;
 };
 
-void register_all(Registry& registry) {
+void register_hunt_crossley(Registry& registry) {
   ParameterSpec damping =
       real_parameter("damping", "s/m", std::nullopt, {.low = 0}, "χ, damping per speed of closing; 0: elastic");
   damping.per_lane = true;
@@ -40,13 +40,13 @@ void register_all(Registry& registry) {
       {.name = "hunt-crossley",
        .summary = "elastic contact with a damping that grows with the depth",
        .text =
-           "A point that passes a stop by δ is pushed back with k δⁿ (1 + χ δ̇), never pulled. The force starts and "
-           "ends at zero, other than that of a spring beside a dashpot. The restitution follows from χ v alone, "
-           "whatever k, n and the mass: χ v (1+e) = ln[(1 + χ v)/(1 − e χ v)], that is 0.71 at χ v = 0.6 and 0.41 at "
-           "χ v = 2, near 1 − (2/3) χ v for small ones. " +
+           R"(A point that passes a stop by δ is pushed back with k δⁿ (1 + χ δ̇), never pulled. The force starts and
+          ends at zero, other than that of a spring beside a dashpot. The restitution follows from χ v alone, whatever
+          k, n and the mass: χ v (1+e) = ln[(1 + χ v)/(1 − e χ v)], that is 0.71 at χ v = 0.6 and 0.41 at χ v = 2,
+          near 1 − (2/3) χ v for small ones. )" +
            std::string(damped_evaluation_text) +
-           "The restitution of the time scheme has no part in it. What the damping takes is reported as dissipated by "
-           "the law.",
+           R"(The restitution of the time scheme has no part in it. What the damping takes is reported as dissipated
+          by the law.)",
        .source = "Hunt and Crossley (1975), Coefficient of restitution interpreted as damping in vibroimpact",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
                       exponent_parameter(), damping, evaluation_parameter()}},
@@ -55,4 +55,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, hunt_crossley, register_all)
+RICOCHET_PLUGIN(contact, hunt_crossley, register_hunt_crossley)

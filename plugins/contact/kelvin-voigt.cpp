@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "damped_law.hpp"
+#include "power_law.hpp"
 
 namespace {
 
@@ -14,15 +14,13 @@ using namespace ricochet;
 /// of its speed, and leaves where the force is zero, before the depth is.
 class KelvinVoigt final : public PointwiseContact {
  public:
-  explicit KelvinVoigt(const ForceEvaluation& evaluation)
-      : PointwiseContact(evaluation), means_(evaluation.force != StepForce::at_measure) {}
+  using PointwiseContact::PointwiseContact;
   bool reads_rate() const override { return true; }
   // Beyond the stop at both ends of the step, all means over it are the mean of the ends.
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    const double stiffness = laws_[static_cast<std::size_t>(lane)].stiffness;
-    return ContactSlopes{.stiffness = means_ ? stiffness / 2 : stiffness,
-                         .viscosity = dampers_[static_cast<std::size_t>(lane)],
-                         .before = means_ ? stiffness / 2 : 0.0};
+    ContactSlopes slopes = spring_slopes(laws_[static_cast<std::size_t>(lane)].stiffness, reads());
+    slopes.viscosity = dampers_[static_cast<std::size_t>(lane)];
+    return slopes;
   }
 
  private:
@@ -65,12 +63,11 @@ class KelvinVoigt final : public PointwiseContact {
   }
   double stored(double depth, int lane) const override { return laws_[static_cast<std::size_t>(lane)].stored(depth); }
 
-  bool means_;
   std::vector<PowerLaw> laws_;
   std::vector<double> dampers_;
 };
 
-void register_all(Registry& registry) {
+void register_kelvin_voigt(Registry& registry) {
   ParameterSpec viscosity = real_parameter("viscosity", "N s/m", std::nullopt, {.low = 0},
                                            "c, viscosity of the dashpot at each contact point; 0: the penalty");
   viscosity.per_lane = true;
@@ -78,14 +75,14 @@ void register_all(Registry& registry) {
       {.name = "kelvin-voigt",
        .summary = "a spring beside a dashpot behind each stop, which never pulls",
        .text =
-           "A point that passes a stop by δ is pushed back with k δ + c δ̇, never pulled. The force begins with a jump "
-           "to c times the speed of arrival, and ends before the depth is back at zero. A mass m keeps "
-           "exp[−(b/w)(π − atan2(2bw, w² − b²))] of its speed, b = c/2m, w² = k/m − b², whatever the speed: 0.57 at "
-           "k = 1e4 N/m, c = 40 N s/m, m = 1 kg. " +
+           R"(A point that passes a stop by δ is pushed back with k δ + c δ̇, never pulled. The force begins with a
+          jump to c times the speed of arrival, and ends before the depth is back at zero. A mass m keeps exp[−(b/w)(π
+          − atan2(2bw, w² − b²))] of its speed, b = c/2m, w² = k/m − b², whatever the speed: 0.57 at k = 1e4 N/m, c =
+          40 N s/m, m = 1 kg. )" +
            std::string(damped_evaluation_text) +
-           "Evaluated conserving, the dashpot acts on the share of the step's way that lies beyond the stop. The "
-           "restitution of the time scheme has no part in it. What the dashpot takes is reported as dissipated by the "
-           "law.",
+           R"(Evaluated conserving, the dashpot acts on the share of the step's way that lies beyond the stop. The
+          restitution of the time scheme has no part in it. What the dashpot takes is reported as dissipated by the
+          law.)",
        .source = "Goldsmith (1960), Impact, section 3.4; Brogliato (2016), Nonsmooth Mechanics, section 2.1",
        .parameters = {stiffness_parameter("N/m", "k, stiffness of the spring at each contact point"), viscosity,
                       evaluation_parameter()}},
@@ -94,4 +91,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, kelvin_voigt, register_all)
+RICOCHET_PLUGIN(contact, kelvin_voigt, register_kelvin_voigt)

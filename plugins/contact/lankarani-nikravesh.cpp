@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "damped_law.hpp"
+#include "power_law.hpp"
 
 namespace {
 
@@ -20,31 +20,28 @@ class LankaraniNikravesh final : public PointwiseContact {
   bool offers_slopes() const override { return false; }
 
   void solve(ReducedProblem& problem) override {
-    memory_ = problem.memory;
-    lanes_ = static_cast<std::size_t>(problem.lanes);
-    for (const int lane : problem.touched)
-      for (int i = 0; i < problem.points; ++i) note_entry(problem, place(i, lane));
+    problem_ = &problem;
+    for (const int lane : problem.touched) note_entries(problem.lane(lane), problem.memory_of(lane));
     PointwiseContact::solve(problem);
     for (const int lane : problem.touched)
       for (int i = 0; i < problem.points; ++i) {
-        double& kept = memory_[place(i, lane)];
-        kept = problem.effort[place(i, lane)] != 0 ? std::abs(kept) : -std::abs(kept);
+        double& kept = problem.memory_of(lane)[i];
+        kept = problem.lane(lane).effort[i] != 0 ? std::abs(kept) : -std::abs(kept);
       }
   }
 
  private:
-  std::size_t place(int point, int lane) const {
-    return static_cast<std::size_t>(point) * lanes_ + static_cast<std::size_t>(lane);
-  }
-  void note_entry(const ReducedProblem& problem, std::size_t at) {
-    if (memory_[at] > 0) return;
-    const double lower = problem.lower[at] - problem.free[at], upper = problem.free[at] - problem.upper[at];
-    if (!(std::max(lower, upper) > 0)) return;
-    const double closing = lower > upper ? -problem.rate_free[at] : problem.rate_free[at];
-    if (closing > 0)
-      memory_[at] = closing;
-    else if (memory_[at] == 0)
-      memory_[at] = std::numeric_limits<double>::infinity();  // it begins within the stop, and has never closed on it
+  static void note_entries(const LaneProblem& lane, Strided<double> memory) {
+    for (int i = 0; i < lane.points; ++i) {
+      if (memory[i] > 0) continue;
+      const double lower = lane.lower[i] - lane.free[i], upper = lane.free[i] - lane.upper[i];
+      if (!(std::max(lower, upper) > 0)) continue;
+      const double closing = lower > upper ? -lane.rate_free[i] : lane.rate_free[i];
+      if (closing > 0)
+        memory[i] = closing;
+      else if (memory[i] == 0)
+        memory[i] = std::numeric_limits<double>::infinity();  // it begins within the stop, and has never closed on it
+    }
   }
 
   void set_lanes(std::span<const Parameters> lanes) override {
@@ -53,7 +50,7 @@ class LankaraniNikravesh final : public PointwiseContact {
     for (const Parameters& lane : lanes) loss_.push_back(1 - lane.real("restitution") * lane.real("restitution"));
   }
   double damping(const ContactState& state) const {
-    const double entry = std::abs(memory_[place(state.point, state.lane)]);
+    const double entry = std::abs(problem_->memory_of(state.lane)[state.point]);
     return entry > 0 ? 0.75 * loss_[static_cast<std::size_t>(state.lane)] / entry : 0.0;
   }
   PointForce at(const ContactState& state) const override {
@@ -67,11 +64,10 @@ class LankaraniNikravesh final : public PointwiseContact {
 
   std::vector<PowerLaw> laws_;
   std::vector<double> loss_;
-  double* memory_ = nullptr;
-  std::size_t lanes_ = 0;
+  const ReducedProblem* problem_ = nullptr;  // while it is solved
 };
 
-void register_all(Registry& registry) {
+void register_lankarani_nikravesh(Registry& registry) {
   ParameterSpec restitution =
       real_parameter("restitution", "1", std::nullopt, {.low = 0, .high = 1}, "e, the restitution that is asked for");
   restitution.per_lane = true;
@@ -79,15 +75,15 @@ void register_all(Registry& registry) {
       {.name = "lankarani-nikravesh",
        .summary = "Hunt and Crossley's contact, its damping from a restitution coefficient",
        .text =
-           "A point that passes a stop by δ is pushed back with k δⁿ (1 + χ δ̇), never pulled, χ = 3(1 − e²)/(4 v⁻) "
-           "where v⁻ is the speed at which the point closed when this contact began. The formula for χ supposes e near "
-           "1, and the law does not deliver the e that it is given: it asks for 0.8 and gives 0.847102, for 0.5 and "
-           "gives 0.725241, whatever k, n, the mass and the speed. A point that is found beyond its stop without "
-           "having closed on it is not damped. " +
+           R"(A point that passes a stop by δ is pushed back with k δⁿ (1 + χ δ̇), never pulled, χ = 3(1 − e²)/(4 v⁻)
+          where v⁻ is the speed at which the point closed when this contact began. The formula for χ supposes e near
+          1, and the law does not deliver the e that it is given: it asks for 0.8 and gives 0.847102, for 0.5 and
+          gives 0.725241, whatever k, n, the mass and the speed. A point that is found beyond its stop without having
+          closed on it is not damped. )" +
            std::string(damped_evaluation_text) +
            "As the law remembers v⁻, it offers no tangents: exponents are those of twins.",
-       .source = "Lankarani and Nikravesh (1990), A contact force model with hysteresis damping for impact analysis of "
-                 "multibody systems",
+       .source = R"(Lankarani and Nikravesh (1990), A contact force model with hysteresis damping for impact analysis
+          of multibody systems)",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
                       exponent_parameter(), restitution, evaluation_parameter()}},
       [](const Parameters& p) { return std::make_unique<LankaraniNikravesh>(evaluation_of(p)); });
@@ -95,4 +91,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, lankarani_nikravesh, register_all)
+RICOCHET_PLUGIN(contact, lankarani_nikravesh, register_lankarani_nikravesh)

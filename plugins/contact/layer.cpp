@@ -10,9 +10,9 @@ class Layer final : public PointwiseContact {
   using PointwiseContact::PointwiseContact;
   double layer(int lane) const override { return thickness_[static_cast<std::size_t>(lane)]; }
   // With a thickness the force is no multiple of the depth beyond the stop.
-  std::optional<double> constant_stiffness(int lane) const override {
+  std::optional<ContactSlopes> linear_slopes(int lane) const override {
     if (layer(lane) != 0) return std::nullopt;
-    return laws_[static_cast<std::size_t>(lane)].stiffness;
+    return spring_slopes(laws_[static_cast<std::size_t>(lane)].stiffness, reads());
   }
 
  private:
@@ -36,19 +36,19 @@ class Layer final : public PointwiseContact {
   std::vector<double> thickness_;
 };
 
-void register_all(Registry& registry) {
+void register_layer(Registry& registry) {
   ParameterSpec thickness = real_parameter("thickness", "m", 1e-3, {.low = 0},
                                            "D, distance before the stop at which the layer is first touched");
   thickness.per_lane = true;
   registry.add_contact(
       {.name = "layer",
        .summary = "a compliant layer in front of each stop",
-       .text = "Each stop is covered by a layer of thickness D that pushes back with k times its compression: from D "
-               "before the stop on, and beyond it with the same stiffness. Penetration is measured at the stop, and is "
-               "zero as long as the layer holds. With D = 0 it is the penalty. " +
+       .text = R"(Each stop is covered by a layer of thickness D that pushes back with k times its compression: from D
+          before the stop on, and beyond it with the same stiffness. Penetration is measured at the stop, and is zero
+          as long as the layer holds. With D = 0 it is the penalty. )" +
                std::string(evaluation_text) +
-               "With stops at all nodes the stiffness per metre grows as the mesh is refined. The restitution of the "
-               "time scheme has no part in it.",
+               R"(With stops at all nodes the stiffness per metre grows as the mesh is refined. The restitution of the
+          time scheme has no part in it.)",
        .source = "Winkler (1867), elastic foundation, one spring per contact point; " + std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m", "k, stiffness of the layer at each contact point"), thickness,
                       evaluation_parameter()}},
@@ -57,4 +57,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, layer, register_all)
+RICOCHET_PLUGIN(contact, layer, register_layer)

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/contract/contact_structure.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
+#include <ricochet/contract/contact_law.hpp>
 
 #include "power_law.hpp"
 
@@ -76,9 +76,9 @@ class Nitsche final : public PointwiseContact {
     return std::nullopt;
   }
 
-  std::optional<double> constant_stiffness(int) const override {
+  std::optional<ContactSlopes> linear_slopes(int) const override {
     if (spring_.stiffness == 0) return std::nullopt;
-    return spring_.stiffness;
+    return spring_slopes(spring_.stiffness, reads());
   }
 
  private:
@@ -92,23 +92,23 @@ class Nitsche final : public PointwiseContact {
   PowerLaw spring_;  // κ, once the structure is known
 };
 
-void register_all(Registry& registry) {
+void register_nitsche(Registry& registry) {
   registry.add_contact(
       {.name = "nitsche",
        .summary = "Nitsche's method: springs on the displacement less the reaction that the elements report",
        .text =
-           "A penalty of stiffness κ on G q = H q − σ/κ in place of the displacement H q of each contact point, σ the "
-           "reaction of the elements there (a beam's jump of shear, a bar's of the axial force), while the stiffness "
-           "of the structure is K − Σσσᵀ/κ whether it touches or not. At rest on a stop σ is the contact force and "
-           "κ leaves no error, where a penalty leaves p/κ. κ is gamma0 times 12EI/ℓ³ of an element of a beam, EA/ℓ of "
-           "a bar. In motion σ holds the inertia of half an element as well: at the tip the error is below that of the "
-           "penalty of the same κ, with stops at all nodes it is above, for the free beam is softened. The stiffness "
-           "stays positive for κ beyond a limit, one 12EI/ℓ³ at the tip of a beam, up to four with stops at all "
-           "nodes: below it the method is refused. Penetration is still that of the points. A load at a contact node "
-           "and the viscous part of the reaction are not in σ, and C is αK' + ηM with the changed K'. " +
+           R"(A penalty of stiffness κ on G q = H q − σ/κ in place of the displacement H q of each contact point, σ
+          the reaction of the elements there (a beam's jump of shear, a bar's of the axial force), while the stiffness
+          of the structure is K − Σσσᵀ/κ whether it touches or not. At rest on a stop σ is the contact force and κ
+          leaves no error, where a penalty leaves p/κ. κ is gamma0 times 12EI/ℓ³ of an element of a beam, EA/ℓ of a
+          bar. In motion σ holds the inertia of half an element as well: at the tip the error is below that of the
+          penalty of the same κ, with stops at all nodes it is above, for the free beam is softened. The stiffness
+          stays positive for κ beyond a limit, one 12EI/ℓ³ at the tip of a beam, up to four with stops at all nodes:
+          below it the method is refused. Penetration is still that of the points. A load at a contact node and the
+          viscous part of the reaction are not in σ, and C is αK' + ηM with the changed K'. )" +
            std::string(evaluation_text) + "The restitution of the time scheme has no part in it.",
-       .source = "Nitsche (1971), Über ein Variationsprinzip; Chouly and Hild (2013), A Nitsche-based method for "
-                 "unilateral contact problems; hybrid: Chouly, Hild and Renard (2015)",
+       .source = R"(Nitsche (1971), Über ein Variationsprinzip; Chouly and Hild (2013), A Nitsche-based method for
+          unilateral contact problems; hybrid: Chouly, Hild and Renard (2015))",
        .parameters = {real_parameter("gamma0", "1", 10.0, {.low = 0, .low_open = true},
                                      "γ₀, κ over 12EI/ℓ³ of a beam's element or EA/ℓ of a bar's"),
                       integer_parameter("theta", 1, {.low = -1, .high = 1},
@@ -121,4 +121,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, nitsche, register_all)
+RICOCHET_PLUGIN(contact, nitsche, register_nitsche)

@@ -12,7 +12,7 @@ class None final : public ContactLaw {
   void solve(ReducedProblem&) override {}
 };
 
-void register_all(Registry& registry) {
+void register_none(Registry& registry) {
   registry.add_contact(
       {.name = "none",
        .summary = "no contact: the stops are ignored",
@@ -25,4 +25,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, none, register_all)
+RICOCHET_PLUGIN(contact, none, register_none)

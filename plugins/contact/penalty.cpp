@@ -26,20 +26,17 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
 
   void solve(ReducedProblem& problem) override {
     for (const int lane : problem.touched) {
-      crossed_[static_cast<std::size_t>(lane)] = crosses(problem, lane);
-      // Once, at the first such stops: scenes without them have no room for it to pay.
+      crossed_[static_cast<std::size_t>(lane)] = crosses(problem.lane(lane));
+      // Prepared once, at the first such stops: scenes without them need no such memory.
       if (crossed_[static_cast<std::size_t>(lane)] != 0 && !std::exchange(crosses_, true))
         both_sides_.prepare(problem.points, static_cast<int>(crossed_.size()));
       problem.outcome[lane] = crossed_[static_cast<std::size_t>(lane)] != 0
                                   ? both_sides_.solve(*this, problem, lane)
-                                  : solver_.solve(*problem.delassus, problem.reach, 1 / stiffness(lane),
-                                                  problem.free + lane, problem.lower + lane, problem.upper + lane,
-                                                  problem.effort + lane, problem.points, problem.lanes);
+                                  : solver_.solve(problem.lane(lane), 1 / stiffness(lane));
     }
   }
 
   double potential(double depth, int lane) const override { return 0.5 * stiffness(lane) * depth * depth; }
-  std::optional<double> constant_stiffness(int lane) const override { return stiffness(lane); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
     return ContactSlopes{.stiffness = stiffness(lane)};
   }
@@ -53,9 +50,9 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
 
  private:
   double stiffness(int lane) const { return stiffness_[static_cast<std::size_t>(lane)]; }
-  static unsigned char crosses(const ReducedProblem& problem, int lane) {
-    for (int i = 0; i < problem.points; ++i)
-      if (problem.lower[i * problem.lanes + lane] > problem.upper[i * problem.lanes + lane]) return 1;
+  static unsigned char crosses(const LaneProblem& lane) {
+    for (int i = 0; i < lane.points; ++i)
+      if (lane.lower[i] > lane.upper[i]) return 1;
     return 0;
   }
   PointForce force(const ContactState& state) const override {
@@ -74,9 +71,8 @@ class Penalty final : public ContactLaw, private PointwiseLaw {
 class MeanPenalty final : public PointwiseContact {
  public:
   using PointwiseContact::PointwiseContact;
-  std::optional<double> constant_stiffness(int lane) const override { return law(lane).stiffness; }
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
-    return ContactSlopes{.stiffness = law(lane).stiffness / 2, .before = law(lane).stiffness / 2};
+    return spring_slopes(law(lane).stiffness, reads());
   }
 
  private:
@@ -94,17 +90,16 @@ class MeanPenalty final : public PointwiseContact {
   std::vector<PowerLaw> laws_;
 };
 
-void register_all(Registry& registry) {
+void register_penalty(Registry& registry) {
   registry.add_contact(
       {.name = "penalty",
        .summary = "linear springs behind the stops",
-       .text =
-           "A point that passes a stop by δ is pushed back with κ δ. " + std::string(evaluation_text) +
-           "Evaluated explicit, the step is limited by √(m/κ); hybrid never gives energy. The restitution of the time "
-           "scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the stop's "
-           "stiffness per metre grows as the mesh is refined.",
-       .source = "Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli (2006); "
-                 "Armero and Petocz (1998); " +
+       .text = "A point that passes a stop by δ is pushed back with κ δ. " + std::string(evaluation_text) +
+               R"(Evaluated explicit, the step is limited by √(m/κ); hybrid never gives energy. The restitution of the
+          time scheme has no part in it. The stiffness is per contact point: with stops at all nodes, the stop's
+          stiffness per metre grows as the mesh is refined.)",
+       .source = R"(Paoli and Schatzman (2002), penalty approximation; evaluation levels after Dumont and Paoli
+          (2006); Armero and Petocz (1998); )" +
                  std::string(evaluation_source),
        .parameters = {with_role(stiffness_parameter("N/m", "κ, stiffness of the spring at each contact point"),
                                 ParameterRole::stiffness),
@@ -118,4 +113,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, penalty, register_all)
+RICOCHET_PLUGIN(contact, penalty, register_penalty)

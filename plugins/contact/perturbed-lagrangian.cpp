@@ -21,14 +21,12 @@ class PerturbedLagrangian final : public ContactLaw {
   void solve(ReducedProblem& problem) override {
     for (const int lane : problem.touched) {
       const double stiffness = stiffness_[static_cast<std::size_t>(lane)];
+      const LaneProblem one = problem.lane(lane);
       LaneOutcome& outcome = problem.outcome[lane];
-      outcome =
-          solver_.solve(*problem.delassus, problem.reach, 1 / stiffness, problem.free + lane, problem.lower + lane,
-                        problem.upper + lane, problem.effort + lane, problem.points, problem.lanes);
+      outcome = solver_.solve(one, 1 / stiffness);
       // By how much the measure passes its bound.
       double largest = 0;
-      for (int i = 0; i < problem.points; ++i)
-        largest = std::max(largest, std::abs(problem.effort[i * problem.lanes + lane]));
+      for (int i = 0; i < one.points; ++i) largest = std::max(largest, std::abs(one.effort[i]));
       outcome.residual = largest / stiffness;
     }
   }
@@ -39,7 +37,7 @@ class PerturbedLagrangian final : public ContactLaw {
   std::vector<double> stiffness_;
 };
 
-void register_all(Registry& registry) {
+void register_perturbed_lagrangian(Registry& registry) {
   registry.add_contact(
       {.name = "perturbed-lagrangian",
        .summary = "a multiplier that gives way in proportion to its size, on the scheme's impact measure",
@@ -47,12 +45,12 @@ void register_all(Registry& registry) {
           law, softened. It is one iteration of augmented-lagrangian from zero. Other than the penalty it acts on
           what the scheme constrains, restitution included; where that is the position at the end of the step it is
           the implicit penalty. What the measure passes its bound by is reported as complementarity residual.)",
-       .source = "Simo, Wriggers and Taylor (1985), A perturbed Lagrangian formulation for the finite element solution "
-                 "of contact problems",
+       .source = R"(Simo, Wriggers and Taylor (1985), A perturbed Lagrangian formulation for the finite element
+          solution of contact problems)",
        .parameters = {stiffness_parameter("N/m", "κ, effort per unit of the scheme's impact measure")}},
       [](const Parameters&) { return std::make_unique<PerturbedLagrangian>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, perturbed_lagrangian, register_all)
+RICOCHET_PLUGIN(contact, perturbed_lagrangian, register_perturbed_lagrangian)

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <ricochet/contact_solvers/pointwise_contact.hpp>
 #include <ricochet/contract/plugin.hpp>
@@ -46,6 +47,12 @@ inline PointForce PowerLaw::between(double depth, double before) const {
   return mean;
 }
 
+/// The slopes of a spring where a point pushes: of a mean over the step, a half at each of its ends.
+inline ContactSlopes spring_slopes(double stiffness, std::optional<Evaluation> reads) {
+  if (reads != Evaluation::conserving) return {.stiffness = stiffness};
+  return {.stiffness = stiffness / 2, .before = stiffness / 2};
+}
+
 /// What the word parameter `evaluation` names: a measure of the scheme, or a mean over the step.
 inline ForceEvaluation evaluation_of(const Parameters& parameters) {
   const std::string& word = parameters.word("evaluation");
@@ -63,16 +70,16 @@ inline ParameterSpec evaluation_parameter() {
 }
 
 inline constexpr const char* evaluation_source =
-    "conserving: Simo and Tarnow (1992), Gonzalez (2000); hybrid: Chouly, Hild and Renard (2015), A Nitsche finite "
-    "element method for dynamic contact";
+    R"(conserving: Simo and Tarnow (1992), Gonzalez (2000); hybrid: Chouly, Hild and Renard (2015), A Nitsche finite
+          element method for dynamic contact)";
 
 /// What the words mean, for the manual of a law without losses.
 inline constexpr const char* evaluation_text =
-    "Where in the step δ is measured is `evaluation`: implicit at the end of the step, averaged over the levels over "
-    "which the scheme averages the elastic force, explicit at what is known when the step begins, midpoint half-way "
-    "between the depths before and after the step, hybrid the same where the step begins in contact and else half of "
-    "the force at its end, conserving by the difference of the stored energy over the step, which the energy of the "
-    "scheme then gives and takes back to round-off. ";
+    R"(Where in the step δ is measured is `evaluation`: implicit at the end of the step, averaged over the levels over
+          which the scheme averages the elastic force, explicit at what is known when the step begins, midpoint
+          half-way between the depths before and after the step, hybrid the same where the step begins in contact and
+          else half of the force at its end, conserving by the difference of the stored energy over the step, which
+          the energy of the scheme then gives and takes back to round-off. )";
 
 inline ParameterSpec stiffness_parameter(const char* unit, const char* text) {
   ParameterSpec stiffness = real_parameter("stiffness", unit, std::nullopt, {.low = 0, .low_open = true}, text);
@@ -92,5 +99,58 @@ inline std::vector<PowerLaw> power_laws(std::span<const Parameters> lanes) {
   for (const Parameters& lane : lanes) laws.push_back({lane.real("stiffness"), lane.real("exponent")});
   return laws;
 }
+
+/// The discrete gradient [U(δ) − U(δ⁻)]/(δ − δ⁻) of a law with stored(), force() and slope(), whose force changes over
+/// lengths of `scale` (m) near both depths. Where they are closer than a fiftieth of that the difference would cancel,
+/// and the mean of the force over the way is taken at five Gauss points, exact to round-off there.
+template <class Law>
+PointForce mean_force(const Law& law, double depth, double before, double scale) {
+  constexpr double near = 0.02;
+  const double change = depth - before;
+  if (!(depth > 0 && before > 0) || std::abs(change) > near * scale) {
+    PointForce mean;
+    mean.value = (law.stored(depth) - law.stored(before)) / change;
+    mean.stiffness = (law.force(depth) - mean.value) / change;
+    mean.before = (mean.value - law.force(before)) / change;
+    return mean;
+  }
+  // Of the interval from −1 to 1: node, weight/2.
+  constexpr std::array<std::array<double, 2>, 5> points = {{{-0.906179845938663992797627, 0.118463442528094543757132},
+                                                            {-0.538469310105683091036314, 0.239314335249683234020646},
+                                                            {0, 0.284444444444444444444444},
+                                                            {0.538469310105683091036314, 0.239314335249683234020646},
+                                                            {0.906179845938663992797627, 0.118463442528094543757132}}};
+  const double half = 0.5 * (depth + before);
+  PointForce mean{.stiffness = 0.5 * law.slope(half), .before = 0.5 * law.slope(half)};
+  for (const auto& [node, weight] : points) mean.value += weight * law.force(half + 0.5 * node * change);
+  return mean;
+}
+
+/// p = f (1 + χ δ̇)₊ with an elastic force f, k δⁿ or its mean over a step: it grows with the speed of closing, never
+/// pulls, and starts and ends at zero.
+inline PointForce damped(const PointForce& elastic, double chi, double rate) {
+  const double factor = 1 + chi * rate;
+  PointForce force;
+  // What is not given back: (p − f) δ̇.
+  if (factor > 0) {
+    force.value = elastic.value * factor;
+    force.stiffness = elastic.stiffness * factor;
+    force.before = elastic.before * factor;
+    force.viscosity = elastic.value * chi;
+    force.dissipation = elastic.value * chi * rate * rate;
+  } else {
+    force.dissipation = -elastic.value * rate;
+  }
+  return force;
+}
+
+/// What `evaluation` means for a law that damps.
+inline constexpr const char* damped_evaluation_text =
+    R"(`evaluation` says where in the step depth and speed are taken: implicit at its end, averaged over the levels
+          over which the scheme averages the elastic force, explicit at what is known when it begins; midpoint
+          half-way between the depths before and after the step, hybrid the same where the step begins in contact and
+          else half of the force at its end, conserving with the elastic part by the difference of its energy over the
+          step, which then comes back to round-off but for what is reported as dissipated; these with the mean speed
+          over the step. )";
 
 }  // namespace ricochet

@@ -11,10 +11,7 @@ class Signorini final : public ContactLaw {
   void prepare(int points, std::span<const Parameters>) override { solver_.prepare(points); }
 
   void solve(ReducedProblem& problem) override {
-    for (const int lane : problem.touched)
-      problem.outcome[lane] =
-          solver_.solve(*problem.delassus, problem.reach, 0.0, problem.free + lane, problem.lower + lane,
-                        problem.upper + lane, problem.effort + lane, problem.points, problem.lanes);
+    for (const int lane : problem.touched) problem.outcome[lane] = solver_.solve(problem.lane(lane), 0.0);
   }
   bool closed_form(int points) const override { return points == 1; }
   std::string how_solved() const override { return "one point: closed form; more: active set with a finite fallback"; }
@@ -23,7 +20,7 @@ class Signorini final : public ContactLaw {
   BoxSolver solver_;
 };
 
-void register_all(Registry& registry) {
+void register_signorini(Registry& registry) {
   registry.add_contact(
       {.name = "signorini",
        .summary = "rigid stops, Lagrange multipliers (Signorini conditions on both sides)",
@@ -31,12 +28,12 @@ void register_all(Registry& registry) {
           acts only where it touches one: lower ≤ y ⊥ p ≤ upper. What y is (a position, an average of positions, a
           velocity) and what restitution is folded into it is the time scheme's choice.)",
        .source =
-           "Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller, "
-           "Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback",
+           R"(Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller,
+          Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<Signorini>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(contact, signorini, register_all)
+RICOCHET_PLUGIN(contact, signorini, register_signorini)

@@ -22,11 +22,9 @@ void register_consistent(Registry& registry) {
   manual.name = "consistent";
   manual.summary = "velocities in the displacement space: M_ij = ∫ρS φ_i φ_j dx";
   manual.text =
-      "The Galerkin mass matrix, integrated exactly. Regular; frequencies converge with order 4 in the element length "
-      "for "
-      "Hermite elements. Every contact point carries inertia, so that a rigid impact destroys the kinetic energy of "
-      "its "
-      "node: a loss of the discretisation, which shrinks with the mesh.";
+      R"(The Galerkin mass matrix, integrated exactly. Regular; frequencies converge with order 4 in the element
+          length for Hermite elements. Every contact point carries inertia, so that a rigid impact destroys the
+          kinetic energy of its node: a loss of the discretisation, which shrinks with the mesh.)";
   manual.source = "Archer 1963, Consistent mass matrix for distributed mass systems, J. Struct. Div. ASCE 89, 161-178";
   registry.add_mass(std::move(manual), [](const Parameters&) { return std::make_unique<Consistent>(); });
 }

@@ -11,17 +11,17 @@ class Hrz : public MassStrategy {
   }
 };
 
-void register_all(Registry& registry) {
+void register_hrz(Registry& registry) {
   PluginManual manual;
   manual.name = "hrz";
   manual.summary = "diagonal mass: the consistent diagonal scaled to the element's mass";
   manual.text = "The name under which many look for the lumped mass with scaled rotations: it is that of lumped.";
   manual.source =
-      "Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related processes in the finite element method, "
-      "Earthquake Eng. Struct. Dyn. 4, 245-249";
+      R"(Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related processes in the finite element method,
+          Earthquake Eng. Struct. Dyn. 4, 245-249)";
   registry.add_mass(std::move(manual), [](const Parameters&) { return std::make_unique<Hrz>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(mass, hrz, register_all)
+RICOCHET_PLUGIN(mass, hrz, register_hrz)

@@ -1,6 +1,6 @@
 #include <algorithm>
+#include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
-#include <ricochet/contract/semidefinite_rank.hpp>
 
 namespace {
 
@@ -106,23 +106,23 @@ class HybridSingular : public MassStrategy {
   }
 };
 
-void register_all(Registry& registry) {
+void register_hybrid_singular(Registry& registry) {
   PluginManual manual;
   manual.name = "hybrid-singular";
   manual.summary = "velocities and momenta of their own, bi-orthogonal, none at contact: M = (Y⁻¹A)ᵀ C (Y⁻¹A)";
   manual.text =
-      "Velocities are hat functions ψ^v at the nodes, tied to displacements through dual functions ψ^p, which makes "
-      "the tie diagonal and M sparse. Linear elements: a node that may touch a stop has no velocity and no mass, its "
-      "part goes to its neighbours' (total mass is kept); without stops M is the consistent mass, with stops at "
-      "neighbouring nodes it is refused. Hermite elements: every node keeps its velocity, M has one kernel dimension "
-      "per element, which carries contact as that of singular does; frequencies converge with order 4 in the element "
-      "length, with order 2 for linear elements. A point mass keeps its inertia.";
+      R"(Velocities are hat functions ψ^v at the nodes, tied to displacements through dual functions ψ^p, which makes
+          the tie diagonal and M sparse. Linear elements: a node that may touch a stop has no velocity and no mass,
+          its part goes to its neighbours' (total mass is kept); without stops M is the consistent mass, with stops at
+          neighbouring nodes it is refused. Hermite elements: every node keeps its velocity, M has one kernel
+          dimension per element, which carries contact as that of singular does; frequencies converge with order 4 in
+          the element length, with order 2 for linear elements. A point mass keeps its inertia.)";
   manual.source =
-      "Tkachuk, Wohlmuth and Bischoff 2013, Hybrid-mixed discretization of elasto-dynamic contact problems using "
-      "consistent singular mass matrices, Int. J. Numer. Methods Eng. 94, 473-493; Hermite elements: this program";
+      R"(Tkachuk, Wohlmuth and Bischoff 2013, Hybrid-mixed discretization of elasto-dynamic contact problems using
+          consistent singular mass matrices, Int. J. Numer. Methods Eng. 94, 473-493; Hermite elements: this program)";
   registry.add_mass(std::move(manual), [](const Parameters&) { return std::make_unique<HybridSingular>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(mass, hybrid_singular, register_all)
+RICOCHET_PLUGIN(mass, hybrid_singular, register_hybrid_singular)

@@ -49,20 +49,20 @@ class MassScaling : public MassStrategy {
   double factor_;
 };
 
-void register_all(Registry& registry) {
+void register_mass_scaling(Registry& registry) {
   PluginManual manual;
   manual.name = "mass-scaling";
   manual.summary = "lumped mass, with more inertia against each element's own deformation";
   manual.text =
-      "For explicit schemes: each element is 1 + 2β times as heavy against its deformation as against its rigid "
-      "motion, which divides the highest frequency by √(1 + 2β) and lets the step grow as much (3 times at β = 4). "
-      "Total mass and the rigid motions of each element are kept; low frequencies fall by an error of order 2 in the "
-      "element length that grows with β. The matrix is not diagonal any more. β = 0 is lumped. Against the lumped "
-      "mass a bar's frequency error grows 1 + 6β times: 91 times at β = 15, where the step is 5.6 times longer; "
-      "hence that bound.";
+      R"(For explicit schemes: each element is 1 + 2β times as heavy against its deformation as against its rigid
+          motion, which divides the highest frequency by √(1 + 2β) and lets the step grow as much (3 times at β = 4).
+          Total mass and the rigid motions of each element are kept; low frequencies fall by an error of order 2 in
+          the element length that grows with β. The matrix is not diagonal any more. β = 0 is lumped. Against the
+          lumped mass a bar's frequency error grows 1 + 6β times: 91 times at β = 15, where the step is 5.6 times
+          longer; hence that bound.)";
   manual.source =
-      "Olovsson, Simonsson and Unosson 2005, Selective mass scaling for explicit finite element analyses, Int. J. "
-      "Numer. Methods Eng. 63, 1436-1445; rotations of beams: this program";
+      R"(Olovsson, Simonsson and Unosson 2005, Selective mass scaling for explicit finite element analyses, Int. J.
+          Numer. Methods Eng. 63, 1436-1445; rotations of beams: this program)";
   manual.parameters = {
       real_parameter("factor", "1", 4.0, {.low = 0, .high = 15}, "β, added inertia of an element, in its mass")};
   registry.add_mass(std::move(manual),
@@ -71,4 +71,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(mass, mass_scaling, register_all)
+RICOCHET_PLUGIN(mass, mass_scaling, register_mass_scaling)

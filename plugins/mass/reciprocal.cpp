@@ -90,20 +90,20 @@ class Reciprocal : public MassStrategy {
   double beta_;
 };
 
-void register_all(Registry& registry) {
+void register_reciprocal(Registry& registry) {
   PluginManual manual;
   manual.name = "reciprocal";
   manual.summary = "the inverse of the mass, assembled from elements: M⁻¹ = A⁻¹ [Σ A_e M_e⁻¹ A_e] A⁻¹";
   manual.text =
-      "For explicit schemes that want more than a diagonal: M is full, its inverse as sparse as K, and an explicit "
-      "stage is a product with it. Each element has the consistent mass, or with β > 0 a part of the lumped one, "
-      "against its deformations; the rigid motions of the structure keep their mass. Implicit stages border K with "
-      "M⁻¹. Frequencies converge with order 2 in the element length (1.9 on coarse meshes: the clamped element). On "
-      "a bar the highest pulsation is 3.46 c/ℓ at β = 0, that of the consistent mass, and 2.45 c/ℓ at β = ½; on a "
-      "beam 34.8 and 25.9 √(EI/ρS)/ℓ², the consistent one 59.9. β = 1 is lumped.";
+      R"(For explicit schemes that want more than a diagonal: M is full, its inverse as sparse as K, and an explicit
+          stage is a product with it. Each element has the consistent mass, or with β > 0 a part of the lumped one,
+          against its deformations; the rigid motions of the structure keep their mass. Implicit stages border K with
+          M⁻¹. Frequencies converge with order 2 in the element length (1.9 on coarse meshes: the clamped element). On
+          a bar the highest pulsation is 3.46 c/ℓ at β = 0, that of the consistent mass, and 2.45 c/ℓ at β = ½; on a
+          beam 34.8 and 25.9 √(EI/ρS)/ℓ², the consistent one 59.9. β = 1 is lumped.)";
   manual.source =
-      "González, Kolman, Cho, Felippa and Park 2018, Inverse mass matrix via the method of localized Lagrange "
-      "multipliers, Int. J. Numer. Methods Eng. 113, 277-295; rotations of beams: this program";
+      R"(González, Kolman, Cho, Felippa and Park 2018, Inverse mass matrix via the method of localized Lagrange
+          multipliers, Int. J. Numer. Methods Eng. 113, 277-295; rotations of beams: this program)";
   manual.parameters = {real_parameter("beta", "1", 0.0, {.low = 0, .high = 1},
                                       "β, share of the lumped mass in the mass of a deforming element")};
   registry.add_mass(std::move(manual),
@@ -112,4 +112,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(mass, reciprocal, register_all)
+RICOCHET_PLUGIN(mass, reciprocal, register_reciprocal)

@@ -1,5 +1,5 @@
+#include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
-#include <ricochet/contract/semidefinite_rank.hpp>
 
 namespace {
 
@@ -106,23 +106,17 @@ void register_singular(Registry& registry) {
   manual.name = "singular";
   manual.summary = "velocities in a poorer space, so that contact points carry no inertia: M = Bᵀ C_v⁻¹ B";
   manual.text =
-      "Displacements keep their space, velocities live in P1 (continuous, zero where the displacement is imposed) or "
-      "P0 "
-      "(one per element), tied to it by B_ij = ∫ρS ψ_i φ_j and C_v = ∫ρS ψψ. For Hermite elements Ker M has one "
-      "dimension "
-      "per element and can carry the contact: an impact then moves no mass and destroys no energy. Frequencies "
-      "converge "
-      "with order 4 (P1) and 2 (P0). Initial data that do not satisfy Zᵀ(K q − F) = 0, Z = Ker M, lose energy in the "
-      "first "
-      "steps: see the scene's projection. P1 must vanish at the clamp, and discontinuous P1 or P2 velocities fail the "
-      "rank "
-      "condition of contact at all nodes. A point mass keeps its inertia.";
+      R"(Displacements keep their space, velocities live in P1 (continuous, zero where the displacement is imposed) or
+          P0 (one per element), tied to it by B_ij = ∫ρS ψ_i φ_j and C_v = ∫ρS ψψ. For Hermite elements Ker M has one
+          dimension per element and can carry the contact: an impact then moves no mass and destroys no energy.
+          Frequencies converge with order 4 (P1) and 2 (P0). Initial data that do not satisfy Zᵀ(K q − F) = 0, Z = Ker
+          M, lose energy in the first steps: see the scene's projection. P1 must vanish at the clamp, and
+          discontinuous P1 or P2 velocities fail the rank condition of contact at all nodes. A point mass keeps its
+          inertia.)";
   manual.source =
-      "Renard 2010, The singular dynamic method for constrained second order hyperbolic equations, J. Comput. Appl. "
-      "Math. "
-      "234, 906-923; after Khenous, Laborde, Renard 2008, Mass redistribution method for finite element contact "
-      "problems in "
-      "elastodynamics, Eur. J. Mech. A/Solids 27, 918-932";
+      R"(Renard 2010, The singular dynamic method for constrained second order hyperbolic equations, J. Comput. Appl.
+          Math. 234, 906-923; after Khenous, Laborde, Renard 2008, Mass redistribution method for finite element
+          contact problems in elastodynamics, Eur. J. Mech. A/Solids 27, 918-932)";
   manual.parameters = {
       word_parameter("velocity", {"P1", "P0"}, "P1",
                      "the space of velocities ψ: P1 continuous piecewise linear, P0 piecewise constant")};

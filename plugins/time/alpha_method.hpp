@@ -1,7 +1,7 @@
 #pragma once
 #include <ricochet/contract/plugin.hpp>
 
-#include "initial_acceleration.hpp"
+#include "shared_steps.hpp"
 
 namespace ricochet {
 
@@ -48,10 +48,7 @@ struct AlphaMethod {
   /// Slots q, v, a and the stages; energy, work and facts are the method's own.
   StepPlan plan(double h, const ProblemFacts& facts) const {
     const auto [q, v] = plan_algebra::slots<2>();
-    StepPlan plan;
-    plan.slots = {"q", "v", "a"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = v;
+    StepPlan plan = plan_with({"q", "v", "a"});
     plan.start = {initial_acceleration(h, 1, facts.mass_kernel_dimension > 0 ? beta * h * h : 0)};
     plan.stages = {step(h)};
     plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};

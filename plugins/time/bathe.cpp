@@ -1,7 +1,7 @@
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
-#include "initial_acceleration.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -28,15 +28,10 @@ class Bathe final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    using namespace plan_algebra;
-    const auto [q, v, a, b] = slots<4>();
-    StepPlan plan;
-    plan.slots = {"q", "v", "a", "b"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.velocity = v;
+    StepPlan plan = plan_with({"q", "v", "a", "b"});
     const double d = split_ * h;
     plan.start = {initial_acceleration(d, split_, facts.mass_kernel_dimension > 0 ? d * d / 4 : 0)};
-    plan.start.front().update.push_back(b);
+    plan.start.front().update.push_back(plan_algebra::slots<4>()[3]);
     plan.stages = {trapezium(d), quadrature(h)};
     plan.facts.order = 2;
     return plan;
@@ -82,7 +77,7 @@ class Bathe final : public TimeScheme {
   double split_, q0_ = 0, q1_ = 0, q2_ = 0;
 };
 
-void register_all(Registry& registry) {
+void register_bathe(Registry& registry) {
   registry.add_time(
       {.name = "bathe",
        .summary = "ρ∞-Bathe: two sub-steps, second order, as much damping of high frequencies as asked",
@@ -91,17 +86,17 @@ void register_all(Registry& registry) {
           sub-step; a massed point is thrown back up to 2 (ρ∞ = 0) to 2.9 (ρ∞ = 0.8) times as fast as it came, so
           that energy may grow at impacts. On a singular mass it is of second order through contact, with a clean
           force. Implicit and averaged penalties coincide.)",
-       .source = "Bathe and Baig (2005), On a composite implicit time integration procedure for nonlinear dynamics; "
-                 "Noh and Bathe (2019), The Bathe time integration method with controllable spectral radius",
+       .source = R"(Bathe and Baig (2005), On a composite implicit time integration procedure for nonlinear dynamics;
+          Noh and Bathe (2019), The Bathe time integration method with controllable spectral radius)",
        .parameters = {real_parameter("rho_inf", "1", 0.0, {.low = 0, .high = 1},
-                                     "ρ∞, what a step leaves of the highest frequencies; 1: two trapezia when split "
-                                     "is ½"),
+                                     R"(ρ∞, what a step leaves of the highest frequencies; 1: two trapezia when split
+          is ½)"),
                       real_parameter("split", "1", 0.0, {.low = 0, .high = 1, .high_open = true},
-                                     "γ, where the first sub-step ends, in steps; 0: (2 − √(2+2ρ∞))/(1 − ρ∞), ½ at ρ∞ "
-                                     "= 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005")}},
+                                     R"(γ, where the first sub-step ends, in steps; 0: (2 − √(2+2ρ∞))/(1 − ρ∞), ½ at
+          ρ∞ = 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005)")}},
       [](const Parameters& p) { return std::make_unique<Bathe>(p.real("rho_inf"), p.real("split")); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, bathe, register_all)
+RICOCHET_PLUGIN(time, bathe, register_bathe)

@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include "shared_steps.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -22,10 +24,7 @@ class CdLagrange final : public TimeScheme {
           "lumped mass, or an implicit scheme"};
     using namespace plan_algebra;
     const auto [q, v] = slots<2>();
-    StepPlan plan;
-    plan.slots = {"q", "w"};
-    plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = v;
+    StepPlan plan = plan_with({"q", "w"});
     plan.start = {start(h)};
     plan.stages = {step(h)};
     plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q + h / 2 * v),
@@ -79,7 +78,7 @@ class CdLagrange final : public TimeScheme {
   double e_;
 };
 
-void register_all(Registry& registry) {
+void register_cd_lagrange(Registry& registry) {
   registry.add_time(
       {.name = "cd-lagrange",
        .summary = "explicit central differences with Newton's impact law on the mid-step velocities",
@@ -87,8 +86,8 @@ void register_all(Registry& registry) {
           so that a lumped mass makes it explicit. Points whose known next position has reached a stop get v⁺ = −e
           v⁻ on the mid-step velocities: contact never gives energy. Stable up to hω = 2. A damping force is taken
           half a step late: of first order where the structure is damped, of second where it is not.)",
-       .source = "Fekak, Brun, Gravouil and Depale (2017), A new heterogeneous asynchronous explicit–implicit time "
-                 "integrator for nonsmooth dynamics",
+       .source = R"(Fekak, Brun, Gravouil and Depale (2017), A new heterogeneous asynchronous explicit–implicit time
+          integrator for nonsmooth dynamics)",
        .parameters = {with_role(
            real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient"),
            ParameterRole::restitution)}},
@@ -97,4 +96,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, cd_lagrange, register_all)
+RICOCHET_PLUGIN(time, cd_lagrange, register_cd_lagrange)

@@ -1,5 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
+#include "shared_steps.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -20,18 +22,10 @@ class CentralDifference final : public TimeScheme {
           "implicit scheme"};
     using namespace plan_algebra;
     const auto [q, v, a] = slots<3>();
-    StepPlan plan;
-    plan.slots = {"q", "v", "a"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = v;
+    StepPlan plan = plan_with({"q", "v", "a"});
     const Combination end = q + h * v + h * h / 2 * a, end_rate = v + h / 2 * (a + z);
-    Stage start;
-    start.matrix = M;
-    start.history = -(K * q) - C * v;
-    start.load = at(0);
-    for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
-      start.at(evaluation) = {q, at(0), v, at(0), {1}};
-    start.update = {q, v, z};
+    Stage start = initial_acceleration(h, 1, 0);
+    start.impact.reset();
     Stage step;
     step.matrix = M + h / 2 * C;
     step.history = -(C * known(end_rate)) - K * end;
@@ -52,7 +46,7 @@ class CentralDifference final : public TimeScheme {
   }
 };
 
-void register_all(Registry& registry) {
+void register_central_difference(Registry& registry) {
   registry.add_time(
       {.name = "central-difference",
        .summary = "explicit central differences, for springs and free motion",
@@ -60,12 +54,12 @@ void register_all(Registry& registry) {
           damped. Stable up to hω = 2, the springs behind the stops included. An effort does not move the position
           of its own instant: with a rigid law use carpenter-taylor-katona (position) or cd-lagrange (velocity),
           which are the same scheme with a multiplier.)",
-       .source = "Belytschko, Liu and Moran (2000), Nonlinear Finite Elements for Continua and Structures, ch. 6; "
-                 "Hughes (1987), The Finite Element Method, section 9.1",
+       .source = R"(Belytschko, Liu and Moran (2000), Nonlinear Finite Elements for Continua and Structures, ch. 6;
+          Hughes (1987), The Finite Element Method, section 9.1)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<CentralDifference>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, central_difference, register_all)
+RICOCHET_PLUGIN(time, central_difference, register_central_difference)

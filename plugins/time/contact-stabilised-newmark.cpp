@@ -1,6 +1,6 @@
 #include <ricochet/contract/plugin.hpp>
 
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -65,7 +65,7 @@ class ContactStabilisedNewmark final : public TimeScheme {
   bool corrected_;
 };
 
-void register_all(Registry& registry) {
+void register_contact_stabilised_newmark(Registry& registry) {
   registry.add_time(
       {.name = "contact-stabilised-newmark",
        .summary = "Newmark (¼, ½) from a predictor that is first brought between the stops",
@@ -74,8 +74,8 @@ void register_all(Registry& registry) {
           stop keeps the velocity of its arrival for as long as it stays: a single mass never leaves its stop, and
           on a mesh the motion as the step shrinks is not that of the mesh but O(element length) away. `corrected`
           takes the projection into the velocity and has no such defect.)",
-       .source = "Deuflhard, Krause and Ertel (2008), A contact-stabilized Newmark method for dynamical contact "
-                 "problems; corrected: this program",
+       .source = R"(Deuflhard, Krause and Ertel (2008), A contact-stabilized Newmark method for dynamical contact
+          problems; corrected: this program)",
        .parameters = {word_parameter("velocity", {"original", "corrected"}, "original",
                                      "whether the projection moves positions alone, or velocities with them")}},
       [](const Parameters& p) {
@@ -85,4 +85,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, contact_stabilised_newmark, register_all)
+RICOCHET_PLUGIN(time, contact_stabilised_newmark, register_contact_stabilised_newmark)

@@ -42,7 +42,7 @@ class GeneralisedAlpha final : public TimeScheme {
   AlphaMethod method_;
 };
 
-void register_all(Registry& registry) {
+void register_generalised_alpha(Registry& registry) {
   registry.add_time(
       {.name = "generalised-alpha",
        .summary = "Chung–Hulbert α: second order, damping of high frequencies as asked, least of low ones",
@@ -52,13 +52,13 @@ void register_all(Registry& registry) {
           and never more than all of it; with contact among the weighted forces (contact weighted) up to 2.9 times.
           On a singular mass it is of second order through contact, with a clean force; ρ∞ = 1 leaves the root −1 on
           its kernel.)",
-       .source = "Chung and Hulbert (1993), A time integration algorithm for structural dynamics with improved "
-                 "numerical dissipation: the generalized-α method",
+       .source = R"(Chung and Hulbert (1993), A time integration algorithm for structural dynamics with improved
+          numerical dissipation: the generalized-α method)",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
-                                     "how a rigid effort enters: end, whole; weighted, as internal forces (1−α_f now, "
-                                     "α_f of the one before)")}},
+                                     R"(how a rigid effort enters: end, whole; weighted, as internal forces (1−α_f
+          now, α_f of the one before))")}},
       [](const Parameters& p) {
         return std::make_unique<GeneralisedAlpha>(p.real("rho_inf"), p.word("contact") == "weighted");
       });
@@ -66,4 +66,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, generalised_alpha, register_all)
+RICOCHET_PLUGIN(time, generalised_alpha, register_generalised_alpha)

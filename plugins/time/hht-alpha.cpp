@@ -62,7 +62,7 @@ class HilberHughesTaylor final : public TimeScheme {
   AlphaMethod method_;
 };
 
-void register_all(Registry& registry) {
+void register_hht_alpha(Registry& registry) {
   registry.add_time(
       {.name = "hht-alpha",
        .summary = "Hilber–Hughes–Taylor α: Newmark that damps high frequencies at second order",
@@ -71,12 +71,12 @@ void register_all(Registry& registry) {
           shrink by (1+α)/(1−α) per step. α = 0 is Newmark (¼, ½). Stops are at position level, and a massed point
           is thrown back faster than it came (up to 2.3 times at α = −0.1): energy grows at impacts. On a singular
           mass the force is clean, and the damping takes the sawtooth that Newmark leaves there.)",
-       .source = "Hilber, Hughes and Taylor (1977), Improved numerical dissipation for time integration algorithms in "
-                 "structural dynamics; Hughes (1987), The Finite Element Method, section 9.3",
+       .source = R"(Hilber, Hughes and Taylor (1977), Improved numerical dissipation for time integration algorithms
+          in structural dynamics; Hughes (1987), The Finite Element Method, section 9.3)",
        .parameters = {real_parameter("alpha", "1", -0.1, {.low = -1.0 / 3, .high = 0}, "α; 0 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
-                                     "how a rigid effort enters: end, whole; weighted, as internal forces (1+α now, −α "
-                                     "of the one before)")}},
+                                     R"(how a rigid effort enters: end, whole; weighted, as internal forces (1+α now,
+          −α of the one before))")}},
       [](const Parameters& p) {
         return std::make_unique<HilberHughesTaylor>(p.real("alpha"), p.word("contact") == "weighted");
       });
@@ -84,4 +84,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, hht_alpha, register_all)
+RICOCHET_PLUGIN(time, hht_alpha, register_hht_alpha)

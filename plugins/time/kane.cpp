@@ -2,7 +2,7 @@
 #include <ricochet/contract/plugin.hpp>
 
 #include "alpha_method.hpp"
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -107,7 +107,7 @@ class Kane final : public TimeScheme {
   bool energy_;
 };
 
-void register_all(Registry& registry) {
+void register_kane(Registry& registry) {
   registry.add_time(
       {.name = "kane",
        .summary = "Newmark whose contact is implicit in position and left out of the acceleration",
@@ -116,13 +116,13 @@ void register_all(Registry& registry) {
           between none and all of its speed, one half on average. Contact never gives energy for β = γ/2, nor,
           undamped and with impulse energy, for γ = ½ or β > γ/2. With (¼, ½) it is the mid-point rule with loads of
           both ends; γ = ½ is of second order whatever β, above it damps, at first order; β < γ/2 limits the step.)",
-       .source = "Kane, Repetto, Ortiz and Marsden (1999), Finite element analysis of nonsmooth contact; Kane, "
-                 "Marsden, Ortiz and West (2000), Variational integrators and the Newmark algorithm",
+       .source = R"(Kane, Repetto, Ortiz and Marsden (1999), Finite element analysis of nonsmooth contact; Kane,
+          Marsden, Ortiz and West (2000), Variational integrators and the Newmark algorithm)",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),
                       real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1}, "γ; above ½ it damps, at first order"),
                       word_parameter("impulse", {"energy", "mass"}, "energy",
-                                     "where β ≠ γ/2, R of the jump R w = Hᵀp: energy, (M + (β−γ/2)h²K)/h, so that "
-                                     "contact never gives energy; mass, M/h")}},
+                                     R"(where β ≠ γ/2, R of the jump R w = Hᵀp: energy, (M + (β−γ/2)h²K)/h, so that
+          contact never gives energy; mass, M/h)")}},
       [](const Parameters& p) {
         return std::make_unique<Kane>(p.real("beta"), p.real("gamma"), p.word("impulse") == "energy");
       });
@@ -130,4 +130,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, kane, register_all)
+RICOCHET_PLUGIN(time, kane, register_kane)

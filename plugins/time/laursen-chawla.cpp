@@ -1,6 +1,6 @@
 #include <ricochet/contract/plugin.hpp>
 
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -33,7 +33,7 @@ class LaursenChawla final : public TimeScheme {
   }
 };
 
-void register_all(Registry& registry) {
+void register_laursen_chawla(Registry& registry) {
   registry.add_time(
       {.name = "laursen-chawla",
        .summary = "mid-point rule with contact that conserves energy: no work over a step",
@@ -41,12 +41,12 @@ void register_all(Registry& registry) {
           against the stop over the step, p (g_{n+1} − g_n) = 0. So rigid contact does no work and the energy of an
           undamped structure is kept to round-off; the penetration with which a contact begins stays until it is
           over. It is Newton's law with e = 1 asked at the beginning of the step.)",
-       .source = "Laursen and Chawla (1997), Design of energy conserving algorithms for frictionless dynamic contact "
-                 "problems",
+       .source = R"(Laursen and Chawla (1997), Design of energy conserving algorithms for frictionless dynamic contact
+          problems)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<LaursenChawla>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, laursen_chawla, register_all)
+RICOCHET_PLUGIN(time, laursen_chawla, register_laursen_chawla)

@@ -1,6 +1,6 @@
 #include <ricochet/contract/plugin.hpp>
 
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -46,7 +46,7 @@ class LaursenLove final : public TimeScheme {
   }
 };
 
-void register_all(Registry& registry) {
+void register_laursen_love(Registry& registry) {
   registry.add_time(
       {.name = "laursen-love",
        .summary = "mid-point rule, stops at position level, then an impulse that gives contact's work back",
@@ -56,12 +56,12 @@ void register_all(Registry& registry) {
           massed point leaves as fast as it came. Nothing is dissipated, hence contact forces chatter: read
           impulses. A step that begins beyond a stop (a law that lets points pass, a stop that was set anew) has no
           such impulse and ends the march. Compliant laws are those of midpoint: nothing is then given back.)",
-       .source = "Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric "
-                 "admissibility within the conserving framework",
+       .source = R"(Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric
+          admissibility within the conserving framework)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<LaursenLove>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, laursen_love, register_all)
+RICOCHET_PLUGIN(time, laursen_love, register_laursen_love)

@@ -1,6 +1,6 @@
 #include <ricochet/contract/plugin.hpp>
 
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -30,7 +30,7 @@ class Midpoint final : public TimeScheme {
   bool middle_;
 };
 
-void register_all(Registry& registry) {
+void register_midpoint(Registry& registry) {
   registry.add_time(
       {.name = "midpoint",
        .summary = "mid-point rule, stops at position level",
@@ -39,8 +39,8 @@ void register_all(Registry& registry) {
           on average. With a law that takes the discrete gradient of its potential (evaluation conserving) the sum
           of the energies is kept to round-off. With the constraint at the middle the rebound is up to three times
           too fast: it is here to show that. On the kernel of a singular undamped mass the root −1 stays.)",
-       .source = "Simo and Tarnow (1992), The discrete energy–momentum method; Armero and Petocz (1998) for contact "
-                 "that conserves; Kane, Repetto, Ortiz and Marsden (1999) for the constraint at the end",
+       .source = R"(Simo and Tarnow (1992), The discrete energy–momentum method; Armero and Petocz (1998) for contact
+          that conserves; Kane, Repetto, Ortiz and Marsden (1999) for the constraint at the end)",
        .parameters = {word_parameter("constraint", {"end", "middle"}, "end",
                                      "which position lies between the stops: that of the end, or the mean of both")}},
       [](const Parameters& p) { return std::make_unique<Midpoint>(p.word("constraint") == "middle"); });
@@ -48,4 +48,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, midpoint, register_all)
+RICOCHET_PLUGIN(time, midpoint, register_midpoint)

@@ -2,6 +2,8 @@
 
 #include <ricochet/contract/plugin.hpp>
 
+#include "shared_steps.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -34,10 +36,7 @@ class MoreauJean final : public TimeScheme {
     const auto [q, v] = slots<2>();
     const Combination next_v = v + z, next = q + h * v + h * theta_ * z;
     const Levels mean = (1 - theta_) * at(0) + theta_ * at(1);
-    StepPlan plan;
-    plan.slots = {"q", "v"};
-    plan.initial = {{1, 0}, {0, 1}};
-    plan.velocity = v;
+    StepPlan plan = mean_step_plan();
     Stage stage;
     stage.matrix = M / h + theta_ * C + h * theta_ * theta_ * K;
     stage.history = -(C * v) - K * (q + theta_ * h * v);
@@ -50,8 +49,7 @@ class MoreauJean final : public TimeScheme {
     stage.work = {next - q, v + theta_ * z, mean, {1}, at(1) - at(0)};
     if (theta_ != 0.5) stage.loss = {{EnergyMatrix::M, theta_ - 0.5, z}, {EnergyMatrix::K, theta_ - 0.5, next - q}};
     plan.stages = {stage};
-    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
-    plan.facts.order = theta_ == 0.5 ? 2 : 1;
+    if (theta_ != 0.5) plan.facts.order = 1;
     // Above θ = ½ a step that rests on its stop keeps less: not known.
     if (theta_ == 0.5) plan.facts.contact_order = 1;
     plan.facts.restitution = Restitution::exact;
@@ -64,7 +62,7 @@ class MoreauJean final : public TimeScheme {
   double theta_, e_;
 };
 
-void register_all(Registry& registry) {
+void register_moreau_jean(Registry& registry) {
   registry.add_time(
       {.name = "moreau-jean",
        .summary = "θ-scheme with Newton's impact law at velocity level, gap test at mid-step",
@@ -73,8 +71,8 @@ void register_all(Registry& registry) {
           that does not leave its stop; one that leaves is not thrown back faster than it went. So contact never
           gives energy (θ = ½, any e in [0, 1]). Positions may pass the stop by O(h). Contact points without mass
           have no velocity to restitute: refused for e > 0, and for θ = ½.)",
-       .source = "Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and "
-                 "Brogliato (2008), ch. 10",
+       .source = R"(Jean and Moreau (1992); Moreau (1999), Numerical aspects of the sweeping process; Acary and
+          Brogliato (2008), ch. 10)",
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
                       with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
                                                "e, Newton's restitution coefficient"),
@@ -84,4 +82,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, moreau_jean, register_all)
+RICOCHET_PLUGIN(time, moreau_jean, register_moreau_jean)

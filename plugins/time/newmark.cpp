@@ -59,7 +59,7 @@ class Newmark final : public TimeScheme {
   AlphaMethod method_;
 };
 
-void register_all(Registry& registry) {
+void register_newmark(Registry& registry) {
   registry.add_time(
       {.name = "newmark",
        .summary = "Newmark (β, γ) with the multiplier inside the acceleration, stops at position level",
@@ -68,8 +68,8 @@ void register_all(Registry& registry) {
           ½+γ−2β, ½−γ+β): a rigid impact leaves oscillating accelerations, and with β = ¼, γ = ½ the energy grows,
           the more the finer the step. It knows no restitution coefficient. Implicit and averaged penalties
           coincide.)",
-       .source = "Newmark (1959); Hughes (1987), The Finite Element Method, section 9.1; energy growth at contact: "
-                 "Laursen and Chawla (1997)",
+       .source = R"(Newmark (1959); Hughes (1987), The Finite Element Method, section 9.1; energy growth at contact:
+          Laursen and Chawla (1997))",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),
                       real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1},
                                      "γ; above ½ it damps, at first order")}},
@@ -83,4 +83,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, newmark, register_all)
+RICOCHET_PLUGIN(time, newmark, register_newmark)

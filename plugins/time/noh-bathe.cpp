@@ -2,7 +2,7 @@
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
-#include "initial_acceleration.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -34,10 +34,7 @@ class NohBathe final : public TimeScheme {
     using namespace plan_algebra;
     const auto [q, v, a, b] = slots<4>();
     const double c = p_ * h, d = (1 - p_) * h;
-    StepPlan plan;
-    plan.slots = {"q", "v", "a", "b"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.velocity = v;
+    StepPlan plan = plan_with({"q", "v", "a", "b"});
     plan.start = {initial_acceleration(c, p_, 0)};
     plan.start.front().update.push_back(b);
     plan.stages = {substep(c, d, p_, 1, v + c / 2 * (a + z)),
@@ -94,7 +91,7 @@ class NohBathe final : public TimeScheme {
   double p_, q0_ = 0, q1_ = 0, q2_ = 0;
 };
 
-void register_all(Registry& registry) {
+void register_noh_bathe(Registry& registry) {
   registry.add_time(
       {.name = "noh-bathe",
        .summary = "explicit, two sub-steps: second order, stable to about hω = 3.7, damps what is near the limit",
@@ -111,4 +108,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, noh_bathe, register_all)
+RICOCHET_PLUGIN(time, noh_bathe, register_noh_bathe)

@@ -1,7 +1,7 @@
 #include <ricochet/contract/plugin.hpp>
 
 #include "alpha_method.hpp"
-#include "mean_force_step.hpp"
+#include "shared_steps.hpp"
 
 namespace {
 
@@ -123,7 +123,7 @@ class NonsmoothGeneralisedAlpha final : public TimeScheme {
   bool half_, projected_;
 };
 
-void register_all(Registry& registry) {
+void register_nonsmooth_generalised_alpha(Registry& registry) {
   registry.add_time(
       {.name = "nonsmooth-generalised-alpha",
        .summary = "generalised α whose velocities jump by Newton's impact law",
@@ -134,8 +134,8 @@ void register_all(Registry& registry) {
           of it, the same at ρ∞ = 1; `projected` adds a projection of positions, so that no step ends beyond a stop.
           Contact never gives energy with `half`, in the energy of the scheme, nor with `beta` at ρ∞ = 1; elsewhere
           it may.)",
-       .source = "Chen, Acary, Virlez and Brüls (2013), A nonsmooth generalized-α scheme for flexible multibody "
-                 "systems with unilateral constraints; projected: after Brüls, Acary and Cardona (2014)",
+       .source = R"(Chen, Acary, Virlez and Brüls (2013), A nonsmooth generalized-α scheme for flexible multibody
+          systems with unilateral constraints; projected: after Brüls, Acary and Cardona (2014))",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 does not damp"),
                       with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
@@ -143,8 +143,8 @@ void register_all(Registry& registry) {
                                 ParameterRole::restitution),
                       word_parameter(
                           "position", {"half", "beta", "projected"}, "half",
-                          "what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected, that and "
-                          "onto the stops")}},
+                          R"(what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected, that and onto
+          the stops)")}},
       [](const Parameters& p) {
         return std::make_unique<NonsmoothGeneralisedAlpha>(p.real("rho_inf"), p.real("restitution"),
                                                            p.word("position"));
@@ -153,4 +153,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, nonsmooth_generalised_alpha, register_all)
+RICOCHET_PLUGIN(time, nonsmooth_generalised_alpha, register_nonsmooth_generalised_alpha)

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <ricochet/contract/plugin.hpp>
 
+#include "shared_steps.hpp"
+
 namespace {
 
 using namespace ricochet;
@@ -26,11 +28,7 @@ class Sdirk final : public TimeScheme {
   }
 
   PlanOrRefusal plan(double h, const ProblemFacts&) const override {
-    using namespace plan_algebra;
-    StepPlan plan;
-    plan.slots = {"q", "v", "a"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}};
-    plan.velocity = slots<2>()[1];
+    StepPlan plan = plan_with({"q", "v", "a"});
     plan.stages = {inner(h), outer(h)};
     plan.facts.order = third_ ? 3 : 2;
     return plan;
@@ -79,7 +77,7 @@ class Sdirk final : public TimeScheme {
   double gamma_, shared_, first_, second_;
 };
 
-void register_all(Registry& registry) {
+void register_sdirk(Registry& registry) {
   registry.add_time(
       {.name = "sdirk",
        .summary = "two implicit Runge–Kutta stages with one matrix, of order 2 (L-stable) or 3",
@@ -95,4 +93,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, sdirk, register_all)
+RICOCHET_PLUGIN(time, sdirk, register_sdirk)

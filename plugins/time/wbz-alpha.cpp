@@ -33,7 +33,7 @@ class WoodBossakZienkiewicz final : public TimeScheme {
   AlphaMethod method_;
 };
 
-void register_all(Registry& registry) {
+void register_wbz_alpha(Registry& registry) {
   registry.add_time(
       {.name = "wbz-alpha",
        .summary = "Wood–Bossak–Zienkiewicz α: Newmark with inertia weighted over both ends of the step",
@@ -50,4 +50,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(time, wbz_alpha, register_all)
+RICOCHET_PLUGIN(time, wbz_alpha, register_wbz_alpha)

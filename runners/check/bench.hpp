@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 #include <ricochet/contract/mass_strategy.hpp>
-#include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 #include <vector>

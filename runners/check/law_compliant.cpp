@@ -171,7 +171,7 @@ Verdict solution_answers_the_force_law(const Law& law) {
 Verdict stiffness_as_declared(const Law& law) {
   if (!is_compliant(law)) return rigid();
   LawBench bench(law, 1, 1);
-  const auto stiffness = bench.law().constant_stiffness(0);
+  const auto stiffness = constant_stiffness(bench.law());
   if (!stiffness) return not_declared("not linear: references and spectra that need one stiffness refuse");
   for (const double depth : {1e-4, 1e-3, 1e-2})
     for (const double speed : speeds_of(bench)) {

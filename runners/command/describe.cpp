@@ -11,8 +11,8 @@
 #include "runners/command/describe_words.hpp"
 #include "runners/command/plain.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/stated_plan.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {
@@ -134,7 +134,7 @@ std::string facts_of(const PluginManual& manual, ContactLaw& law, const Paramete
     text += fmt::format("  reads the displacement, evaluated {}{}\n", evaluation_word(*reads),
                         law.reads_rate() ? ", and its rate" : "");
     if (law.conserves_energy()) text += "  gives back to the scheme's energy what it stores\n";
-    const auto stiffness = law.constant_stiffness(0);
+    const auto stiffness = constant_stiffness(law);
     if (law.changes_problem())
       text += "  changes the stiffness of the structure and what is measured at its stops, its own with them\n";
     else

@@ -8,9 +8,9 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/study/stated_plan.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {

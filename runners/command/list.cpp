@@ -3,8 +3,8 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/stated_plan.hpp"
 #include "runners/table/plain_text.hpp"
 
 namespace ricochet {

@@ -2,7 +2,7 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
-#include "runners/study/stated_plan.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/study_schema.hpp"
 
 namespace ricochet {

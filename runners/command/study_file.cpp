@@ -2,8 +2,8 @@
 
 #include <set>
 
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 

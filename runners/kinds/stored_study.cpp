@@ -5,9 +5,9 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/kinds/kind.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/report/html.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {

@@ -5,11 +5,11 @@
 #include <map>
 #include <set>
 
+#include "runners/json/json_text.hpp"
 #include "runners/report/answer_lines.hpp"
 #include "runners/run/measure_scale.hpp"
 #include "runners/store/environment_entries.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/study/json_text.hpp"
 
 namespace ricochet {
 namespace {

@@ -27,7 +27,7 @@ std::optional<double> stiffness_of(const StudyCase& one, const Registry& registr
   const auto law = make_law(one, registry);
   if (law->absent() || !law->reads() || law->changes_problem()) return std::nullopt;
   law->prepare(1, {&one.contact.parameters, 1});
-  const auto stiffness = law->constant_stiffness(0);
+  const auto stiffness = constant_stiffness(*law);
   return stiffness && *stiffness > 0 ? stiffness : std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <ricochet/scene/formula.hpp>
 
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace {
@@ -285,17 +285,6 @@ const Json& discriminate(const std::vector<const Field*>& declared, const Json& 
 }
 
 }  // namespace
-
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_name(word, candidates);
-  return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
-}
-
-std::string quoted_list(const std::vector<std::string>& words) {
-  std::string result;
-  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + shortened(word) + "\"";
-  return result;
-}
 
 bool is_object_list(const Field& field, const Json& value) {
   return field.form == Field::Form::formula && !field.nested.empty() && value.is_array() && !value.empty() &&

@@ -24,10 +24,4 @@ bool is_object_list(const Field& field, const Json& value);
 /// The fields that an object has, its variants resolved. Throws InputError when a discriminator is missing or unknown.
 std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, const std::string& pointer);
 
-/// "; did you mean "X"?" or "".
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
-
-/// "a", "b", "c".
-std::string quoted_list(const std::vector<std::string>& words);
-
 }  // namespace ricochet

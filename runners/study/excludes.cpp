@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "runners/json/json_text.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
 
 namespace ricochet {
 namespace {

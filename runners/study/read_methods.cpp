@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "runners/json/json_text.hpp"
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
 #include "runners/study/product.hpp"
-#include "runners/study/stated_plan.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,6 +1,6 @@
 #include "runners/study/read_scene.hpp"
 
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,17 +1,15 @@
 #pragma once
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
 #include <vector>
 
+#include "runners/json/json_text.hpp"
 #include "runners/table/table.hpp"
 
 namespace ricochet {
-
-using Json = nlohmann::ordered_json;
 
 /// A method as a case names it, parameters checked and complete.
 struct MethodChoice {

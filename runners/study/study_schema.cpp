@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "runners/plan_files/plan_file.hpp"
 #include "runners/study/field.hpp"
-#include "runners/study/plan_schema.hpp"
 
 namespace ricochet {
 namespace {

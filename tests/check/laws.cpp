@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/pointwise_contact.hpp>
-#include <ricochet/contract/contact_structure.hpp>
+#include <ricochet/contract/contact_law.hpp>
 
 #include "runners/check/allocation_count.hpp"
 #include "runners/check/law_checks.hpp"
@@ -74,8 +74,9 @@ class FlawedLaw final : public ContactLaw {
     if (rigid_) return wrong_ == Wrong::potential ? depth : 0;
     return (wrong_ == Wrong::potential ? 1.0 : 0.5) * kappa * depth * depth;
   }
-  std::optional<double> constant_stiffness(int) const override {
-    return rigid_ ? std::nullopt : std::optional(wrong_ == Wrong::constant ? 2 * kappa : kappa);
+  std::optional<ContactSlopes> linear_slopes(int) const override {
+    if (rigid_) return std::nullopt;
+    return ContactSlopes{.stiffness = wrong_ == Wrong::constant ? 2 * kappa : kappa};
   }
   bool offers_slopes() const override { return !rigid_; }
   ContactSlopes slopes(int, int) const override {

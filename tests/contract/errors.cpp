@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/contract/shortened.hpp>
 
 using namespace ricochet;
 

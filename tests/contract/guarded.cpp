@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <limits>
-#include <ricochet/contract/contact_structure.hpp>
+#include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/registry.hpp>
 
 #include "tests/allocations.hpp"
@@ -41,7 +41,6 @@ struct Law : ContactLaw {
   void prepare(int, std::span<const Parameters>) override { act(); }
   void solve(ReducedProblem& problem) override { (act(), problem.points = 7); }
   double potential(double depth, int lane) const override { return (act(), depth + lane); }
-  std::optional<double> constant_stiffness(int lane) const override { return (act(), lane); }
   std::optional<ContactSlopes> linear_slopes(int lane) const override {
     return (act(), ContactSlopes{.viscosity = static_cast<double>(lane)});
   }
@@ -127,7 +126,6 @@ TEST_CASE("every function of a law is guarded and forwarded") {
       {"prepare", [&] { return (law->prepare(1, {}), true); }},
       {"solve", [&] { return (law->solve(problem), problem.points == 7); }},
       {"potential", [&] { return law->potential(0.5, 2) == 2.5; }},
-      {"constant_stiffness", [&] { return law->constant_stiffness(3) == 3; }},
       {"linear_slopes", [&] { return law->linear_slopes(3)->viscosity == 3; }}};
   for (const auto& [function, call] : calls) {
     INFO(function);
@@ -183,7 +181,7 @@ TEST_CASE("asking a guarded law allocates nothing") {
   for (int k = 0; k < 100; ++k) {
     law->solve(problem);
     law->potential(0.5, 0);
-    law->constant_stiffness(0);
+    law->linear_slopes(0);
   }
   CHECK(allocations() == before);
 }

@@ -139,7 +139,7 @@ LinearLaw linear_law(ContactLaw& law, int points, const Parameters& parameters) 
   if (out.absent) return out;
   law.prepare(points, std::span<const Parameters>(&parameters, 1));
   out.evaluation = law.reads();
-  out.stiffness = law.constant_stiffness(0);
+  out.stiffness = constant_stiffness(law);
   return out;
 }
 

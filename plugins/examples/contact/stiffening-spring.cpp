@@ -48,7 +48,7 @@ class Law final : public ContactLaw {
 
   // Called at each stage, with the lanes where something is to be done; the others are left alone. No allocation here.
   void solve(ReducedProblem& problem) override {
-    for (const int lane : problem.touched) problem.outcome[lane] = solve_lane(problem, lane);
+    for (const int lane : problem.touched) problem.outcome[lane] = solve_lane(problem.lane(lane), lane);
   }
 
   // Energy stored at a depth beyond the stop, J.
@@ -59,8 +59,8 @@ class Law final : public ContactLaw {
     return {.stiffness = slopes_[static_cast<std::size_t>(point) * springs_.size() + static_cast<std::size_t>(lane)]};
   }
   std::string how_solved() const override { return "Newton's method point by point, Gauss–Seidel over the points"; }
-  // Not overridden here: constant_stiffness() and linear_slopes(), of a law that is linear; reads_rate(), for a law
-  // that damps; layer(), for one that acts before the stop; memory_per_point(), for one that remembers; closed_form().
+  // Not overridden here: linear_slopes(), of a law that is linear; reads_rate(), for a law that damps; layer(), for one
+  // that acts before the stop; memory_per_point(), for one that remembers; closed_form().
 
  private:
   const Spring& spring(int lane) const { return springs_[static_cast<std::size_t>(lane)]; }
@@ -69,15 +69,14 @@ class Law final : public ContactLaw {
   ///     measure_i = free_i + reach·Σ_j W_ij p_j,
   /// p > 0 where it lies below its lower stop, p < 0 above the upper one. W is symmetric and semidefinite and f grows,
   /// so each answer lowers one convex energy, and the sweeps converge.
-  LaneOutcome solve_lane(ReducedProblem& problem, int lane) {
+  LaneOutcome solve_lane(const LaneProblem& problem, int lane) {
     constexpr int most_sweeps = 10000;
     // Of the deepest point before its spring pushes, and of the round-off of the measures.
     constexpr double tolerance = 1e-13, round_off = std::numeric_limits<double>::epsilon();
-    const auto points = static_cast<std::size_t>(problem.points), lanes = static_cast<std::size_t>(problem.lanes);
-    const auto at = [&](std::size_t i) { return i * lanes + static_cast<std::size_t>(lane); };
+    const auto points = static_cast<std::size_t>(problem.points), lanes = springs_.size();
     // Efforts begin with those of the last step (in `effort`); the free measure is that of p = 0.
-    for (std::size_t i = 0; i < points; ++i) measure_[i] = problem.free[at(i)];
-    for (std::size_t i = 0; i < points; ++i) move_others(problem, i, problem.effort[at(i)]);
+    for (std::size_t i = 0; i < points; ++i) measure_[i] = problem.free[i];
+    for (std::size_t i = 0; i < points; ++i) move_others(problem, i, problem.effort[i]);
     LaneOutcome outcome;
     double change = 0, deepest = 0, size = 0;
     const auto settled = [&] {
@@ -86,8 +85,8 @@ class Law final : public ContactLaw {
     do {
       change = 0;
       for (std::size_t i = 0; i < points; ++i) {
-        double& effort = problem.effort[at(i)];
-        const double lower = problem.lower[at(i)], upper = problem.upper[at(i)];
+        double& effort = problem.effort[i];
+        const double lower = problem.lower[i], upper = problem.upper[i];
         if (effort == 0 && measure_[i] >= lower && measure_[i] <= upper) continue;
         // The first time that a column is asked for costs one solve with S: only of points that are touched.
         const double own = problem.reach > 0 ? problem.reach * problem.delassus->column(static_cast<int>(i))[i] : 0.0;
@@ -95,7 +94,7 @@ class Law final : public ContactLaw {
         const double below = lower - alone, above = alone - upper, free_depth = std::max(below, above);
         const double depth = free_depth > 0 ? depth_left(spring(lane), own, free_depth) : 0.0;
         const double found = depth > 0 ? std::copysign(spring(lane).force(depth), below - above) : 0.0;
-        slopes_[at(i)] = spring(lane).slope(depth);
+        slopes_[i * lanes + static_cast<std::size_t>(lane)] = spring(lane).slope(depth);
         move_others(problem, i, found - effort);
         change = std::max(change, own * std::abs(found - effort));
         deepest = std::max(deepest, free_depth);
@@ -109,7 +108,7 @@ class Law final : public ContactLaw {
     return outcome;
   }
 
-  void move_others(const ReducedProblem& problem, std::size_t i, double effort) {
+  void move_others(const LaneProblem& problem, std::size_t i, double effort) {
     if (effort == 0 || !(problem.reach > 0)) return;
     const double* column = problem.delassus->column(static_cast<int>(i));
     for (std::size_t j = 0; j < measure_.size(); ++j) measure_[j] += problem.reach * column[j] * effort;

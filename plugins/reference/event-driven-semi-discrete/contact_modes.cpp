@@ -5,7 +5,7 @@
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 
-#include "pencil.hpp"
+#include "linear_structure.hpp"
 
 namespace ricochet::reference {
 namespace {

@@ -3,6 +3,10 @@
 
 namespace ricochet::reference {
 
+/// The signs of p in lower ≤ y + (W + compliance) p ⊥ p ≤ upper. Throws Stopped where no p is found.
+ContactSet box_set(const Eigen::MatrixXd& W, double compliance, const Eigen::VectorXd& y, const Eigen::VectorXd& lower,
+                   const Eigen::VectorXd& upper);
+
 /// What the contact points move against: massless modes alone, or mass.
 struct ContactPoints {
   Eigen::MatrixXd reach;    ///< H Z, Z the massless modes

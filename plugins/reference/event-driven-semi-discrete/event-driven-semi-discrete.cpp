@@ -3,7 +3,7 @@
 #include <ricochet/contract/plugin.hpp>
 
 #include "event_driven.hpp"
-#include "stopped.hpp"
+#include "linear_structure.hpp"
 
 namespace {
 
@@ -49,7 +49,7 @@ class EventDrivenSemiDiscrete final : public ReferenceSolver {
   }
 };
 
-void register_all(Registry& registry) {
+void register_event_driven_semi_discrete(Registry& registry) {
   registry.add_reference(
       {.name = "event-driven-semi-discrete",
        .summary = "the motion of the case's own mesh, exact in time between changes of the contact set",
@@ -64,12 +64,12 @@ void register_all(Registry& registry) {
           that resolves the fastest mode that still matters, with a bound of the curvature between, and polished to
           round-off. Initial data off the constraint of a singular mass jump to it at t = 0⁺ when α = 0. At most 60
           dofs.)",
-       .source = "Acary and Brogliato (2008), ch. 8 (event-driven schemes); Renard (2010) for contact without inertia; "
-                 "modes as M x = μ K x, so that slow ones keep their digits",
+       .source = R"(Acary and Brogliato (2008), ch. 8 (event-driven schemes); Renard (2010) for contact without
+          inertia; modes as M x = μ K x, so that slow ones keep their digits)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<EventDrivenSemiDiscrete>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(reference, event_driven_semi_discrete, register_all)
+RICOCHET_PLUGIN(reference, event_driven_semi_discrete, register_event_driven_semi_discrete)

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "box_set.hpp"
-#include "stopped.hpp"
+#include "contact_points.hpp"
+#include "linear_structure.hpp"
 
 namespace ricochet::reference {
 

@@ -1,11 +1,17 @@
 #pragma once
 #include <Eigen/Core>
 #include <ricochet/contract/reference.hpp>
+#include <string>
 #include <vector>
 
 #include "linear_mode.hpp"
 
 namespace ricochet::reference {
+
+/// Thrown inside a solve, a Refusal outside.
+struct Stopped {
+  std::string sentence;
+};
 
 /// Rows of signals: column k multiplies e^{σ_k t}, and the real part is meant.
 using Signals = Eigen::MatrixXcd;
@@ -47,5 +53,16 @@ LinearStructure structure_of(const ReferenceProblem& problem);
 /// φ and φ' of the clamp, m and m/s.
 double support_at(const ReferenceProblem& problem, double t);
 double support_rate_at(const ReferenceProblem& problem, double t);
+
+/// The modes of (M, K) that keep E w = 0: M-normalised shapes with their λ, and the massless ones, K-normalised. All
+/// are K- and M-orthogonal. Found as M x = μ K x, which keeps the digits of the slow ones.
+struct Pencil {
+  Eigen::MatrixXd shapes;    ///< n × r
+  Eigen::VectorXd squares;   ///< λ, r
+  Eigen::MatrixXd massless;  ///< n × k
+};
+
+/// `stiffness`: K, of the structure or with springs on it; `closed`: E.
+Pencil pencil(const LinearStructure& structure, const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& closed);
 
 }  // namespace ricochet::reference

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "first_fall.hpp"
-#include "stopped.hpp"
+#include "linear_structure.hpp"
 
 namespace ricochet::reference {
 namespace {

@@ -1,9 +1,164 @@
 #pragma once
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
 #include <ricochet/contract/reference.hpp>
 
-#include "beam_modes.hpp"
 #include "modal_phase.hpp"
-#include "panel_series.hpp"
+
+/// \file
+/// A function of x ∈ [0, L] on equal panels: eight Gauss points each, and the Legendre polynomial of degree 7 through
+/// them, which knows the second derivative that a bending energy needs.
+namespace ricochet::event_driven {
+
+class PanelSeries {
+ public:
+  static constexpr int points = 8;
+
+  PanelSeries(const std::function<double(double)>& f, double length, int panels)
+      : width_(length / panels), panels_(panels), series_(points, panels) {
+    for (int i = 0; i < panels; ++i) {
+      series_.col(i).setZero();
+      for (int g = 0; g < points; ++g) {
+        const double value = f((i + 0.5 * (1 + abscissa(g))) * width_);
+        largest_ = std::max(largest_, std::abs(value));
+        finite_ = finite_ && std::isfinite(value);
+        series_.col(i) += 0.5 * weight(g) * value * (legendre(abscissa(g)).col(0) * odd_numbers()).matrix();
+      }
+    }
+  }
+
+  bool finite() const { return finite_; }
+  double largest() const { return largest_; }  ///< max |f| at the Gauss points
+  double value(double x) const { return derivative(x, 0); }
+  double slope(double x) const { return derivative(x, 1) * 2 / width_; }
+  double curvature(double x) const { return derivative(x, 2) * 4 / (width_ * width_); }
+
+  /// ∫₀ᴸ g(x) dx by the Gauss points of `panels` equal panels; g a number or an array like `zero`.
+  template <class Function, class Value = double>
+  static Value integral(const Function& g, double length, int panels, const Value& zero = Value{}) {
+    Value sum = zero;
+    for (int i = 0; i < panels; ++i)
+      for (int j = 0; j < points; ++j) sum += weight(j) * g((i + 0.5 * (1 + abscissa(j))) * length / panels);
+    return sum * (length / (2 * panels));
+  }
+
+ private:
+  using Column = Eigen::Array<double, points, 1>;
+
+  static double signed_of(const std::array<double, 4>& half, int g, double sign) {
+    return g < 4 ? sign * half[static_cast<std::size_t>(3 - g)] : half[static_cast<std::size_t>(g - 4)];
+  }
+  static double abscissa(int g) {
+    return signed_of({0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363}, g, -1);
+  }
+  static double weight(int g) {
+    return signed_of({0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763}, g, 1);
+  }
+  static Column odd_numbers() { return Column::LinSpaced(1, 2 * points - 1); }
+
+  // P_j, P_j', P_j'' (columns) for j < points (rows).
+  static Eigen::Array<double, points, 3> legendre(double x) {
+    Eigen::Array<double, points, 3> p = Eigen::Array<double, points, 3>::Zero();
+    p(0, 0) = 1;
+    p(1, 0) = x;
+    p(1, 1) = 1;
+    for (int j = 1; j + 1 < points; ++j) {
+      p(j + 1, 0) = ((2 * j + 1) * x * p(j, 0) - j * p(j - 1, 0)) / (j + 1);
+      p(j + 1, 1) = p(j - 1, 1) + (2 * j + 1) * p(j, 0);
+      p(j + 1, 2) = p(j - 1, 2) + (2 * j + 1) * p(j, 1);
+    }
+    return p;
+  }
+
+  double derivative(double x, int order) const {
+    const int i = std::clamp(static_cast<int>(x / width_), 0, panels_ - 1);
+    return (series_.col(i).array() * legendre(2 * (x / width_ - i) - 1).col(order)).sum();
+  }
+
+  double width_;
+  int panels_;
+  Eigen::Matrix<double, points, Eigen::Dynamic> series_;
+  double largest_ = 0;
+  bool finite_ = true;
+};
+
+}  // namespace ricochet::event_driven
+
+/// \file
+/// Bending modes of a uniform beam clamped at x = 0: φ'''' = λ⁴φ, ∫₀ᴸφ² dx = 1,
+///
+///     φ(x)√L = cosh λx − cos λx − σ(sinh λx − sin λx)
+///
+/// written with exponentials that decay only, so that the three hundredth mode is as exact as the first. Wave numbers:
+/// cos z cosh z = −1 where x = L is free, tan z = tanh z where it is pinned, z = λL (Young and Felgar 1949).
+namespace ricochet::event_driven {
+
+class BeamModes {
+ public:
+  enum class End { free, pinned };  ///< at x = L: φ'' = φ''' = 0, or φ = φ'' = 0
+
+  BeamModes(End end, int count, double length)
+      : wave_number(count), mean(count), end_value(count), end_shear(count), length_(length), rising_(count) {
+    const double norm = 1 / std::sqrt(length);
+    for (int m = 0; m < count; ++m) {
+      const double z = end == End::free ? free_root(m) : pinned_root(m);
+      const double decay = std::exp(-z), lambda = z / length, cubed = lambda * lambda * lambda;
+      rising_(m) = end == End::free
+                       ? (std::sin(z) - std::cos(z) - decay) / (1 - decay * decay + 2 * decay * std::sin(z))
+                       : -decay / (1 - decay * decay);
+      wave_number(m) = lambda;
+      end_value(m) = end == End::free ? norm * (m % 2 == 0 ? 2 : -2) : 0;
+      end_shear(m) = end == End::free ? 0 : -norm * cubed * (1 / std::sinh(z) + 1 / std::sin(z));
+      const double sigma = 1 - 2 * rising_(m) * decay;
+      mean(m) = (end_shear(m) + 2 * sigma * norm * cubed) / (cubed * lambda);
+    }
+  }
+
+  int count() const { return static_cast<int>(wave_number.size()); }
+  double value(int m, double x) const { return shape(m, x, -1); }
+  double curvature(int m, double x) const { return wave_number(m) * wave_number(m) * shape(m, x, 1); }
+
+  Eigen::ArrayXd wave_number;  ///< λ, 1/m
+  Eigen::ArrayXd mean;         ///< ∫φ dx
+  Eigen::ArrayXd end_value;    ///< φ(L)
+  Eigen::ArrayXd end_shear;    ///< φ'''(L)
+
+ private:
+  // φ for sign −1, φ''/λ² for sign +1.
+  double shape(int m, double x, double sign) const {
+    const double z = wave_number(m) * length_, a = wave_number(m) * x, small = rising_(m) * std::exp(-z);
+    return (rising_(m) * std::exp(a - z) + (1 - small) * std::exp(-a) +
+            sign * (std::cos(a) - (1 - 2 * small) * std::sin(a))) /
+           std::sqrt(length_);
+  }
+
+  // Newton from the asymptotic root; it is within 0.31 of the first and 0.02 of all others.
+  static double free_root(int m) {
+    double z = (m + 0.5) * std::numbers::pi;
+    for (int i = 0; i < 8; ++i) {
+      const double sech = 1 / std::cosh(z);
+      z += (std::cos(z) + sech) / (std::sin(z) + sech * std::tanh(z));
+    }
+    return z;
+  }
+  static double pinned_root(int m) {
+    double z = (m + 1.25) * std::numbers::pi;
+    for (int i = 0; i < 8; ++i) {
+      const double t = std::tanh(z);
+      z -= (std::sin(z) - t * std::cos(z)) / (t * (std::sin(z) + t * std::cos(z)));
+    }
+    return z;
+  }
+
+  double length_;
+  Eigen::ArrayXd rising_;  // (1 − σ)e^z/2
+};
+
+}  // namespace ricochet::event_driven
 
 /// \file
 /// The viscoelastic beam on its moving support, in the modes of flight and in those of contact at the tip.

@@ -123,7 +123,7 @@ class EventDriven final : public ReferenceSolver {
   Settings settings_;
 };
 
-void register_all(Registry& registry) {
+void register_event_driven(Registry& registry) {
   registry.add_reference(
       {.name = "event-driven",
        .summary = "the continuous beam between stops at its tip, exact between impacts and releases",
@@ -136,8 +136,8 @@ void register_all(Registry& registry) {
           truncated sum leaves the tip a hair beyond the stop: a new touch counts once the gap has opened beyond
           that hair. The restitution of schemes has no counterpart. With α > 0 many digits are known; with α = 0
           convergence is slow.)",
-       .source = "modes: Young and Felgar (1949); the contact problem: Dumont and Paoli (2006); the switch between two "
-                 "modal bases is elementary L² projection",
+       .source = R"(modes: Young and Felgar (1949); the contact problem: Dumont and Paoli (2006); the switch between
+          two modal bases is elementary L² projection)",
        .parameters = {integer_parameter("modes", 80, {.low = 4, .high = 320},
                                         "number of modes of each phase; the coarser motion has half of it"),
                       real_parameter(
@@ -145,8 +145,8 @@ void register_all(Registry& registry) {
                           "resolution of the gap in the search for events, over the largest displacement of the scene"),
                       integer_parameter(
                           "events", 2000, {.low = 1, .high = 1e9},
-                          "impacts and releases allowed per period of the first mode before the motion is "
-                          "refused as chatter")}},
+                          R"(impacts and releases allowed per period of the first mode before the motion is refused as
+          chatter)")}},
       [](const Parameters& p) {
         return std::make_unique<EventDriven>(Settings{static_cast<int>(p.integer("modes")), p.real("tolerance"),
                                                       static_cast<double>(p.integer("events"))});
@@ -155,4 +155,4 @@ void register_all(Registry& registry) {
 
 }  // namespace
 
-RICOCHET_PLUGIN(reference, event_driven, register_all)
+RICOCHET_PLUGIN(reference, event_driven, register_event_driven)

@@ -2,7 +2,6 @@
 
 #include <ricochet/contract/plugin.hpp>
 
-#include "bar_bounce.hpp"
 #include "bar_waves.hpp"
 #include "impact_oscillator.hpp"
 
@@ -165,7 +164,7 @@ class Exact final : public ReferenceSolver {
   }
 };
 
-void register_all(Registry& registry) {
+void register_exact(Registry& registry) {
   registry.add_reference(
       {.name = "exact",
        .summary = "closed forms: the oscillator between stops, the bar that bounces or touches nothing",
@@ -176,13 +175,13 @@ void register_all(Registry& registry) {
           round-off; a bounce below 1e-15 of the highest ends a chattering. Bar, undamped and unloaded: at rest and
           stretched linearly from a rigid stop at 0 at its tip, it bounces with period 3L/c; touching nothing, it is
           d'Alembert's two waves. Everything else is refused.)",
-       .source = "Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, J. Sound Vib. 90 (the "
-                 "oscillator); characteristics (the bar), as in Doyen, Ern and Piperno (2011), Time-integration "
-                 "schemes for the finite element dynamic Signorini problem",
+       .source = R"(Shaw and Holmes (1983), A periodically forced piecewise linear oscillator, J. Sound Vib. 90 (the
+          oscillator); characteristics (the bar), as in Doyen, Ern and Piperno (2011), Time-integration schemes for
+          the finite element dynamic Signorini problem)",
        .parameters = {}},
       [](const Parameters&) { return std::make_unique<Exact>(); });
 }
 
 }  // namespace
 
-RICOCHET_PLUGIN(reference, exact, register_all)
+RICOCHET_PLUGIN(reference, exact, register_exact)

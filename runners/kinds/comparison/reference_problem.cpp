@@ -74,7 +74,7 @@ ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& 
   if (law->reads()) {
     const Parameters parameters = study_case.contact.parameters;
     law->prepare(std::max<int>(1, static_cast<int>(problem.stop_places.size())), {&parameters, 1});
-    const auto stiffness = law->constant_stiffness(0);
+    const auto stiffness = constant_stiffness(*law);
     problem.contact_nonlinear = !stiffness;
     problem.contact_stiffness = stiffness.value_or(0);
   }

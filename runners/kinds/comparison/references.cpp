@@ -200,10 +200,11 @@ KnownReference References::compute(const StudyCase& study_case, const MethodChoi
     discrete = discrete_problem(std::get<SemiDiscrete>(built), grid.places);
     problem.discrete = &discrete;
     // The stiffness of a law that changes the problem is known since.
-    if (law->changes_problem() && law->constant_stiffness(0)) {
-      problem.contact_nonlinear = false;
-      problem.contact_stiffness = *law->constant_stiffness(0);
-    }
+    if (law->changes_problem())
+      if (const auto stiffness = constant_stiffness(*law)) {
+        problem.contact_nonlinear = false;
+        problem.contact_stiffness = *stiffness;
+      }
   } else {
     problem.contact_stiffness = 0;
     problem.contact_nonlinear = false;

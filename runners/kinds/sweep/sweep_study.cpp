@@ -10,9 +10,9 @@
 #include <ricochet/scene/semi_discrete.hpp>
 #include <set>
 
+#include "runners/json/json_text.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
 
 namespace ricochet {
 namespace {

@@ -1,7 +1,7 @@
 #include "runners/kinds/sweep/sweep_tables.hpp"
 
 #include <algorithm>
-#include <ricochet/measure/orbits/motion_class.hpp>
+#include <ricochet/measure/orbits/regime.hpp>
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"

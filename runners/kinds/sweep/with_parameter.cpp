@@ -9,8 +9,8 @@
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
+#include "runners/json/json_text.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/json_text.hpp"
 #include "runners/study/read_scene.hpp"
 
 namespace ricochet {

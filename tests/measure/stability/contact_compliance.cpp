@@ -24,8 +24,8 @@ class Foam final : public ContactLaw {
     if (tells_ == Tells::nothing) return 0;
     return depth > 0 ? hardness_ * std::pow(depth, exponent_ + 1) / (exponent_ + 1) : 0;
   }
-  std::optional<double> constant_stiffness(int) const override {
-    return tells_ == Tells::constant ? std::optional(hardness_) : std::nullopt;
+  std::optional<ContactSlopes> linear_slopes(int) const override {
+    return tells_ == Tells::constant ? std::optional(ContactSlopes{.stiffness = hardness_}) : std::nullopt;
   }
 
  private:

@@ -44,7 +44,7 @@ SemiDiscreteOrRefusal made(const SceneSpec& scene, int elements, const Choice& l
   const auto contact = make(registry().contact(law.name), law);
   const auto mass = make(registry().mass("consistent"), {"consistent"});
   auto result = discretise(scene, elements, *mass, contact.get());
-  if (kappa) *kappa = contact->constant_stiffness(0).value_or(0);
+  if (kappa) *kappa = constant_stiffness(*contact).value_or(0);
   return result;
 }
 

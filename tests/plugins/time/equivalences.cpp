@@ -61,7 +61,7 @@ Apart apart(const SceneSpec& scene, const std::string& law, const Choice& a, con
 
 }  // namespace
 
-TEST_CASE("schemes that are the same numbers march the same bits") {
+TEST_CASE("schemes that are the same numbers give bitwise equal motions") {
   struct Pair {
     Choice a, b;
     const char* law = "signorini";

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/study/json_text.hpp"
+#include "runners/json/json_text.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;

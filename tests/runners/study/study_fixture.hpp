@@ -2,7 +2,7 @@
 #include <memory>
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/contract/mass_strategy.hpp>
-#include <ricochet/contract/time_scheme.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <string>
 

@@ -1,0 +1,125 @@
+#pragma once
+#include <ricochet/contract/plugin.hpp>
+
+/// \file
+/// Stages and parts of stages that several schemes have.
+namespace ricochet {
+
+/// A plan whose slots are q, v and others that begin at zero; v is its velocity.
+inline StepPlan plan_with(std::vector<std::string> slots) {
+  StepPlan plan;
+  plan.initial.assign(slots.size(), {0, 0});
+  plan.initial[0] = {1, 0};
+  plan.initial[1] = {0, 1};
+  plan.velocity = plan_algebra::slots<2>()[1];
+  plan.slots = std::move(slots);
+  return plan;
+}
+
+/// The start stage of schemes with accelerations as their third slot,
+///
+///     M a₀ = F(0) − C v₀ − K q₀   (+ Hᵀp so that q₀ + d v₀ + d²/2 a₀ does not pass the stop of t + `bound` h).
+///
+/// On the kernel of a singular mass a₀ is not defined: `stiffening` K is added to M there, an O(h²) change of a₀ on the
+/// regular modes.
+inline Stage initial_acceleration(double d, double bound, double stiffening) {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
+  Stage stage;
+  stage.matrix = M + stiffening * K;
+  stage.history = -(K * q) - C * v;
+  stage.load = at(0);
+  stage.impact = {.value = q + d * v + 0.5 * d * d * z, .bound = at(bound)};
+  for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
+    stage.at(evaluation) = {q, at(0), v, at(0), {1}};
+  stage.update = {q, v, z};
+  return stage;
+}
+
+// Steps in which an effort is the mean force of the step: it changes the momentum by h p.
+
+/// The mean of a slot before the stage and of what it becomes.
+inline Combination halfway(const Combination& from, const Combination& to) {
+  return to / 2 + 0.5 * from;
+}
+
+/// Where loads and rates of stops are taken: at both ends of the step, or half-way between them.
+inline Levels both_ends() {
+  using plan_algebra::at;
+  return 0.5 * at(0) + 0.5 * at(1);
+}
+inline Levels middle() {
+  return plan_algebra::at(0.5);
+}
+
+/// Compliant laws asked at the end, in the middle, and at what is `known` of the middle.
+inline void read_mean_force(Stage& stage, const Combination& end, const Combination& end_rate,
+                            const Combination& mean_rate, const Combination& known, const Levels& when = both_ends()) {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
+  stage.at(Evaluation::implicit_end) = {end, at(1), end_rate, at(1), {1}};
+  stage.at(Evaluation::averaged) = {halfway(q, end), both_ends(), mean_rate, when, {1}};
+  stage.at(Evaluation::explicit_start) = {known, at(0.5), v, at(0), {1}};
+}
+
+/// Laws that conserve, for schemes whose contact gives p·H Δq.
+inline void conserve_mean_force(Stage& stage, const Combination& end, const Combination& mean_rate,
+                                const Levels& when = both_ends()) {
+  using namespace plan_algebra;
+  stage.at(Evaluation::conserving) = {end, at(1), mean_rate, when, {1}, slots<1>()[0], at(0)};
+}
+
+/// The balance of ½|v|²_M + ½|q|²_K, with the test displacement Δq.
+inline void balance_mean_force(Stage& stage, const Combination& end, const Combination& mean_rate,
+                               const Levels& when = both_ends()) {
+  using namespace plan_algebra;
+  stage.work = {.displacement = end - slots<1>()[0], .rate = mean_rate, .load = when, .support = at(1) - at(0)};
+}
+
+/// The mid-point rule on positions and velocities, z = v_{n+1} − v_n, with F̄ = F(t+h/2) (`middle`) or the mean of both
+/// ends, and the positions of its end between the stops:
+///
+///     (M/h + ½C + h/4 K) z = F̄ − C v − K(q + h/2 v) + Hᵀp
+///     q ← q + h v + h/2 z,   v ← v + z,   y = H q_{n+1}
+///
+/// Invariant (undamped, free): ½|v|²_M + ½|q|²_K; test displacement q_{n+1} − q_n = h(v + z/2).
+inline Stage mean_step(double h, const Levels& when) {
+  using namespace plan_algebra;
+  const auto [q, v] = slots<2>();
+  const Combination end = q + h * v + h / 2 * z, end_rate = v + z, mean_rate = halfway(v, end_rate);
+  Stage stage;
+  stage.matrix = M / h + 0.5 * C + h / 4 * K;
+  stage.history = -(C * v) - K * (q + h / 2 * v);
+  stage.load = when;
+  stage.impact = {.value = end, .bound = at(1)};
+  read_mean_force(stage, end, end_rate, mean_rate, q + h / 2 * v, when);
+  conserve_mean_force(stage, end, mean_rate, when);
+  balance_mean_force(stage, end, mean_rate, when);
+  stage.update = {end, end_rate};
+  return stage;
+}
+
+/// A plan of such steps: slots q and v, energy and order; stages and other facts are the scheme's own.
+inline StepPlan mean_step_plan() {
+  const auto [q, v] = plan_algebra::slots<2>();
+  StepPlan plan = plan_with({"q", "v"});
+  plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
+  plan.facts.order = 2;
+  return plan;
+}
+
+/// M z = F(t + c h) − C v − K q into the third of so many slots: the acceleration of the structure alone.
+template <std::size_t count>
+Stage structure_acceleration(double c) {
+  using namespace plan_algebra;
+  const auto all = slots<count>();
+  Stage stage;
+  stage.matrix = M;
+  stage.history = -(K * all[0]) - C * all[1];
+  stage.load = at(c);
+  stage.update.assign(all.begin(), all.end());
+  stage.update[2] = z;
+  return stage;
+}
+
+}  // namespace ricochet

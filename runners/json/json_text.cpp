@@ -1,0 +1,247 @@
+#include "runners/json/json_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+
+#include "runners/json/json_fault.hpp"
+
+namespace ricochet {
+namespace {
+
+constexpr std::size_t deepest = 100;
+
+TextPosition position_of(const std::string& text, std::size_t offset) {
+  TextPosition where;
+  for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte == '\n') {
+      ++where.line;
+      where.column = 1;
+    } else if ((byte & 0xC0U) != 0x80U) {
+      ++where.column;
+    }
+  }
+  return where;
+}
+
+// What is said to readers and to editors alone.
+bool is_remark(const std::string& key) {
+  return key.starts_with("//") || key == "$schema";
+}
+
+// One past the closing quote of the string that opens at `begin`.
+std::size_t string_end(const std::string& text, std::size_t begin) {
+  std::size_t i = begin + 1;
+  while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+  return std::min(i + 1, text.size());
+}
+
+struct Open {
+  bool object = false;
+  std::string pointer;
+  std::size_t index = 0;  // next element of a list
+  bool key_next = false;  // the next string of an object is a key
+  std::string member;     // pointer of the member being read
+  std::set<std::string> keys;
+};
+
+// Walks a valid JSON text and tells each member (at its key) and each list element. `visit` returns false to stop.
+// An explicit stack: the depth of the text is the user's.
+void scan(const std::string& text, const std::function<bool(const std::string&, std::size_t, bool)>& visit) {
+  std::vector<Open> stack;
+  const auto value_pointer = [&](std::size_t offset, bool& go_on) -> std::string {
+    if (stack.empty()) return "";
+    Open& top = stack.back();
+    if (top.object) return top.member;
+    const std::string pointer = pointer_to(top.pointer, top.index++);
+    go_on = visit(pointer, offset, false);
+    return pointer;
+  };
+  bool go_on = true;
+  for (std::size_t i = 0; i < text.size() && go_on;) {
+    const char c = text[i];
+    if (c == '{' || c == '[') {
+      Open open;
+      open.pointer = value_pointer(i, go_on);
+      open.object = open.key_next = c == '{';
+      stack.push_back(std::move(open));
+      ++i;
+    } else if (c == '}' || c == ']') {
+      stack.pop_back();
+      ++i;
+    } else if (c == ',') {
+      stack.back().key_next = stack.back().object;
+      ++i;
+    } else if (c == '"') {
+      const std::size_t end = string_end(text, i);
+      if (!stack.empty() && stack.back().key_next) {
+        Open& top = stack.back();
+        const auto key = Json::parse(text.substr(i, end - i)).get<std::string>();
+        top.member = pointer_to(top.pointer, key);
+        top.key_next = false;
+        go_on = visit(top.member, i, !top.keys.insert(key).second && !is_remark(key));
+      } else {
+        value_pointer(i, go_on);
+      }
+      i = end;
+    } else if (c == '-' || (c >= '0' && c <= '9') || c == 't' || c == 'f' || c == 'n') {
+      value_pointer(i, go_on);
+      while (i < text.size() && std::string_view(",]} \t\r\n").find(text[i]) == std::string_view::npos) ++i;
+    } else {
+      ++i;
+    }
+  }
+}
+
+std::size_t depth(const std::string& text, std::size_t& offset) {
+  std::size_t now = 0, most = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '"') {
+      i = string_end(text, i);
+      continue;
+    }
+    if (text[i] == '{' || text[i] == '[') {
+      if (++now > most) {
+        most = now;
+        offset = i;
+      }
+      if (most > deepest) return most;
+    } else if ((text[i] == '}' || text[i] == ']') && now > 0) {
+      --now;
+    }
+    ++i;
+  }
+  return most;
+}
+
+// UTF-16 has a zero in every other byte of what people write, or begins with a mark.
+bool is_utf16(const std::string& text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || text.find('\0') < 4;
+}
+
+[[noreturn]] void refuse_text(const std::string& text, std::size_t stopped_at) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw SyntaxError({}, "the file is empty; expected a study, a JSON object");
+  if (is_utf16(text)) throw SyntaxError({}, "not valid JSON: the file is UTF-16; save it as UTF-8");
+  if (const auto fault = find_json_fault(text))
+    throw SyntaxError(position_of(text, fault->at),
+                      "not valid JSON: " + fault->message + "\n" + shown_line(text, fault->at));
+  throw SyntaxError(position_of(text, stopped_at), "not valid JSON: this byte is no UTF-8; save the file as UTF-8");
+}
+
+void drop_remarks(Json& value) {
+  if (value.is_object()) {
+    for (auto member = value.begin(); member != value.end();)
+      member = is_remark(member.key()) ? value.erase(member) : std::next(member);
+  }
+  if (value.is_structured())
+    for (Json& inside : value) drop_remarks(inside);
+}
+
+}  // namespace
+
+std::string pointer_to(const std::string& parent, const std::string& key) {
+  std::string result = parent + "/";
+  for (const char c : key) {
+    if (c == '~')
+      result += "~0";
+    else if (c == '/')
+      result += "~1";
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string pointer_to(const std::string& parent, std::size_t index) {
+  return parent + "/" + std::to_string(index);
+}
+
+std::string quote(const Json& value) {
+  return shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Json parse_json(const std::string& text) {
+  std::size_t deep_at = 0;
+  if (depth(text, deep_at) > deepest)
+    throw SyntaxError(position_of(text, deep_at), "nested deeper than " + std::to_string(deepest) + " levels");
+  Json result;
+  try {
+    result = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    refuse_text(text, error.byte > 0 ? error.byte - 1 : 0);
+  } catch (const Json::out_of_range& error) {
+    const std::string what = error.what();
+    const auto open = what.find('\''), close = what.rfind('\'');
+    const std::string number = open < close ? what.substr(open + 1, close - open - 1) : "";
+    throw SyntaxError(position_of(text, number.empty() ? 0 : text.find(number)),
+                      "the number " + shortened(number) + " is too large for a double");
+  }
+  std::string twice;
+  scan(text, [&](const std::string& pointer, std::size_t, bool repeated) {
+    if (repeated) twice = pointer;
+    return !repeated;
+  });
+  if (!twice.empty()) throw InputError(twice, "this key is given twice in the same object");
+  drop_remarks(result);
+  return result;
+}
+
+std::optional<TextPosition> locate(const std::string& text, const std::string& pointer) {
+  std::size_t longest = 0, offset = 0;
+  bool found = false;
+  scan(text, [&](const std::string& here, std::size_t at, bool) {
+    const bool ancestor =
+        pointer.compare(0, here.size(), here) == 0 && (pointer.size() == here.size() || pointer[here.size()] == '/');
+    // ≥: of a key given twice, the second one.
+    if (ancestor && here.size() >= longest) {
+      longest = here.size();
+      offset = at;
+      found = true;
+    }
+    return true;
+  });
+  if (!found) return std::nullopt;
+  return position_of(text, offset);
+}
+
+std::string read_text(const std::filesystem::path& file, const std::string& expected) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError("", "is a folder; expected " + expected + ", a JSON file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf() || stream.peek() == std::ifstream::traits_type::eof()))
+    throw InputError("", std::string("cannot be read: ") + (errno ? std::strerror(errno) : "unknown cause"));
+  return text.str();
+}
+
+std::string explained(const InputError& error, std::string place, const std::string& text) {
+  if (const auto* syntax = dynamic_cast<const SyntaxError*>(&error))
+    return fmt::format("{}:{}:{}: {}", place, syntax->where().line, syntax->where().column, error.what());
+  if (error.pointer().empty()) return place + ": " + error.what();
+  if (!text.empty())
+    if (const auto where = locate(text, error.pointer())) place += ":" + std::to_string(where->line);
+  return place + ": at " + shortened(error.pointer()) + ": " + error.what();
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? std::string() : "; did you mean \"" + shortened(nearest) + "\"?";
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string result;
+  for (const std::string& word : words) result += (result.empty() ? "\"" : ", \"") + shortened(word) + "\"";
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,57 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ricochet/contract/errors.hpp>
+#include <string>
+#include <vector>
+
+namespace ricochet {
+
+using Json = nlohmann::ordered_json;
+
+/// A place in a text, both counted from 1, columns in characters (UTF-8).
+struct TextPosition {
+  int line = 1, column = 1;
+};
+
+/// The text is no JSON: pointer "", and where reading stopped.
+class SyntaxError : public InputError {
+ public:
+  SyntaxError(TextPosition where, const std::string& message) : InputError("", message), where_(where) {}
+  TextPosition where() const { return where_; }
+
+ private:
+  TextPosition where_;
+};
+
+/// Parses a JSON text (RFC 8259). Keys that begin with // (remarks) and $schema (for editors) are left out, at every
+/// level. Throws SyntaxError for what is no JSON (what is wrong, the line, a caret under the place), a number that no
+/// double holds, nesting deeper than 100 levels, and InputError for a key given twice in one object.
+Json parse_json(const std::string& text);
+
+/// Where the value of a JSON pointer stands in a valid JSON text: its key, or the element of a list. When the pointer
+/// names nothing (a missing key), where its nearest ancestor stands. None for the whole document.
+std::optional<TextPosition> locate(const std::string& text, const std::string& pointer);
+
+/// A text file. Throws InputError, pointer "", where it cannot be read or is a folder; `expected`: "a study".
+std::string read_text(const std::filesystem::path& file, const std::string& expected);
+
+/// The error as a person reads it: "PLACE:LINE: at /json/pointer: what is wrong; what was expected", the line where
+/// `text` is not empty.
+std::string explained(const InputError& error, std::string place, const std::string& text);
+
+/// `parent` + "/" + key, escaped as RFC 6901 asks.
+std::string pointer_to(const std::string& parent, const std::string& key);
+std::string pointer_to(const std::string& parent, std::size_t index);
+
+/// A value as it is quoted in a message: its JSON, cut short when long.
+std::string quote(const Json& value);
+
+/// "; did you mean "X"?" or "".
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
+
+/// "a", "b", "c".
+std::string quoted_list(const std::vector<std::string>& words);
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <ricochet/loader/catalogue.hpp>
+#include <string>
+
+#include "runners/json/json_text.hpp"
+
+/// \file
+/// A time scheme without C++: slots, stages, rows and facts of a StepPlan as formulas in h and named parameters, in
+/// JSON (plugins/plan-files.md). It is checked when it is read, and is then a method like any other.
+namespace ricochet {
+
+/// A plan as it was written, and where: a file of its own, or a value of a study.
+struct PlanSource {
+  Json plan;
+  std::filesystem::path file;  ///< "" for a plan that stands in a study
+  std::string text;            ///< of the file, for lines
+  std::string pointer;         ///< of the plan within its document
+
+  /// "FILE:LINE: at /stages/0/matrix: what is wrong", or without file and line where there is none.
+  std::string explain(const InputError& error) const;
+};
+
+/// Reads a file. Throws InputError, pointer "", whose text names the file: it cannot be read, or is no JSON.
+PlanSource read_plan_file(const std::filesystem::path& file);
+
+/// Checks a whole plan and tells what it says of itself: every key, every formula, and, where all parameters have
+/// defaults, that the plan is well-formed with these and h = 1 ms on a regular, damped problem with contact. Throws
+/// InputError with pointers into the document.
+PluginManual check_plan_source(const PlanSource& source);
+
+/// Checks and registers it as a time scheme that comes from `source.file`. Throws InputError.
+void register_plan(const PlanSource& source, Registry& registry);
+
+/// The name under which a study gives a scheme that is no plugin: {"name": "plan", "file": "my-scheme.json"}.
+inline constexpr const char* stated_plan = "plan";
+
+/// If an entry of `methods.time` states its scheme itself, by "file" (a path, relative to `folder`, the study's) or by
+/// "plan" (the plan itself, as resolved studies have it, which need no file), reads the plan, registers it under its
+/// own name and leaves in `entry` this name and the parameters. Within a study a name stands for one scheme: throws
+/// InputError when the name is that of a plugin or of another plan among `before` (complete entries); and for whatever
+/// is wrong with the plan.
+std::optional<PlanSource> take_stated_plan(Json& entry, const std::string& pointer, const std::filesystem::path& folder,
+                                           const Json& before, Catalogue& catalogue, Registry& registry);
+
+/// The catalogue of this program with the plans beside its plugins: files *.json in the plugin folders that hold a plan
+/// (an object with "slots" or "stages"), after all libraries, and those among `files`. One that is wrong is unusable;
+/// in `files` it is a PluginError.
+Catalogue standard_catalogue(const std::vector<std::filesystem::path>& files = {});
+/// Adds the plans of one folder.
+void add_plans(const std::filesystem::path& folder, Catalogue& catalogue);
+
+/// The JSON Schema of a method that states its scheme itself: {"name": "plan", "file": …} or {"name": …, "plan": {…}},
+/// with the parameters that the plan declares, which only the reader knows.
+struct StatedPlanSchema {
+  Json in_file, here;
+  Json definitions;  ///< what both refer to by "#/$defs/NAME"
+};
+StatedPlanSchema stated_plan_schema();
+
+}  // namespace ricochet

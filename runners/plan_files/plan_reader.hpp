@@ -1,0 +1,91 @@
+#pragma once
+#include <optional>
+#include <ricochet/contract/registry.hpp>
+#include <ricochet/scene/named_formulas.hpp>
+#include <string>
+#include <vector>
+
+#include "runners/json/json_place.hpp"
+
+namespace ricochet {
+
+/// Formulas that are linear in some names ("q + h*v + beta*h*h*z" in slots and z), read as the weights of these names:
+/// each weight is what the formula gives where that name is 1 and the others are 0.
+class LinearFormulas {
+ public:
+  /// The names in which formulas are linear.
+  void span(std::vector<std::string> basis);
+  const std::vector<std::string>& basis() const { return basis_; }
+  /// Another value that formulas may use.
+  void set(const std::string& name, double value) { formulas_.set(name, value); }
+  /// A combination that formulas may use by name.
+  void combine(const std::string& name, std::vector<double> weights);
+  /// Whether a formula has a name of the basis, or of a combination, in it. Throws InputError as NamedFormulas::read().
+  bool is_combination(const std::string& text, const std::string& pointer);
+  /// One weight per name of the basis, not finite where the formula is not. Throws InputError where it is not linear.
+  std::vector<double> weights(const std::string& text, const std::string& pointer);
+
+ private:
+  void place(const std::vector<double>& at);
+  NamedFormulas formulas_;
+  std::vector<std::string> basis_;
+  std::vector<std::pair<std::string, std::vector<double>>> combined_;
+};
+
+/// Whether values that are not finite are errors (a plan is made) or let pass (only the text is checked).
+enum class Finite { demanded, ignored };
+
+/// The names of one plan and their values: h, what is known of the problem, parameters, "let"; and the reading of
+/// numbers, combinations, weights of matrices and sentences that use them. What it throws are InputErrors with
+/// pointers.
+class PlanValues {
+ public:
+  /// The names that no parameter, slot or let may take, apart from constants and functions.
+  static const std::vector<std::string>& reserved();
+
+  PlanValues(const JsonPlace& plan, double h, const ProblemFacts& facts, const Parameters& parameters, Finite finite);
+
+  const std::vector<std::string>& slots() const { return slots_; }
+  /// A number, or a formula.
+  double number(const JsonPlace& place);
+  /// The key of a member, which is a formula.
+  double number(const std::string& formula, const std::string& pointer);
+  /// true, false, or a formula that is not 0.
+  bool truth(const JsonPlace& place);
+  /// null, or a formula in which the name none may stand.
+  std::optional<double> optional_number(const JsonPlace& place);
+  /// A linear formula in slots, z and, in a plan some stage of which has an impulse, w; or an object of their weights.
+  Combination combination(const JsonPlace& place);
+  /// A linear formula in M, C and K, or an object of their weights.
+  OperatorWeights matrices(const JsonPlace& place);
+  /// A sentence in which {formula} stands for its value.
+  std::string sentence(const JsonPlace& place);
+
+ private:
+  void name(const std::string& name, const std::string& pointer, const char* what);
+  void set(const std::string& name, double value);
+  void read_let(const std::string& name, const JsonPlace& place);
+  double finite(double value, const std::string& text, const std::string& pointer) const;
+  std::vector<double> weights(LinearFormulas& formulas, const JsonPlace& place, const std::string& expected);
+
+  std::vector<std::string> slots_;
+  bool jumps_;         // whether w is a name
+  std::string where_;  // "h = 0.001, beta = 0.25": the values, for messages
+  Finite finite_;
+  NamedFormulas numbers_, optionals_;
+  LinearFormulas combinations_, matrices_;
+  std::vector<std::pair<std::string, std::string>> taken_;  // name, what it is
+};
+
+/// What a plan says of itself: name, summary, text, source and parameters, as a plugin registers them; the keys of the
+/// whole plan are checked. Throws InputError.
+PluginManual read_plan_manual(const JsonPlace& plan);
+
+/// The first refusal of a plan whose condition holds, or nothing. All of them are read.
+std::optional<Refusal> plan_refusal(const JsonPlace& plan, PlanValues& values);
+
+/// The slots, stages, energy, velocity and facts of a plan, as numbers. Throws InputError for whatever is no plan; that
+/// the plan is well-formed is left to check_plan().
+StepPlan read_step_plan(const JsonPlace& plan, PlanValues& values);
+
+}  // namespace ricochet
