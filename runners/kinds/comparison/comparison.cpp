@@ -79,10 +79,6 @@ CaseRunner compare_cases(const RunContext& context) {
   return runner;
 }
 
-std::shared_ptr<StepObserver> recorded(const StudyCase&, const Marcher& marcher, long long) {
-  return std::make_shared<ImpactRecorder>(marcher);
-}
-
 double seconds_beside(const ForecastContext& context) {
   // Reading a motion at 128 places, and measuring it against the reference, for each of its samples; of an oscillator
   // there is one place.
