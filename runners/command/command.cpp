@@ -10,11 +10,190 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/part_cases.hpp"
+#include "runners/store/curve_files.hpp"
 #include "runners/store/store_error.hpp"
 #include "runners/workers/worker_service.hpp"
 
 namespace ricochet {
 namespace {
+
+std::vector<Subcommand> all_commands() {
+  using Args = Arguments;
+  constexpr int most_jobs = 4096, most_samples = 1000000000, most_snapshots = 2000;
+  constexpr int most_workers = 1000000, most_nodes = 100000;
+  const Option plugin{"plugin", "FILE", "also use this plugin library (repeatable)", &Args::plugins};
+  const Option out{"out", "DIR", "results folder (default: results/NAME)", &Args::out};
+  const Option jobs{"jobs", "N", "worker processes (default: one for each processor that it may use)",
+                    Option::Count{&Args::jobs, most_jobs}};
+  const Option fresh{"fresh", "", "forget earlier results in the folder", &Args::fresh};
+  const Option table{"table", "", "print a line for every case", &Args::table};
+  const Option table_of_all{"table", "", "print all of it as CSV", &Args::table};
+  const Option in_line{"inline", "",
+                       "run in this process alone, without workers: for a debugger (the default where all cases take "
+                       "less than a second and every plugin is Ricochet's own)",
+                       &Args::here};
+  const Option isolate{"isolate", "", "run in worker processes, however short it is", &Args::isolate};
+  const Option threads{"threads", "", "accepted for old scripts; changes nothing", {}};
+  const Option part{"part", "K/N",
+                    "run part K of N, its share of the cases, with a folder of its own (default: "
+                    "results/NAME-part-K-of-N); a case is not split; `ricochet merge` joins the parts",
+                    &Args::part};
+  const Option part_shown{"part", "K/N", "show what part K of N would run", &Args::part};
+  const Option cases{"cases", "", "also print a line for every case", &Args::cases};
+  const Option workers{"workers", "N",
+                       "also say what so many worker processes would take: wall time, what bounds it, memory and store",
+                       Option::Count{&Args::workers, most_workers}};
+  const Option nodes{"nodes", "N", "machines of the job (default: 1)", Option::Count{&Args::nodes, most_nodes}};
+  const Option time{"time", "T",
+                    "time limit of one start of the job, as Slurm writes it: minutes, H:M:S or D-H:M:S (required)",
+                    &Args::time};
+  const Option cpus{"cpus", "N", "processors of each machine (default: all, no other job beside)",
+                    Option::Count{&Args::cpus, most_jobs}};
+  const Option index{"out", "FILE",
+                     "the page that lists several folders (default: index.html in the folder that holds them all); "
+                     "NAME.md: questions and answers in Markdown",
+                     &Args::out};
+  const Option merged{"out", "DIR",
+                      "the folder that is made, whole or not at all: a new or an empty one (required). Folders that "
+                      "one run would not have left are refused: of another study, program, plugin or arithmetic, under "
+                      "way, or with another result of the same case",
+                      &Args::out};
+  const Option to{"to", "CSVDIR", "folder that receives the tables (required)", &Args::to};
+  const Option curves{"curves", "",
+                      fmt::format("all curves in one curves.csv, with the case before each sample, in place of a file "
+                                  "for each case; of more than {} cases there are no such files",
+                                  kMostCurveFiles),
+                      &Args::curves};
+  const Option parameter{"parameter", "VALUE", "value of a bifurcation study's parameter", &Args::parameter};
+  const Option start{"start", "NAME", "start of the orbit, as in values.csv", &Args::start};
+  const Option cell{"cell", "X,Y", "cell of a study of basins, as in cells.csv", &Args::cell};
+  const Option periods{"periods", "N", "forcing periods that are marched (default: 8)",
+                       Option::Count{&Args::periods, most_samples}};
+  const Option samples_of_period{"samples", "N", "samples per period (default: 200)",
+                                 Option::Count{&Args::samples, most_samples}};
+  const Option samples{"samples", "N", "print the curve instead, at N samples, as CSV",
+                       Option::Count{&Args::samples, most_samples}};
+  const Option snapshots{"snapshots", "N",
+                         "keep N instants of the motion beside the case instead: the next report shows them as a film",
+                         Option::Count{&Args::snapshots, most_snapshots}};
+  const Option study{"study", "", "print the study of this case alone instead, to be run", &Args::study};
+  return {
+      {"run",
+       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--inline|--isolate]",
+       "Run what is missing of a study; write results and report; print its answer.",
+       1,
+       1,
+       {out, jobs, fresh, table, in_line, isolate, threads, part, plugin},
+       command_run},
+      {"plan",
+       "STUDY.json [--cases] [--part K/N] [--workers N]",
+       "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
+       1,
+       1,
+       {workers, cases, part_shown, plugin},
+       command_plan},
+      {"status",
+       "DIR…",
+       "Say how far a run is, from any machine: what is finished, what is under way, who runs it. Changes nothing.",
+       1,
+       10000,
+       {},
+       command_status},
+      {"slurm",
+       "STUDY.json --time T [--nodes N] [--cpus N] [--out DIR]",
+       "Print a job script that runs a study on N machines of a Slurm cluster, and goes on after each time limit.",
+       1,
+       1,
+       {out, nodes, time, cpus, plugin},
+       command_slurm},
+      {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {plugin}, command_list},
+      {"describe",
+       "NAME|PLAN.json",
+       "Show the manual of a method, a structure, a kind of study, a measure or an error; or of a scheme stated in a "
+       "file.",
+       1,
+       1,
+       {plugin},
+       command_describe},
+      {"new",
+       "time|contact|mass|reference NAME",
+       "Make a folder with a working method to start from: source, build file, study.",
+       2,
+       2,
+       {plugin},
+       command_new},
+      {"check",
+       "NAME|FILE",
+       "Measure what a method declares: one line per check, a sentence for each that fails.",
+       1,
+       1,
+       {plugin},
+       command_check},
+      {"report",
+       "DIR… [--out FILE]",
+       "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
+       1,
+       1000,
+       {index},
+       command_report},
+      {"merge",
+       "DIR DIR… --out DIR",
+       "Join results folders of one study, its parts or runs that were stopped, into the folder that one run leaves.",
+       1,
+       100000,
+       {merged, plugin},
+       command_merge},
+      {"compare",
+       "A B [--table]",
+       "Say what two results folders have differently: inputs, cases, results beyond round-off, answer.",
+       2,
+       2,
+       {table_of_all},
+       command_compare},
+      {"export",
+       "DIR --to CSVDIR [--curves]",
+       "Write the results as plain CSV tables.",
+       1,
+       1,
+       {to, curves},
+       command_export},
+      {"league",
+       "DIR…",
+       "Print time schemes side by side in Markdown: what the studies of these results folders measured of each.",
+       1,
+       1000,
+       {},
+       command_league},
+      {"point",
+       "DIR CASE (--parameter VALUE --start NAME | --cell X,Y)",
+       "March one orbit of a bifurcation study, or one cell of basins, again; print it as CSV.",
+       2,
+       2,
+       {parameter, start, cell, periods, samples_of_period, plugin},
+       command_point},
+      {"case",
+       "DIR ID [--samples N | --snapshots N | --study]",
+       "March one case again: what it measures, compared with what is stored. ID may be the beginning of one.",
+       2,
+       2,
+       {samples, snapshots, study, plugin},
+       command_case},
+      {"schema",
+       "",
+       "Print a JSON Schema of studies, with the parameters of every method found.",
+       0,
+       0,
+       {plugin},
+       command_schema},
+      {"doctor",
+       "",
+       "Show what is found where: versions, libraries, plugin folders, processor.",
+       0,
+       0,
+       {plugin},
+       command_doctor},
+  };
+}
 
 std::string overview() {
   std::string text =
@@ -112,122 +291,7 @@ int guarded(const std::vector<std::string>& arguments, std::ostream& out, std::o
 }  // namespace
 
 const std::vector<Subcommand>& subcommands() {
-  static const std::vector<Subcommand> all = {
-      {"run",
-       "STUDY.json [--part K/N] [--out DIR] [--jobs N] [--fresh] [--table] [--inline|--isolate]",
-       "Run what is missing of a study; write results and report; print its answer.",
-       1,
-       1,
-       {"part", "out", "jobs", "fresh", "table", "inline", "isolate", "threads", "plugin"},
-       command_run},
-      {"plan",
-       "STUDY.json [--cases] [--part K/N] [--workers N]",
-       "Show what would run, what is refused and why, the predicted cost, the physics. Nothing runs.",
-       1,
-       1,
-       {"cases", "part", "workers", "plugin"},
-       command_plan},
-      {"status",
-       "DIR…",
-       "Say how far a run is, from any machine: what is finished, what is under way, who runs it. Changes nothing.",
-       1,
-       10000,
-       {},
-       command_status},
-      {"slurm",
-       "STUDY.json --time T [--nodes N] [--cpus N] [--out DIR]",
-       "Print a job script that runs a study on N machines of a Slurm cluster, and goes on after each time limit.",
-       1,
-       1,
-       {"nodes", "time", "cpus", "out", "plugin"},
-       command_slurm},
-      {"list", "[mass|contact|time|reference]", "List the methods found.", 0, 1, {"plugin"}, command_list},
-      {"describe",
-       "NAME|PLAN.json",
-       "Show the manual of a method, a structure, a kind of study, a measure or an error; or of a scheme stated in a "
-       "file.",
-       1,
-       1,
-       {"plugin"},
-       command_describe},
-      {"new",
-       "time|contact|mass|reference NAME",
-       "Make a folder with a working method to start from: source, build file, study.",
-       2,
-       2,
-       {"plugin"},
-       command_new},
-      {"check",
-       "NAME|FILE",
-       "Measure what a method declares: one line per check, a sentence for each that fails.",
-       1,
-       1,
-       {"plugin"},
-       command_check},
-      {"report",
-       "DIR… [--out FILE]",
-       "Rebuild the report and the tables of a results folder; of several, also a page that lists them.",
-       1,
-       1000,
-       {"out"},
-       command_report},
-      {"merge",
-       "DIR DIR… --out DIR",
-       "Join results folders of one study, its parts or runs that were stopped, into the folder that one run leaves.",
-       1,
-       100000,
-       {"out", "plugin"},
-       command_merge},
-      {"compare",
-       "A B [--table]",
-       "Say what two results folders have differently: inputs, cases, results beyond round-off, answer.",
-       2,
-       2,
-       {"table"},
-       command_compare},
-      {"export",
-       "DIR --to CSVDIR [--curves]",
-       "Write the results as plain CSV tables.",
-       1,
-       1,
-       {"to", "curves"},
-       command_export},
-      {"league",
-       "DIR…",
-       "Print time schemes side by side in Markdown: what the studies of these results folders measured of each.",
-       1,
-       1000,
-       {},
-       command_league},
-      {"point",
-       "DIR CASE (--parameter VALUE --start NAME | --cell X,Y)",
-       "March one orbit of a bifurcation study, or one cell of basins, again; print it as CSV.",
-       2,
-       2,
-       {"parameter", "start", "cell", "periods", "samples", "plugin"},
-       command_point},
-      {"case",
-       "DIR ID [--samples N | --snapshots N | --study]",
-       "March one case again: what it measures, compared with what is stored. ID may be the beginning of one.",
-       2,
-       2,
-       {"samples", "snapshots", "study", "plugin"},
-       command_case},
-      {"schema",
-       "",
-       "Print a JSON Schema of studies, with the parameters of every method found.",
-       0,
-       0,
-       {"plugin"},
-       command_schema},
-      {"doctor",
-       "",
-       "Show what is found where: versions, libraries, plugin folders, processor.",
-       0,
-       0,
-       {"plugin"},
-       command_doctor},
-  };
+  static const std::vector<Subcommand> all = all_commands();
   return all;
 }
 

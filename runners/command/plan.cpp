@@ -116,12 +116,10 @@ void print_costs(const Costs& costs, const Forecast& forecast, const AllowedProc
   out << fmt::format("\n{} to run, {} refused, {} excluded", costs.runnable, costs.refused, costs.excluded)
       << (costs.failed > 0 ? fmt::format(", {} failed", costs.failed) : "") << "\n";
   if (costs.runnable == 0) return;
-  out << "predicted: " << duration_text(forecast.seconds) << " on 1 core";
+  out << "predicted: about " << duration_text(forecast.seconds) << " on 1 core";
   if (cores.count > 1)
     out << ", " << duration_text(std::max(forecast.seconds / cores.count, forecast.chain))
         << (cores.limit.empty() ? " on all " : " on ") << cores.count;
-  if (forecast.measured > 0)
-    out << fmt::format(" (a part of {} case{} marched)", forecast.measured, forecast.measured == 1 ? "" : "s");
   out << "\n";
   if (!cores.limit.empty()) out << "cores that this process may use: " << cores.text() << "\n";
 }
@@ -133,7 +131,7 @@ void print_workers(int workers, const Costs& costs, const Forecast& forecast, st
   constexpr double memory_of_worker = 30e6, memory_of_coordinator = 100e6, copies = 3;
   const double work = forecast.seconds - forecast.beside;
   const double wall = forecast.beside + std::max(work / workers, forecast.chain);
-  out << fmt::format("with {} worker{}: {}", workers, workers == 1 ? "" : "s", duration_text(wall));
+  out << fmt::format("with {} worker{}: about {}", workers, workers == 1 ? "" : "s", duration_text(wall));
   if (forecast.chain > work / workers)
     out << fmt::format("; the longest chain alone takes {}: more than {} worker{} shorten nothing",
                        duration_text(forecast.chain), static_cast<long long>(std::ceil(work / forecast.chain)),
@@ -240,7 +238,7 @@ int command_plan(const Arguments& arguments, std::ostream& out) {
     CasePlanner planner(open.study, open.catalogue, open.registry);
     if (!arguments.part.whole()) keep_part(study, arguments.part, planner);
     StudyPlan all = plan_study(study, planner);
-    const Forecast costs = forecast(study, all.runnable, planner, open.registry);
+    const Forecast costs = forecast(study, all.runnable, open.registry);
     const std::vector<AxisValues> axes = axis_values(study);
     const auto runnable = static_cast<std::size_t>(all.costs.runnable);
 

@@ -5,6 +5,7 @@
 #include <ricochet/loader/catalogue.hpp>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "runners/command/command.hpp"
@@ -50,14 +51,26 @@ struct Arguments {
   FindHosts hosts;  ///< not a word of the command line: see run_command()
 };
 
+/// An option of a command: how it is written, what it says of itself, where its value goes.
+struct Option {
+  struct Count {
+    int Arguments::*value;
+    int most;  ///< at least 1
+  };
+  std::string name, value, text;  ///< value: what the help calls it; "": the option has none
+  std::variant<std::monostate, bool Arguments::*, Count, std::optional<double> Arguments::*, std::string Arguments::*,
+               std::optional<std::filesystem::path> Arguments::*, std::vector<std::filesystem::path> Arguments::*,
+               StudyPart Arguments::*>
+      target;
+};
+
 /// One command: what it takes, what it says of itself, what it does.
 struct Subcommand {
   std::string name;
   std::string usage;  ///< operands and options as the help shows them
   std::string summary;
   std::size_t fewest = 0, most = 0;  ///< number of operands
-  std::vector<std::string> options;  ///< of plugin, out, to, jobs, fresh, table, cases, parameter, start, cell,
-                                     ///< periods, samples, study, snapshots, part, curves
+  std::vector<Option> options;       ///< in the order of the help
   int (*run)(const Arguments& arguments, std::ostream& out);
 };
 

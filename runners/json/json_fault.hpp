@@ -1,19 +1,19 @@
 #pragma once
 #include <cstddef>
-#include <optional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace ricochet {
 
-/// The first thing in a text that is no JSON, in the words of somebody who writes studies by hand.
+/// The first fault of a text that is no JSON.
 struct JsonFault {
   std::size_t at = 0;   ///< byte
   std::string message;  ///< "a comma is missing after 2.0e11"
 };
 
-/// Nothing for JSON (RFC 8259) that is nested no deeper than the stack allows; of texts that are no UTF-8 nothing is
-/// said.
-std::optional<JsonFault> find_json_fault(const std::string& text);
+/// What the parser says of a text that it refuses, at the token where it stopped. The usual slips are told in plainer
+/// words: a comma missing or trailing, other quotes, comments, bare words, numbers with units.
+JsonFault json_fault(const std::string& text, const nlohmann::json::parse_error& error);
 
 /// The line of a text in which a byte stands, cut around it where long, and a caret under the byte: two lines,
 /// indented.

@@ -126,14 +126,13 @@ bool is_utf16(const std::string& text) {
   return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") || text.find('\0') < 4;
 }
 
-[[noreturn]] void refuse_text(const std::string& text, std::size_t stopped_at) {
+[[noreturn]] void refuse_text(const std::string& text, const Json::parse_error& error) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw SyntaxError({}, "the file is empty; expected a study, a JSON object");
   if (is_utf16(text)) throw SyntaxError({}, "not valid JSON: the file is UTF-16; save it as UTF-8");
-  if (const auto fault = find_json_fault(text))
-    throw SyntaxError(position_of(text, fault->at),
-                      "not valid JSON: " + fault->message + "\n" + shown_line(text, fault->at));
-  throw SyntaxError(position_of(text, stopped_at), "not valid JSON: this byte is no UTF-8; save the file as UTF-8");
+  const JsonFault fault = json_fault(text, error);
+  throw SyntaxError(position_of(text, fault.at),
+                    "not valid JSON: " + fault.message + "\n" + shown_line(text, fault.at));
 }
 
 void drop_remarks(Json& value) {
@@ -176,7 +175,7 @@ Json parse_json(const std::string& text) {
   try {
     result = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    refuse_text(text, error.byte > 0 ? error.byte - 1 : 0);
+    refuse_text(text, error);
   } catch (const Json::out_of_range& error) {
     const std::string what = error.what();
     const auto open = what.find('\''), close = what.rfind('\'');

@@ -11,7 +11,6 @@
 
 #include "runners/march/block_service.hpp"
 #include "runners/march/case_plan.hpp"
-#include "runners/march/march_pace.hpp"
 #include "runners/march/motion_shelf.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/record.hpp"
@@ -81,12 +80,6 @@ struct Kind {
 
   /// What would run for a case, decided without running it.
   std::function<CasePlan(const StudyCase&, const Registry&)> plan;
-  /// What watches the steps of a case that marches its scene, once, from start to end: a forecast then rests on its
-  /// measured pace. Empty: on what the plan predicts.
-  MakeObserver watch;
-  /// How many times the processor time that its plan predicts a case takes, found by running a small part of it; 0
-  /// where that cannot be told. Of kinds whose cases march more than once. Empty: the plan is believed.
-  std::function<double(const StudyCase&, const Registry&)> rehearse;
   /// Processor seconds that a study takes beside the marches of its cases (references, repeats). Empty: none.
   std::function<double(const ForecastContext&)> beside;
   /// What runs the cases of a study.

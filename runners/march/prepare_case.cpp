@@ -70,7 +70,7 @@ std::optional<double> scheme_restitution(const StudyCase& study_case, const Regi
   return value_of_role(scheme.manual.parameters, study_case.time.parameters, ParameterRole::restitution);
 }
 
-Prepared prepare_case(const StudyCase& study_case, const Registry& registry, long long expected_steps) {
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry) {
   Prepared prepared;
   prepared.steps = whole_steps(study_case, prepared.notes);
   const auto mass = make_mass(study_case, registry);
@@ -91,8 +91,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry, lon
     return prepared;
   }
   const StepPlan& steps = std::get<StepPlan>(plan);
-  prepared.marginal = is_marginal(*prepared.problem, steps);
-  if (prepared.marginal)
+  if (is_marginal(*prepared.problem, steps))
     prepared.notes.push_back(
         "marginal: a step leaves all of the highest frequencies (ρ∞ = 1), and what has no mass here has no viscosity "
         "either: once disturbed it goes on from step to step; use a scheme that damps them, or a stiffness damping");
@@ -107,7 +106,7 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry, lon
     prepared.notes.push_back(
         "a compliant law rebounds by its own stiffness: the scheme's restitution has no part in it");
   CompileOptions options;
-  options.expected_steps = expected_steps > 0 ? expected_steps : prepared.steps;
+  options.expected_steps = prepared.steps;
   options.march = march_way(study_case);
   auto compiled = compile(prepared.problem, steps, study_case.step, std::move(law),
                           {scene_lane(*prepared.problem, study_case.contact.parameters)}, options);

@@ -18,14 +18,11 @@ struct Prepared {
   std::string refusal;
   long long steps = 0;  ///< whole steps within the duration
   std::vector<std::string> notes;
-  /// A step leaves all of the highest frequencies, and what has no mass has no viscosity either.
-  bool marginal = false;
   double aside_seconds = 0;  ///< processor time of looking for the limit of an explicit step: no part of the method
 };
 
 /// Discretises, plans and compiles a case. `step` and `elements` may differ from the case's own (references).
-/// `expected_steps`: those that its operator is chosen for, where it marches a part of them; 0: its own.
-Prepared prepare_case(const StudyCase& study_case, const Registry& registry, long long expected_steps = 0);
+Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
 
 /// The record of a case as far as its preparation tells: id, axes, notes, operator, what is left out; `refused`, with
 /// the sentence, where there is no program.

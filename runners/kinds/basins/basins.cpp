@@ -38,7 +38,6 @@ Kind basins_kind() {
   kind.format.text = "Each case goes through a grid of two parameters: where the orbit of each cell ends.";
   kind.format.keys = basins_keys();
   kind.plan = plan_basins;
-  kind.rehearse = rehearse_basins;
   kind.point = march_cell_again;
   kind.answers = [](const StudyResults& results) {
     Table table = answers_head();

@@ -6,9 +6,6 @@ namespace ricochet {
 /// What would run for a case of kind `basins`.
 CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 
-/// How many times its prediction a case takes, by a coarse grid; 0 where that cannot be told.
-double rehearse_basins(const StudyCase& study_case, const Registry& registry);
-
 /// Runs one case of kind `basins`: the orbit of every cell of the grid from the scene's own initial state, as lanes, or
 /// of the cells that GridRefinement asks for.
 ///

@@ -51,7 +51,6 @@ Kind bifurcation_kind() {
   kind.format.text = "Each case goes through a parameter: sections, classes and exponents of its orbits.";
   kind.format.keys = bifurcation_keys();
   kind.plan = plan_bifurcation;
-  kind.rehearse = rehearse_bifurcation;
   kind.measures = orbit_measures();
   kind.answers = bifurcation_answers;
   kind.point = march_orbit_again;

@@ -9,9 +9,6 @@ namespace ricochet {
 /// What would run for a case of kind `bifurcation`.
 CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry);
 
-/// How many times its prediction a case takes, by orbits at a few values; 0 where that cannot be told.
-double rehearse_bifurcation(const StudyCase& study_case, const Registry& registry);
-
 /// Runs one case of kind `bifurcation`: every value of the parameter from every start, as lanes where they share a
 /// factorisation. Tables `values`, `bifurcations`; numbers `points`, `impacts`, `portraits` (see the README's table of
 /// files) and, not exported, `contact_law`: compliance (m/N; 0: rigid, absent: not known). A value that cannot be

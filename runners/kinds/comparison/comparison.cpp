@@ -80,17 +80,6 @@ CaseRunner compare_cases(const RunContext& context) {
   return runner;
 }
 
-std::shared_ptr<const Observers> recorded(const StudyCase&, const Marcher& marcher, long long) {
-  struct Recorded {
-    ImpactRecorder recorder;
-    ContactLog log;
-    Observers observers;
-    explicit Recorded(const Marcher& of) : recorder(of), log(of), observers{&recorder, &log} {}
-  };
-  const auto all = std::make_shared<Recorded>(marcher);
-  return {all, &all->observers};
-}
-
 double seconds_beside(const ForecastContext& context) {
   // Reading a motion at 128 places, and measuring it against the reference, for each of its samples; of an oscillator
   // there is one place.

@@ -12,8 +12,6 @@ Json comparison_settings(const Json& resolved);
 /// anything runs.
 CaseRunner compare_cases(const RunContext& context);
 
-/// What watches the march of a case that is compared: its contact.
-std::shared_ptr<const Observers> recorded(const StudyCase& study_case, const Marcher& marcher, long long steps);
 /// References, repeats, and what reading and comparing motions takes.
 double seconds_beside(const ForecastContext& context);
 

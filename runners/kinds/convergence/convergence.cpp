@@ -22,7 +22,6 @@ Kind convergence_kind() {
   kind.format.settings = comparison_settings;
   kind.format.check = check_comparison;
   kind.plan = plan_case;
-  kind.watch = recorded;
   kind.beside = seconds_beside;
   kind.march = run_case;
   kind.start = compare_cases;

@@ -11,9 +11,6 @@ namespace ricochet {
 /// What would run for a case of kind `stability`: the steps that observation marches at most, bisection not counted.
 CasePlan plan_stability(const StudyCase& study_case, const Registry& registry);
 
-/// How many times its prediction a case takes, by a few steps of its range; 0 where that cannot be told.
-double rehearse_stability(const StudyCase& study_case, const Registry& registry);
-
 /// Runs one case of kind `stability`: settings {"steps": {"from", "to", "count"}, "observe", "budget"}, steps evenly
 /// spaced on a logarithmic scale, study_case.duration the simulated time of observed scenes (0: three periods of the
 /// first mode).

@@ -92,7 +92,6 @@ Kind stability_kind() {
   kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
   kind.format.check = check_stability;
   kind.plan = plan_stability;
-  kind.rehearse = rehearse_stability;
   kind.start = [](const RunContext& context) {
     CaseRunner runner;
     runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {

@@ -13,9 +13,6 @@ namespace ricochet {
 /// What would run for a case that marches its scene once.
 CasePlan plan_case(const StudyCase& study_case, const Registry& registry);
 
-/// What watches the march of a trajectory of so many steps: energies and contact, and what the study asks for.
-std::shared_ptr<const Observers> watched(const StudyCase& study_case, const Marcher& marcher, long long steps);
-
 /// Runs one case of kind `trajectory` to its end. Whatever goes wrong in it is the record's status and reason; input
 /// errors that only show on this case's mesh are InputError.
 CaseRecord run_case(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop);

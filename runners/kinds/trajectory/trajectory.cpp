@@ -229,7 +229,6 @@ Kind trajectory_kind() {
     return given_settings(resolved, {"window", "snapshots", "budget"});
   };
   kind.plan = plan_case;
-  kind.watch = watched;
   kind.march = run_case;
   kind.start = [](const RunContext& context) {
     CaseRunner runner;

@@ -26,7 +26,6 @@ Kind work_precision_kind() {
   kind.format.settings = comparison_settings;
   kind.format.check = check_comparison;
   kind.plan = plan_case;
-  kind.watch = recorded;
   kind.beside = seconds_beside;
   kind.march = run_case;
   kind.start = [](const RunContext& context) {

@@ -1,11 +1,10 @@
-// A forecast is measured on this machine: laws of it, and no figure.
+// Laws of a forecast, and no figure: machines differ.
 #include "runners/run/forecast.hpp"
 
 #include <catch2/catch.hpp>
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/march/march_pace.hpp"
 #include "runners/study/load_study.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
@@ -39,18 +38,14 @@ struct Planned {
     CasePlanner planner(study, catalogue, registry);
     for (const StudyCase& one : study.cases) cases.push_back({&one, planner.plan(one).plan});
   }
-  Forecast forecast() {
-    const CasePlanner planner(study, catalogue, registry);
-    return ricochet::forecast(study, cases, planner, registry);
-  }
+  Forecast forecast() { return ricochet::forecast(study, cases, registry); }
 };
 
 }  // namespace
 
-TEST_CASE("forecast: a part of every case of a small study is marched, and all cost something") {
+TEST_CASE("forecast: every case costs something, and the chain is a part of all") {
   Planned planned(swinging_beam("trajectory"));
   const Forecast found = planned.forecast();
-  CHECK(found.measured == 8);
   CHECK(found.chain > 0);
   CHECK(found.seconds > found.chain);
   for (const PlannedCase& one : planned.cases) CHECK(one.plan.predicted_seconds > 0);
@@ -80,16 +75,6 @@ TEST_CASE("forecast: a reference that is marched on finer steps is counted once 
   CHECK(rest < 1);  // samples
 }
 
-TEST_CASE("a pace is that of the case, whatever its step: what is refused has none") {
-  Planned planned(swinging_beam("trajectory"));
-  for (const PlannedCase& one : planned.cases) CHECK(march_pace(*one.study_case, planned.registry).value_or(0) > 0);
-  Json impossible = swinging_beam("trajectory");
-  impossible["methods"]["mass"] = "singular";
-  impossible["methods"]["time"] = {{"name", "moreau-jean"}, {"theta", 0.5}};
-  Planned refused(impossible);
-  CHECK_FALSE(march_pace(*refused.cases.front().study_case, refused.registry));
-}
-
 TEST_CASE("forecast: a reference that is solved costs what solving it takes, and not a second") {
   Json study = Json::parse(R"({
     "name": "forecast", "kind": "convergence",
@@ -105,7 +90,7 @@ TEST_CASE("forecast: a reference that is solved costs what solving it takes, and
   CHECK(seconds < 0.5);
 }
 
-TEST_CASE("forecast: a part of a sweep, and of a range of steps, costs as much more than its plan as the whole does") {
+TEST_CASE("forecast: a sweep and a range of steps take what their plans predict, within a factor") {
   Json sweep = Json::parse(R"({
     "name": "sweep", "kind": "bifurcation",
     "scene": {"structure": {"type": "oscillator", "mass": 1, "stiffness": 1, "damping": 0.2,
@@ -124,17 +109,15 @@ TEST_CASE("forecast: a part of a sweep, and of a range of steps, costs as much m
     REQUIRE(planned.study.cases.size() == 1);
     const StudyCase& one = planned.study.cases.front();
     const Kind& kind = *find_kind(planned.study.kind);
-    const double ratio = kind.rehearse(one, planned.registry);
-    REQUIRE(ratio > 0);
     const CaseRunner runner = kind.start({planned.study, planned.registry, [](const StudyCase&) { return ""; }});
     const std::atomic<bool> stop = false;
     if (runner.open) runner.open({}, stop);
     const CaseRecord record = runner.run(one, stop);
     const double taken = record.setup_seconds + record.run_seconds,
-                 predicted = ratio * planned.cases.front().plan.predicted_seconds;
-    // A machine has its moods.
-    CHECK(predicted < 4 * taken);
-    CHECK(taken < 4 * predicted);
+                 predicted = planned.cases.front().plan.predicted_seconds;
+    // Three, and what else the machine does.
+    CHECK(predicted < 6 * taken);
+    CHECK(taken < 6 * predicted);
   }
 }
 
