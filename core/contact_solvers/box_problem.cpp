@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/restoring_solver.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 namespace {

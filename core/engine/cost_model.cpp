@@ -6,7 +6,7 @@
 #include <optional>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 #include <string>
 
 namespace ricochet {

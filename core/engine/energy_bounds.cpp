@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/engine/energy_bounds.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 

@@ -8,7 +8,7 @@
 #include <ricochet/engine/lane_state.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 

@@ -143,7 +143,7 @@ class Marcher {
   void restore_work(const StageProgram& program, StageState& state);
   void measure_way(const StageProgram& program, StageState& state, const double* z);
   void keep_contact(StageState& state);
-  // contact_measure.cpp: what the law reads before any effort.
+  // What the law reads before any effort.
   std::uint32_t measure_contact(StageProgram& program, StageState& state, const double* z);
   void measure_rows(const RowMatrix& rows, int terms, const double* const* x, const double* weights,
                     const double* offset, double* out);
@@ -159,12 +159,11 @@ class Marcher {
   void tangent_contact(StageProgram& program, StageState& state);
   void tangent_targets(const StageProgram& program, StageState& state, int lane, int tangent);
 
-  // lane_checks.cpp: lanes that diverge.
+  // lane_state.cpp: lanes that come and go, or diverge.
   void check_lanes();
   void clear_lane(int lane);
   void clear_efforts(int column);
 
-  // lane_state.cpp: lanes that come and go.
   void place_lane(int lane);
   double stored_at_start(int lane) const;
   void place_stops(int lane);

@@ -7,8 +7,8 @@
 #include <ricochet/engine/flight/lane_flight.hpp>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
-#include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 

@@ -1,13 +1,9 @@
 #pragma once
 #include <cstddef>
-#include <limits>
 #include <new>
 #include <vector>
 
 namespace ricochet {
-
-/// A stop that is never reached, a bound that bounds nothing.
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Storage that starts on 64 bytes, wherever it is copied or moved to.
 template <class T>

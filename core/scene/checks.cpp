@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>

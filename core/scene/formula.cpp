@@ -10,6 +10,7 @@
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/formula.hpp>
+#include <ricochet/scene/formula_errors.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/kernels/block.hpp>
+#include <ricochet/kernels/infinity.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numeric>
 #include <ricochet/engine/flight/closed_steps.hpp>
-#include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <ricochet/engine/flight/flight_set.hpp>
 #include <ricochet/engine/flight/step_rows.hpp>
-#include <ricochet/kernels/block.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
+#include <ricochet/kernels/infinity.hpp>
 
 namespace ricochet {
 namespace {
