@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-/// Who provides the code that is about to run: "time 'bathe' (/path/time-bathe.so)".
+/// Who provides the code that is about to run: "time 'bathe' (/path/time.so)".
 struct PluginIdentity {
   std::string role, name, file;  ///< file: "" when registered in-process
   std::string text() const;
