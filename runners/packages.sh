@@ -4,11 +4,13 @@
 say() { printf '%s\n' "$*"; }
 give_up() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
-build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev nlohmann-json3-dev
+# Beyond the standard library: matrices (Eigen, CHOLMOD of SuiteSparse, headers of Boost), words of commands (Boost), JSON, formulas
+# (muParser), the store (SQLite), texts (fmt), pages (mustache), messages between processes (cereal).
+build_packages="libeigen3-dev libsuitesparse-dev libboost-dev libboost-program-options-dev nlohmann-json3-dev
 libmuparser-dev libsqlite3-dev libsqlitecpp-dev libfmt-dev libkainjow-mustache-dev
 libcereal-dev"
 # command=package: the command may come from elsewhere than Debian.
-build_commands="g++=g++ cmake=cmake ninja=ninja-build git=git"
+build_commands="g++=g++ cmake=cmake ninja=ninja-build"
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
@@ -49,8 +51,16 @@ npm_packages() {
   (cd "$1" && npm ci --no-audit --no-fund)
 }
 
-# The chart library; without it reports have tables only, so failing here stops nothing.
+# The chart library; without it reports have tables only, so failing here stops nothing. npm is used where it is, and not installed for
+# this: Debian's drags four hundred packages.
 fetch_charts() {
-  npm_packages "$root/runners/report" echarts ||
-    say "npm could not fetch the chart library: reports will have tables only; run this again with a network for charts" >&2
+  folder=$root/runners/report
+  [ -d "$folder/node_modules/echarts" ] && return 0
+  if command -v npm >/dev/null 2>&1; then
+    npm_packages "$folder" echarts && return 0
+  else
+    say "Fetching echarts (once)"
+    cmake -D "FOLDER=$folder" -D PACKAGE=echarts -P "$root/runners/fetch_package.cmake" && return 0
+  fi
+  say "the chart library could not be fetched: reports will have tables only; run this again with a network for charts" >&2
 }

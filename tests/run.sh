@@ -24,5 +24,6 @@ npm_packages "$root/tests/runners/study/validator" ajv || give_up "npm could not
 
 cmake --preset release -DRICOCHET_TESTS=ON -DRICOCHET_MPI=$mpi
 cmake --build --preset release --target tests
+sh tests/syntax.sh
 # Tests of processes and of the browser wait for much of their time.
 exec ctest --preset release -j "$(($(nproc) + 2))"

@@ -2,7 +2,6 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <boost/dll/runtime_symbol_info.hpp>
 #include <cctype>
 #include <cstdlib>
 #include <memory>
@@ -130,7 +129,7 @@ Catalogue::Catalogue(fs::path installed, const std::vector<fs::path>& folders, c
 }
 
 Catalogue Catalogue::standard(const std::vector<fs::path>& files) {
-  const fs::path program = boost::dll::program_location().string();
+  const fs::path program = fs::read_symlink("/proc/self/exe");
   fs::path installed = program.parent_path().parent_path() / "lib" / "ricochet";
   std::error_code ignored;
   // A distribution may install libraries under lib/<triplet>.

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/dll/runtime_symbol_info.hpp>
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
@@ -149,7 +148,7 @@ std::string called(const fs::path& program) {
 }  // namespace
 
 int command_new(const Arguments& arguments, std::ostream& out) {
-  const Wish wish{role_called(arguments.operands[0]), arguments.operands[1], boost::dll::program_location().string()};
+  const Wish wish{role_called(arguments.operands[0]), arguments.operands[1], fs::read_symlink("/proc/self/exe")};
   check_name(wish, arguments);
   const Example example = example_of(wish.role);
   std::string files;

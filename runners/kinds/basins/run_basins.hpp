@@ -1,5 +1,8 @@
 #pragma once
-#include "runners/kinds/bifurcation/run_bifurcation.hpp"
+#include <ricochet/contract/registry.hpp>
+
+#include "runners/march/case_plan.hpp"
+#include "runners/march/motion_shelf.hpp"
 
 namespace ricochet {
 

@@ -14,7 +14,7 @@
 #include <set>
 
 #include "runners/kinds/comparison/motion_bytes.hpp"
-#include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/march/case_plan.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/study/field.hpp"

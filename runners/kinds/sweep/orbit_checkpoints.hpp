@@ -3,9 +3,9 @@
 #include <set>
 #include <string>
 
-#include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
+#include "runners/march/motion_shelf.hpp"
 
 namespace ricochet {
 
