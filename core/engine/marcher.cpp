@@ -71,33 +71,6 @@ Marcher::Marcher(Program program)
   connect_tests();
 }
 
-// Which stage's work each gives back.
-void Marcher::connect_works() {
-  for (std::size_t k = 0; k < program_.stages.size(); ++k)
-    if (const int before = program_.stages[k].restores; before > 0)
-      stage_states_[k]->restored = stage_states_[k - static_cast<std::size_t>(before)].get();
-}
-
-// Which operators measure what the law reads: positions that no effort has moved yet, where no load is added to the
-// free step apart and one lane alone does not fly, which sums modes in another order.
-void Marcher::connect_tests() {
-  if (program_.load || program_.flight || slot_count() != 2) return;
-  const auto connect = [&](StageProgram& program, StageState& state) {
-    if (!state.delassus || !program.driven || program.gate || state.restored || program.effort.size() > 1) return;
-    if (state.rate.rows() > 0 || state.before.rows() > 0) return;
-    if (!program.op->takes_points(program_.model->measured().view())) return;
-    PointTest& test = state.test.emplace();
-    test.x = slot_pointers_.data();
-    std::copy_n(state.measure_weights.begin(), 3, test.weight);
-    test.offset = offset_.data();
-    test.lower = lower_.data();
-    test.upper = upper_.data();
-    test.y = state.free.data();
-  };
-  for (std::size_t k = 0; k < start_states_.size(); ++k) connect(program_.start[k], *start_states_[k]);
-  for (std::size_t k = 0; k < stage_states_.size(); ++k) connect(program_.stages[k], *stage_states_[k]);
-}
-
 // What the march does for its observers alone. Operators add up squares of unknowns that only efforts of the same stage
 // may move.
 void Marcher::connect(const Observers& observers) {

@@ -32,13 +32,6 @@ constexpr double after_stop = 6;        // s for coming back; for a case that wa
 constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
 
-std::string other_arithmetic(const std::string& host) {
-  return fmt::format(
-      "{} computes other last digits than this machine (another processor or C library): a study's results come from "
-      "one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
-      host);
-}
-
 /// A worker ended, or gave up.
 struct Lost {
   WorkerEnd end;
@@ -261,7 +254,11 @@ class IsolatedCases::Desk {
     if (ready.identity != of_all_)
       throw std::runtime_error(
           fmt::format("a worker on {} has another program or other plugins than this process", host));
-    if (ready.arithmetic != opening_.arithmetic) throw std::runtime_error(other_arithmetic(host));
+    if (ready.arithmetic != opening_.arithmetic)
+      throw std::runtime_error(
+          fmt::format("{} computes other last digits than this machine (another processor or C library): a study's "
+                      "results come from one arithmetic; ask the scheduler for nodes of one kind (--constraint)",
+                      host));
   }
 
   /// Sends an order for a case and serves the worker until it is done with it. `patience`: s for coming back after
@@ -395,8 +392,7 @@ CaseRunner IsolatedCases::runner() {
 }
 
 double IsolatedCases::predicted_seconds(const StudyCase& study_case) {
-  static const std::atomic<bool> never{false};
-  const CaseAnswer answer = desk_->ask(Word::plan, study_case, never);
+  const CaseAnswer answer = desk_->ask(Word::plan, study_case, std::atomic<bool>{false});
   if (!answer.error.empty()) throw std::runtime_error(answer.error);
   return answer.seconds;
 }

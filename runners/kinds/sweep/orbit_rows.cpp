@@ -46,8 +46,8 @@ OrbitRow orbit_row(const OrbitView& view, const std::string& start, const Sectio
   row.transient_periods = orbit.transient_periods;
   row.settled = orbit.settled;
   row.chatter = orbit.most_on_a_side >= chatter_impacts;
-  row.sticking = static_cast<double>(orbit.contact_steps) /
-                 (static_cast<double>(orbit.kept_periods) * plan.steps_per_period);
+  row.sticking =
+      static_cast<double>(orbit.contact_steps) / (static_cast<double>(orbit.kept_periods) * plan.steps_per_period);
   row.evidence = verdict.evidence;
   return row;
 }
