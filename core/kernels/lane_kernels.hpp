@@ -5,8 +5,8 @@
 /// \file
 /// The inner loops of marching, on blocks of lanes. A block is rows × T doubles, lanes contiguous, 64-byte aligned and
 /// padded to a multiple of 64 bytes; T is one of 1, 2, 4, 8, 16, 32. Every kernel does the same sequence of operations
-/// for each lane whatever T is, so a lane's result does not depend on its company. Instruction sets are chosen when the
-/// table is asked for, never by the ABI.
+/// for each lane whatever T is, so a lane's result does not depend on the other lanes of its block. Instruction sets are
+/// chosen when the table is asked for, never by the ABI.
 namespace ricochet {
 
 /// The most blocks that a kernel combines: the slots of a plan, and one more where the unknown z is measured with them.

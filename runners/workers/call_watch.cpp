@@ -40,7 +40,7 @@ struct CallWatch::Answer {
 void CallWatch::on_question(int) {
   const int error = errno;
   Answer* const answer = asked_.load(std::memory_order_acquire);
-  // A signal that a stranger sends is no question.
+  // A signal from another process is no question.
   if (!answer || answer->asked.load(std::memory_order_acquire) == answer->answered.load(std::memory_order_relaxed))
     return;
   const PluginCall call = *answer->call;

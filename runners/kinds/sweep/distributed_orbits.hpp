@@ -15,7 +15,7 @@ namespace ricochet {
 
 /// Marches the orbits of a queue as blocks in other processes. A block whose process ends goes back orbit by orbit,
 /// each from where it was last seen; an orbit that ends a process of its own for the second time has stopped there,
-/// with the reason. All others have their usual bits: none depends on its company.
+/// with the reason. All others are bitwise equal to a run without it.
 class DistributedOrbits {
  public:
   DistributedOrbits(OrbitQueue& queue, const ForcedScenes& scenes, const ScheduleOptions& options);

@@ -14,8 +14,7 @@ namespace ricochet {
 struct ScheduleOptions {
   SectionPlan section;
   int lanes = 8;  ///< most lanes of a block
-  /// Where no orbit is ready any more, so many or fewer that still run are left as they are: somebody marches them in
-  /// company.
+  /// Where no orbit is ready any more, so many or fewer that still run are left as they are: another block takes them.
   int leave = 0;
   double interval = 5;             ///< s between checkpoints
   double budget = 1e300;           ///< processor seconds
