@@ -51,16 +51,8 @@ npm_packages() {
   (cd "$1" && npm ci --no-audit --no-fund)
 }
 
-# The chart library; without it reports have tables only, so failing here stops nothing. npm is used where it is, and not installed for
-# this: Debian's drags four hundred packages.
+# The chart library; without it reports have tables only, so failing here stops nothing.
 fetch_charts() {
-  folder=$root/runners/report
-  [ -d "$folder/node_modules/echarts" ] && return 0
-  if command -v npm >/dev/null 2>&1; then
-    npm_packages "$folder" echarts && return 0
-  else
-    say "Fetching echarts (once)"
-    cmake -D "FOLDER=$folder" -D PACKAGE=echarts -P "$root/runners/fetch_package.cmake" && return 0
-  fi
-  say "the chart library could not be fetched: reports will have tables only; run this again with a network for charts" >&2
+  npm_packages "$root/runners/report" echarts ||
+    say "npm could not fetch the chart library: reports will have tables only; run this again with a network for charts" >&2
 }
