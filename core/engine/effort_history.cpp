@@ -5,16 +5,11 @@
 #include <utility>
 
 namespace ricochet {
-namespace {
 
-// Stage `place` counted from the first of a step, negative in the steps before: which one it is, and how many steps
-// ago.
-std::pair<std::ptrdiff_t, std::ptrdiff_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t stages) {
+std::pair<int, std::size_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t stages) {
   const std::ptrdiff_t steps = place >= 0 ? 0 : (stages - 1 - place) / stages;
-  return {place + steps * stages, steps};
+  return {static_cast<int>(place + steps * stages), static_cast<std::size_t>(steps)};
 }
-
-}  // namespace
 
 // Which block holds p₋ₖ of each stage: stages follow each other without end, and each keeps as many of its own efforts
 // as any stage looks back to.
@@ -31,8 +26,7 @@ void Marcher::connect_efforts() {
   const auto source = [&](std::ptrdiff_t i, std::ptrdiff_t k) {
     const auto [j, steps] = place_in_steps(i - k, stages);
     // A stage that comes later in the step holds its effort of the step before.
-    return Source{stage_states_[static_cast<std::size_t>(j)].get(),
-                  static_cast<std::size_t>(j > i ? steps - 1 : steps)};
+    return Source{stage_states_[static_cast<std::size_t>(j)].get(), j > i ? steps - 1 : steps};
   };
   for (std::ptrdiff_t i = 0; i < stages; ++i) {
     if (!stage_states_[static_cast<std::size_t>(i)]->delassus) continue;
@@ -107,7 +101,7 @@ void Marcher::keep_start_efforts() {
   const auto before = static_cast<std::ptrdiff_t>(start_states_.size());
   for (std::ptrdiff_t i = 0; i < before; ++i) {
     const auto [j, steps] = place_in_steps(i - before, static_cast<std::ptrdiff_t>(stage_states_.size()));
-    const auto ago = static_cast<std::size_t>(steps - 1);
+    const std::size_t ago = steps - 1;
     StageState &start = *start_states_[static_cast<std::size_t>(i)],
                &stage = *stage_states_[static_cast<std::size_t>(j)];
     if (!start.delassus || !stage.delassus || ago >= stage.effort.size()) continue;

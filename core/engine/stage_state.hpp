@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -6,9 +7,14 @@
 #include <ricochet/engine/stage_delassus.hpp>
 #include <ricochet/engine/step_observer.hpp>
 #include <ricochet/kernels/block.hpp>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
+
+/// Which stage of a step stands at `place` stages after the first of a step, and how many steps before it; negative
+/// places are in the steps before.
+std::pair<int, std::size_t> place_in_steps(std::ptrdiff_t place, std::ptrdiff_t stages);
 
 /// What a Marcher keeps of a stage between steps, and the constants of its loop.
 struct StageState {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/engine/flight/step_rows.hpp>
+#include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 
 namespace ricochet {
@@ -13,25 +14,13 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-// Which stage of a step stands `back` stages before stage `stage`, and how many steps ago.
-std::pair<int, int> stage_before(int stage, int back, int stages) {
-  const int place = stage - back, steps = place >= 0 ? 0 : (stages - 1 - place) / stages;
-  return {place + steps * stages, steps};
-}
-
 std::vector<double> numbers(const VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }
 
 // c with r = c s; 0 where there is none.
 double ratio_of(const Combination& s, const Combination& r) {
-  const auto all = [](const Combination& c) {
-    std::vector<double> weights = c.slots;
-    weights.resize(most_slots);
-    weights.push_back(c.z);
-    return weights;
-  };
-  const std::vector<double> a = all(s), b = all(r);
+  const std::vector<double> a = slot_weights(s), b = slot_weights(r);
   const auto largest =
       std::max_element(a.begin(), a.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (*largest == 0) return 0;
@@ -91,7 +80,7 @@ void ClosedRows::find_memory(const Program& program) {
     const StageProgram& one = program.stages[static_cast<std::size_t>(stage)];
     const std::size_t weights = std::max(one.effort.size(), one.work_effort.size());
     for (std::size_t k = 0; one.reads_contact && k < weights; ++k)
-      memory_ = std::max(memory_, static_cast<std::size_t>(stage_before(stage, static_cast<int>(k), stages()).second));
+      memory_ = std::max(memory_, place_in_steps(stage - static_cast<std::ptrdiff_t>(k), stages()).second);
   }
 }
 
@@ -226,10 +215,9 @@ void ClosedRows::add_balances(const Program& program) {
           harmonic(PhaseWeights(work.support, program.problem->support.pulsation, program.h), drive_);
       std::copy_n(lift.data(), drives_, balance.lift.begin());
       for (std::size_t k = 0; reads(at) && k < stage.work_effort.size(); ++k) {
-        const auto [source, steps] = stage_before(at, static_cast<int>(k), stages());
+        const auto [source, steps] = place_in_steps(at - static_cast<std::ptrdiff_t>(k), stages());
         if (reads(source))
-          balance.work_effort.emplace_back(
-              static_cast<std::size_t>(steps) * m_ + static_cast<std::size_t>(first(source)), stage.work_effort[k]);
+          balance.work_effort.emplace_back(steps * m_ + static_cast<std::size_t>(first(source)), stage.work_effort[k]);
       }
     }
     if (plan.work || !balance.losses.empty()) balances.push_back(std::move(balance));

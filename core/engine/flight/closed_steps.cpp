@@ -14,13 +14,7 @@ constexpr double resting = 64 * 0x1p-52;
 
 // Whether what a rigid law holds in this stage is the position at its end.
 bool stops_the_end(const StageProgram& stage, const Stage& plan) {
-  const auto weights = [](const Combination& c) {
-    std::vector<double> all = c.slots;
-    all.resize(most_slots);
-    all.push_back(c.z);
-    return all;
-  };
-  return stage.measure_levels.size() == 1 && weights(stage.measure) == weights(plan.update[0]);
+  return stage.measure_levels.size() == 1 && slot_weights(stage.measure) == slot_weights(plan.update[0]);
 }
 
 }  // namespace

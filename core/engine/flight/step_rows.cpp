@@ -135,4 +135,11 @@ VectorXd EffortResponse::of(int at, const Combination& c) const {
   return sum;
 }
 
+std::vector<double> slot_weights(const Combination& c) {
+  std::vector<double> all = c.slots;
+  all.resize(most_slots);
+  all.push_back(c.z);
+  return all;
+}
+
 }  // namespace ricochet

@@ -79,6 +79,9 @@ inline double weight_at(const std::vector<double>& weights, int j) {
   return static_cast<std::size_t>(j) < weights.size() ? weights[static_cast<std::size_t>(j)] : 0.0;
 }
 
+/// Weights of all slots a plan may have, then that of z.
+std::vector<double> slot_weights(const Combination& c);
+
 /// What an effort of 1 N along one row of modes does to a step, over modes with φᵀKφ = 1 and φᵀMφ = μ: the effort that
 /// stage `stage` found `ago` steps before, as far as the stages of this step weigh it, the slots zero where it begins.
 class EffortResponse {

@@ -52,8 +52,7 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
         "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");
   const CaseRecord& record = find_case(results, asked.case_id);
-  stored_table(record, "values");
-  const std::vector<OrbitRow> orbits = orbits_of(record);
+  const std::vector<OrbitRow> orbits = orbits_in(stored_table(record, "values"));
   const OrbitRow& orbit = find_orbit(orbits, *asked.parameter, asked.start);
   if (!orbit.done()) throw PointRefused(fmt::format("this orbit is {}: {}", orbit.status, orbit.reason));
   PointTask task;

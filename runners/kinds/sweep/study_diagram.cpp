@@ -25,7 +25,7 @@ int start_in(std::vector<DiagramStart>& starts, const std::string& name) {
 }
 
 void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
-  const std::vector<OrbitRow> orbits = orbits_of(*source.record);
+  const std::vector<OrbitRow> orbits = orbits_in(*source.table);
   for (std::size_t r = 0; r < orbits.size(); ++r) {
     const OrbitRow& orbit = orbits[r];
     if (std::isnan(orbit.parameter)) continue;

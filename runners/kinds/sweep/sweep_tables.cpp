@@ -106,12 +106,15 @@ RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
   return type;
 }
 
+std::vector<OrbitRow> orbits_in(const Table& values) {
+  int exponents = 0;
+  while (find_column(values.columns, exponent_name(exponents + 1))) ++exponents;
+  return orbit_row_type(exponents).read(values);
+}
+
 std::vector<OrbitRow> orbits_of(const CaseRecord& record) {
   const Table* table = find_table(record.tables, "values");
-  if (!table) return {};
-  int exponents = 0;
-  while (find_column(table->columns, exponent_name(exponents + 1))) ++exponents;
-  return orbit_row_type(exponents).read(*table);
+  return table ? orbits_in(*table) : std::vector<OrbitRow>();
 }
 
 RowType<ChangeRow> change_row_type(const SweptColumns& swept) {

@@ -42,6 +42,8 @@ struct OrbitRow {
 };
 /// With so many exponents.
 RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept = {});
+/// The rows of `values`, with as many exponents as it has.
+std::vector<OrbitRow> orbits_in(const Table& values);
 /// The orbits of a case, in its order; none where it has no such table.
 std::vector<OrbitRow> orbits_of(const CaseRecord& record);
 

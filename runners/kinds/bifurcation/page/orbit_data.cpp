@@ -289,9 +289,8 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   OrbitJson cases = OrbitJson::object();
   for (const CaseRecord* record : view.all()) {
     const Table* table = find_table(record->tables, "values");
-    if (!table) continue;
-    const std::vector<OrbitRow> orbits = orbits_of(*record);
-    if (orbits.empty()) continue;
+    if (!table || table->rows.empty()) continue;
+    const std::vector<OrbitRow> orbits = orbits_in(*table);
     OrbitJson one = {{"columns", columns_of(*table)}};
     OrbitJson group = OrbitJson::array(), kind = OrbitJson::array();
     double low = INFINITY, high = -INFINITY;
