@@ -7,7 +7,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 
 # shellcheck disable=SC2086  # lists of words
-install_missing $build_commands $build_packages catch2
+install_missing $build_commands $build_packages catch2 git=git python3=python3
 # The report is looked at in a browser; RICOCHET_WITHOUT_BROWSER=1 says that this machine shall go without.
 [ "${RICOCHET_WITHOUT_BROWSER:-}" = 1 ] || install_missing chromium=chromium node=nodejs pdftotext=poppler-utils
 # Runs on several machines are tried with Open MPI and with Slurm, both on this one; RICOCHET_WITHOUT_MPI=1: neither.

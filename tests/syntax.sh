@@ -3,11 +3,17 @@
 # includes and shadowed names. With clang where it is installed.
 set -eu
 cd "$(dirname "$0")/.."
-command -v git >/dev/null 2>&1 && git rev-parse -q --verify "${1:-HEAD~1}" >/dev/null 2>&1 || exit 0
+since=${1:-HEAD~1}
+if ! git rev-parse -q --verify "$since" >/dev/null 2>&1; then
+  echo "no source is read by itself: there is no commit $since here" >&2
+  exit 0
+fi
 most=60  # files: a few minutes
-changed=$(git diff --name-only --diff-filter=d "${1:-HEAD~1}" -- 'core/*.cpp' 'runners/*.cpp' 'plugins/*.cpp' 'tests/*.cpp' |
-  grep -v -E '^(plugins/examples|tests/benchmarks|tests/plugins/out_of_tree)/' | head -n $most)
-[ -n "$changed" ] || exit 0
+all=$(git diff --name-only --diff-filter=d "$since" -- 'core/*.cpp' 'runners/*.cpp' 'plugins/*.cpp' 'tests/*.cpp' |
+  grep -v -E '^(plugins/examples|tests/benchmarks|tests/plugins/out_of_tree)/' || true)
+[ -n "$all" ] || exit 0
+changed=$(printf '%s\n' "$all" | head -n $most)
+echo "Reading $(printf '%s\n' "$changed" | wc -l) of $(printf '%s\n' "$all" | wc -l) changed sources by themselves"
 compiler=$(command -v clang++ || command -v c++)
 cmake --preset syntax -DCMAKE_CXX_COMPILER="$compiler" -DRICOCHET_MPI=OFF -Wno-dev >/dev/null
 known=$(ninja -C build/syntax -t targets all)
