@@ -93,9 +93,9 @@ CaseRecord run_again(const OpenCase& open, const StoredStudy& stored, const Stud
                      const std::atomic<bool>& stop) {
   const RunContext context{stored.study, stored.registry, [](const StudyCase& one) { return one.id; }};
   const CaseRunner runner = open.kind->start(context);
-  MotionShelf shelf;
-  shelf.find = [&](const std::string& key) { return read_motion(open.folder, key, arithmetic_digest()); };
-  if (runner.open) runner.open(shelf, stop);
+  CheckpointStore checkpoints;
+  checkpoints.find = [&](const std::string& key) { return read_motion(open.folder, key, arithmetic_digest()); };
+  if (runner.open) runner.open(checkpoints, stop);
   return runner.run(study_case, stop);
 }
 

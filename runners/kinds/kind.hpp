@@ -11,7 +11,7 @@
 
 #include "runners/march/block_service.hpp"
 #include "runners/march/case_plan.hpp"
-#include "runners/march/motion_shelf.hpp"
+#include "runners/march/checkpoint_store.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study_kind.hpp"
@@ -37,7 +37,7 @@ struct CaseRunner {
   std::function<CaseRecord(const StudyCase&, const std::atomic<bool>& stop)> run;
   /// Called once, when the store is open and before any case runs; throws InputError for what only shows then. May be
   /// empty.
-  std::function<void(MotionShelf, const std::atomic<bool>& stop)> open;
+  std::function<void(CheckpointStore, const std::atomic<bool>& stop)> open;
   /// Marches one case alone; empty: cases of this kind are not timed apart.
   std::function<std::optional<TimedMarch>(const StudyCase&, const std::atomic<bool>& stop)> time;
   /// Marches a block that a case of another process began by its BlockService, `so_far` being told what would be lost;

@@ -5,7 +5,7 @@
 namespace ricochet {
 
 /// What is heard of a block that another process marches.
-struct BlockNews {
+struct BlockStatus {
   enum class What : char {
     so_far,       ///< content: what would be lost with its process
     done,         ///< content: the answer
@@ -29,7 +29,7 @@ class BlockService {
   virtual int share() const = 0;
   /// Begins a block of a case and returns its number. `heard` is told what it has so far, and in the end, once, what
   /// became of it; by another thread.
-  virtual int begin(const std::string& case_id, const std::string& order, std::function<void(BlockNews)> heard) = 0;
+  virtual int begin(const std::string& case_id, const std::string& order, std::function<void(BlockStatus)> heard) = 0;
   /// Asks a block to stop; what becomes of it is still told.
   virtual void stop(int block) = 0;
 };

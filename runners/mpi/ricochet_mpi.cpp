@@ -25,7 +25,7 @@
 namespace ricochet {
 namespace {
 
-// Parcels for one rank travel together, in pieces of a stream.
+// Packets for one rank travel together, in pieces of a stream.
 constexpr std::size_t most_of_a_piece = std::size_t{16} << 20;
 constexpr int tag = 17;
 // Between two looks at MPI, which says nothing by itself: shortly after something came, and later.
@@ -71,13 +71,13 @@ class MpiTransport : public Transport {
     to_send_.notify_all();
   }
 
-  std::optional<Parcel> receive(double seconds) override {
+  std::optional<Packet> receive(double seconds) override {
     std::unique_lock lock(mutex_);
     if (!arrived_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return !incoming_.empty(); }))
       return std::nullopt;
-    Parcel parcel = std::move(incoming_.front());
+    Packet packet = std::move(incoming_.front());
     incoming_.pop_front();
-    return parcel;
+    return packet;
   }
 
  private:
@@ -161,7 +161,7 @@ class MpiTransport : public Transport {
   std::mutex mutex_;
   std::condition_variable to_send_, arrived_, ended_;
   std::map<int, std::string> outgoing_;
-  std::deque<Parcel> incoming_;
+  std::deque<Packet> incoming_;
   bool ending_ = false, abandons_ = false, done_ = false;
   // Of the pump alone.
   std::map<int, Sending> sending_;

@@ -70,7 +70,7 @@ int run_study(const Study& study, const Catalogue& catalogue, const Registry& re
     workers.emplace(context, IsolationOptions{jobs, options.plugins, options.hosts});
     shared.jobs = workers->cases_at_once();
     runner.cases = workers->runner();
-    runner.workers = workers->crew();
+    runner.workers = workers->workers_in_words();
     runner.plan = [&](const StudyCase& study_case) {
       CasePlan plan;
       plan.predicted_seconds = workers->predicted_seconds(study_case);

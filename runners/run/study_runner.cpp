@@ -68,7 +68,7 @@ class FolderRun {
     say(runner_.messages, versions_text(store_));
     take_over();
     announce();
-    if (runner_.cases.open) runner_.cases.open(shelf(), stop_);
+    if (runner_.cases.open) runner_.cases.open(checkpoint_store(), stop_);
     if (stop_) return interrupted();
     if (!run_missing()) return interrupted();
     if (runner_.cases.time && !time()) return interrupted();
@@ -126,17 +126,17 @@ class FolderRun {
     if (!ids.empty()) store_.begins(ids, Store::Stage::plan);
   }
 
-  MotionShelf shelf() {
-    MotionShelf shelf;
-    shelf.find = [this](const std::string& key) { return store_.motion(key); };
-    shelf.keep = [this](const std::string& key, const std::string& content) { store_.save_motion(key, content); };
-    shelf.show = [this](const CaseRecord& record) { show_partial(runner_, store_, folder_, record); };
-    shelf.failed = [this](const std::string& id) {
+  CheckpointStore checkpoint_store() {
+    CheckpointStore checkpoints;
+    checkpoints.find = [this](const std::string& key) { return store_.motion(key); };
+    checkpoints.keep = [this](const std::string& key, const std::string& content) { store_.save_motion(key, content); };
+    checkpoints.show = [this](const CaseRecord& record) { show_partial(runner_, store_, folder_, record); };
+    checkpoints.failed = [this](const std::string& id) {
       const std::lock_guard guard(failed_mutex_);
       return failed_.count(id) != 0;
     };
-    shelf.waiting = [this](const std::string& id, const std::string& call) { say_waiting(id, call); };
-    return shelf;
+    checkpoints.waiting = [this](const std::string& id, const std::string& call) { say_waiting(id, call); };
+    return checkpoints;
   }
 
   void say_waiting(const std::string& id, const std::string& call) {

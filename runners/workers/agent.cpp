@@ -13,9 +13,9 @@ using What = HostMessage::What;
 constexpr int coordinator = 0;
 
 /// A worker of this machine, and the thread that listens to it.
-class Charge {
+class AgentWorker {
  public:
-  Charge(Transport& transport, std::uint32_t number, const std::function<std::unique_ptr<Worker>()>& start)
+  AgentWorker(Transport& transport, std::uint32_t number, const std::function<std::unique_ptr<Worker>()>& start)
       : transport_(transport), number_(number) {
     try {
       worker_ = start();
@@ -25,12 +25,12 @@ class Charge {
     }
     listener_ = std::thread([this] { listen(); });
   }
-  ~Charge() {
+  ~AgentWorker() {
     if (worker_) worker_->kill();
     if (listener_.joinable()) listener_.join();
   }
-  Charge(const Charge&) = delete;
-  Charge& operator=(const Charge&) = delete;
+  AgentWorker(const AgentWorker&) = delete;
+  AgentWorker& operator=(const AgentWorker&) = delete;
 
   void send(const Message& message) {
     if (worker_) worker_->send(message);
@@ -69,28 +69,29 @@ class Charge {
 bool serve_as_agent(Transport& transport, const HostFacts& facts,
                     const std::function<std::unique_ptr<Worker>()>& start_worker, double silence) {
   transport.send(coordinator, to_bytes(HostMessage{What::facts, 0, {.content = to_bytes(facts)}}));
-  std::map<std::uint32_t, std::unique_ptr<Charge>> charges;
+  std::map<std::uint32_t, std::unique_ptr<AgentWorker>> workers;
   auto told = std::chrono::steady_clock::now(), heard = told;
   for (;;) {
-    const auto parcel = transport.receive(alive_every / 4);
+    const auto packet = transport.receive(alive_every / 4);
     const auto now = std::chrono::steady_clock::now();
     if (std::chrono::duration<double>(now - told).count() > alive_every) {
       told = now;
       transport.send(coordinator, to_bytes(HostMessage{What::alive}));
-      std::erase_if(charges, [](const auto& one) { return one.second->ended(); });
+      std::erase_if(workers, [](const auto& one) { return one.second->ended(); });
     }
-    if (parcel) heard = now;
+    if (packet) heard = now;
     if (std::chrono::duration<double>(now - heard).count() > silence) return false;
-    if (!parcel) continue;
-    const HostMessage said = host_message(parcel->bytes);
+    if (!packet) continue;
+    const HostMessage said = host_message(packet->bytes);
     if (said.what == What::leave) {
-      charges.clear();
+      workers.clear();
       transport.send(coordinator, to_bytes(HostMessage{What::gone}));
       return true;
     }
-    if (said.what == What::start) charges[said.worker] = std::make_unique<Charge>(transport, said.worker, start_worker);
-    const auto found = charges.find(said.worker);
-    if (found == charges.end()) continue;
+    if (said.what == What::start)
+      workers[said.worker] = std::make_unique<AgentWorker>(transport, said.worker, start_worker);
+    const auto found = workers.find(said.worker);
+    if (found == workers.end()) continue;
     if (said.what == What::message) found->second->send(said.message);
     if (said.what == What::kill) found->second->kill();
   }

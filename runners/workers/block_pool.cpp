@@ -26,7 +26,7 @@ void BlockPool::begin(Block block) {
 }
 
 void BlockPool::stop(int owner, std::uint32_t about) {
-  std::function<void(BlockNews)> tell;
+  std::function<void(BlockStatus)> tell;
   {
     const std::lock_guard guard(mutex_);
     const auto found = std::find_if(waiting_.begin(), waiting_.end(),
@@ -38,7 +38,7 @@ void BlockPool::stop(int owner, std::uint32_t about) {
     for (Marching& one : marching_)
       if (one.owner == owner && one.about == about) one.stop = true;
   }
-  if (tell) tell({BlockNews::What::interrupted, ""});
+  if (tell) tell({BlockStatus::What::interrupted, ""});
 }
 
 void BlockPool::forget(int owner) {

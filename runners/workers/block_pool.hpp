@@ -22,7 +22,7 @@ class BlockPool {
     BlockRequest request;
     int owner = 0;            ///< the worker that asked for it
     std::uint32_t about = 0;  ///< its question
-    std::function<void(BlockNews)> tell;
+    std::function<void(BlockStatus)> tell;
   };
   /// Marches one block and tells what became of it, once; ends early when `stopping` becomes true.
   using March = std::function<void(const Block&, const std::function<bool()>& stopping)>;

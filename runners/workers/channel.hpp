@@ -13,7 +13,7 @@ struct Message {
     plan = 'p',    ///< a case: predicts its cost; answered by `planned`
     run = 'r',     ///< a case: answered by `ran`
     time = 't',    ///< a case: answered by `timed`
-    block = 'b',   ///< BlockRequest: marches a block of a case; answered by `block_news`
+    block = 'b',   ///< BlockRequest: marches a block of a case; answered by `block_status`
     stop = 'x',    ///< ends what is under way; answered by `interrupted`
     answer = 'a',  ///< to what the worker asked
     // from a worker
@@ -21,14 +21,14 @@ struct Message {
     planned = 'P',
     ran = 'D',
     timed = 'T',
-    block_news = 'B',  ///< BlockNews; once or more often, the last one tells what became of it
+    block_status = 'B',  ///< BlockStatus; once or more often, the last one tells what became of it
     interrupted = 'I',
     given_up = 'G',  ///< GivenUp: a call that did not return; the worker ends
     find = 'f',      ///< asks for what the store keeps under a key
     keep = 'k',      ///< asks to keep something there
     show = 'w',      ///< shows a case under way; not answered
     failed = 'q',    ///< asks whether a case has failed
-    march = 'm',     ///< BlockRequest: asks to have a block marched; answered by `block_news`
+    march = 'm',     ///< BlockRequest: asks to have a block marched; answered by `block_status`
     cancel = 'c',    ///< stops the block of that question; not answered
     alive = '.',     ///< now and then; not answered
   };

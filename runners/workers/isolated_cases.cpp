@@ -66,9 +66,9 @@ std::optional<T> answer_in(Reply& reply, std::initializer_list<Word> words, Work
 
 }  // namespace
 
-class IsolatedCases::Desk {
+class IsolatedCases::Coordinator {
  public:
-  Desk(const RunContext& context, const IsolationOptions& options)
+  Coordinator(const RunContext& context, const IsolationOptions& options)
       : context_(context),
         of_all_(StudyIdentity(context.study, context.registry).of_all()),
         kind_(find_kind(context.study.kind)->start(context)),
@@ -85,12 +85,12 @@ class IsolatedCases::Desk {
   }
 
   /// A first worker is there, and what only shows where a study is opened has shown.
-  void open(MotionShelf shelf, const std::atomic<bool>& stop) {
-    shelf_ = std::move(shelf);
+  void open(CheckpointStore checkpoints, const std::atomic<bool>& stop) {
+    checkpoints_ = std::move(checkpoints);
     places_.give_back(take(Where::here, [&] { return stop.load(); }).member);
   }
 
-  std::string crew() const {
+  std::string workers_in_words() const {
     const int workers = places_.width(), machines = places_.machines();
     return fmt::format("{} worker{}{}", workers, workers == 1 ? "" : "s",
                        machines > 1 ? fmt::format(" on {} machines", machines) : "");
@@ -189,8 +189,8 @@ class IsolatedCases::Desk {
 
   /// Has a block marched by a worker, for the one that asked.
   void march(const BlockPool::Block& block, const std::function<bool()>& stopping) {
-    const auto tell = [&](BlockNews::What what, std::string content) {
-      block.tell(BlockNews{what, std::move(content)});
+    const auto tell = [&](BlockStatus::What what, std::string content) {
+      block.tell(BlockStatus{what, std::move(content)});
     };
     try {
       BlockRequest request = block.request;
@@ -202,19 +202,19 @@ class IsolatedCases::Desk {
       do {
         const Taken taken = take(Where::anywhere, stopping);
         reply = talk(taken.member, {Word::block, to_bytes(request)}, request.id, stopping, after_stop, block.tell);
-        if (auto news = answer_in<BlockNews>(reply, {Word::block_news}, *taken.member->worker)) {
+        if (auto status = answer_in<BlockStatus>(reply, {Word::block_status}, *taken.member->worker)) {
           places_.give_back(taken.member);
-          return block.tell(std::move(*news));
+          return block.tell(std::move(*status));
         }
       } while (reply.lost->end.host_lost && !stopping());
-      if (stopping()) return tell(BlockNews::What::interrupted, "");
+      if (stopping()) return tell(BlockStatus::What::interrupted, "");
       if (reply.lost->given_up && !limit.ours)
-        return tell(BlockNews::What::gave_up, over_budget(*reply.lost->given_up));
-      tell(BlockNews::What::lost, sentence(*reply.lost));
+        return tell(BlockStatus::What::gave_up, over_budget(*reply.lost->given_up));
+      tell(BlockStatus::What::lost, sentence(*reply.lost));
     } catch (const Interrupted&) {
-      tell(BlockNews::What::interrupted, "");
+      tell(BlockStatus::What::interrupted, "");
     } catch (const std::exception& error) {
-      tell(BlockNews::What::failed, error.what());
+      tell(BlockStatus::What::failed, error.what());
     }
   }
 
@@ -264,7 +264,7 @@ class IsolatedCases::Desk {
   /// Sends an order for a case and serves the worker until it is done with it. `patience`: s for coming back after
   /// `stopping`.
   Reply talk(const MemberPointer& member, Message order, const std::string& id, const std::function<bool()>& stopping,
-             double patience, const std::function<void(BlockNews)>& so_far = {}) {
+             double patience, const std::function<void(BlockStatus)>& so_far = {}) {
     order.about = 1;
     Worker& worker = *member->worker;
     Reply reply;
@@ -275,7 +275,7 @@ class IsolatedCases::Desk {
     bool silent = false, waits = false;
     // Which call of a plugin's function the worker waits for, "" for none.
     const auto waiting = [&](const std::string& call) {
-      if (shelf_.waiting && (waits || !call.empty())) shelf_.waiting(id, call);
+      if (checkpoints_.waiting && (waits || !call.empty())) checkpoints_.waiting(id, call);
       waits = !call.empty();
     };
     Channel::Heard state = worker.send(order) ? Channel::Heard::silence : Channel::Heard::gone;
@@ -297,10 +297,10 @@ class IsolatedCases::Desk {
       try {
         if (reply.message.word == Word::given_up) {
           given_up = message_from<GivenUp>(reply.message.content);
-        } else if (reply.message.word == Word::block_news) {
-          auto news = message_from<BlockNews>(reply.message.content);
-          if (news.what != BlockNews::What::so_far) return reply;
-          if (so_far) so_far(std::move(news));
+        } else if (reply.message.word == Word::block_status) {
+          auto status = message_from<BlockStatus>(reply.message.content);
+          if (status.what != BlockStatus::What::so_far) return reply;
+          if (so_far) so_far(std::move(status));
         } else if (reply.message.word == Word::alive) {
           waiting(reply.message.content);
         } else if (!serve(member, reply.message, stopping)) {
@@ -325,23 +325,24 @@ class IsolatedCases::Desk {
     };
     if (message.word == Word::find) {
       answer(claims_.find(
-          member->number, message.content, [&] { return shelf_.find ? shelf_.find(message.content) : ""; }, stopping));
+          member->number, message.content, [&] { return checkpoints_.find ? checkpoints_.find(message.content) : ""; },
+          stopping));
     } else if (message.word == Word::keep) {
       const auto kept = message_from<ShelfMessage>(message.content);
-      if (shelf_.keep) shelf_.keep(kept.key, kept.content);
+      if (checkpoints_.keep) checkpoints_.keep(kept.key, kept.content);
       claims_.kept(kept.key);
       answer("");
     } else if (message.word == Word::failed) {
-      answer(shelf_.failed && shelf_.failed(message.content) ? "failed" : "");
+      answer(checkpoints_.failed && checkpoints_.failed(message.content) ? "failed" : "");
     } else if (message.word == Word::show) {
       CaseRecord record = message_from<CaseRecord>(message.content);
       if (const StudyCase* one = find_case(context_.study, record.id)) record.axes = one->axes;
-      if (shelf_.show) shelf_.show(record);
+      if (checkpoints_.show) checkpoints_.show(record);
     } else if (message.word == Word::march) {
       pool_.begin({message_from<BlockRequest>(message.content), member->number, message.about,
-                   [this, member, about = message.about](BlockNews news) {
-                     news.share = share();
-                     member->worker->send({Word::block_news, to_bytes(news), about});
+                   [this, member, about = message.about](BlockStatus status) {
+                     status.share = share();
+                     member->worker->send({Word::block_status, to_bytes(status), about});
                    }});
     } else if (message.word == Word::cancel) {
       pool_.stop(member->number, message.about);
@@ -355,7 +356,7 @@ class IsolatedCases::Desk {
   const std::string of_all_;
   const CaseRunner kind_;  // what this kind's cases are asked for; nothing of it runs here
   WorkerStudy opening_;
-  MotionShelf shelf_;
+  CheckpointStore checkpoints_;
   KeyClaims claims_;
   std::atomic<int> open_{0};  // cases that were planned and have not run to their end
   WorkerPlaces places_;
@@ -363,28 +364,28 @@ class IsolatedCases::Desk {
 };
 
 IsolatedCases::IsolatedCases(const RunContext& context, const IsolationOptions& options)
-    : desk_(std::make_shared<Desk>(context, options)) {}
+    : coordinator_(std::make_shared<Coordinator>(context, options)) {}
 IsolatedCases::~IsolatedCases() = default;
 
-std::string IsolatedCases::crew() const {
-  return desk_->crew();
+std::string IsolatedCases::workers_in_words() const {
+  return coordinator_->workers_in_words();
 }
 
 int IsolatedCases::cases_at_once() const {
-  return desk_->cases_at_once();
+  return coordinator_->cases_at_once();
 }
 
 CaseRunner IsolatedCases::runner() {
   CaseRunner runner;
-  runner.open = [desk = desk_](MotionShelf shelf, const std::atomic<bool>& stop) {
-    desk->open(std::move(shelf), stop);
+  runner.open = [coordinator = coordinator_](CheckpointStore checkpoints, const std::atomic<bool>& stop) {
+    coordinator->open(std::move(checkpoints), stop);
   };
-  runner.run = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
-    return desk->ask(Word::run, study_case, stop).record;
+  runner.run = [coordinator = coordinator_](const StudyCase& study_case, const std::atomic<bool>& stop) {
+    return coordinator->ask(Word::run, study_case, stop).record;
   };
-  if (desk_->times())
-    runner.time = [desk = desk_](const StudyCase& study_case, const std::atomic<bool>& stop) {
-      const CaseAnswer answer = desk->ask(Word::time, study_case, stop);
+  if (coordinator_->times())
+    runner.time = [coordinator = coordinator_](const StudyCase& study_case, const std::atomic<bool>& stop) {
+      const CaseAnswer answer = coordinator->ask(Word::time, study_case, stop);
       if (!answer.error.empty()) throw std::runtime_error(answer.error);
       return answer.found ? std::optional(TimedMarch{answer.seconds, answer.processor}) : std::nullopt;
     };
@@ -392,7 +393,7 @@ CaseRunner IsolatedCases::runner() {
 }
 
 double IsolatedCases::predicted_seconds(const StudyCase& study_case) {
-  const CaseAnswer answer = desk_->ask(Word::plan, study_case, std::atomic<bool>{false});
+  const CaseAnswer answer = coordinator_->ask(Word::plan, study_case, std::atomic<bool>{false});
   if (!answer.error.empty()) throw std::runtime_error(answer.error);
   return answer.seconds;
 }

@@ -28,7 +28,7 @@ class IsolatedCases {
 
   CaseRunner runner();
   /// "4 workers on 2 machines".
-  std::string crew() const;
+  std::string workers_in_words() const;
   /// Cases that are under way at one time: as many as there are workers, or, where they only wait for their blocks,
   /// what this machine can hold.
   int cases_at_once() const;
@@ -36,8 +36,8 @@ class IsolatedCases {
   double predicted_seconds(const StudyCase& study_case);
 
  private:
-  class Desk;
-  std::shared_ptr<Desk> desk_;
+  class Coordinator;
+  std::shared_ptr<Coordinator> coordinator_;
 };
 
 }  // namespace ricochet

@@ -149,7 +149,7 @@ void RemoteHosts::tell(int rank, const HostMessage& message) {
 void RemoteHosts::listen() {
   auto told = SteadyClock::now();
   while (!ending_) {
-    if (auto parcel = transport_.receive(look_around)) hear(std::move(*parcel));
+    if (auto packet = transport_.receive(look_around)) hear(std::move(*packet));
     look_for_lost();
     if (seconds_since(told) < alive_every) continue;
     told = SteadyClock::now();
@@ -164,14 +164,14 @@ void RemoteHosts::say_alive() {
     if (!rank.lost) tell(number, {What::alive, 0, {}});
 }
 
-void RemoteHosts::hear(Transport::Parcel parcel) {
-  const auto found = ranks_.find(parcel.from);
+void RemoteHosts::hear(Transport::Packet packet) {
+  const auto found = ranks_.find(packet.from);
   if (found == ranks_.end()) return;
   Rank& rank = found->second;
   if (rank.lost) return;  // its work was given to others
   rank.silent = 0;
   try {
-    hear(rank, host_message(parcel.bytes));
+    hear(rank, host_message(packet.bytes));
   } catch (const std::runtime_error&) {
     lose(rank, "says what this program does not understand (another build?)");
   }

@@ -53,7 +53,7 @@ class RemoteHosts {
     std::map<std::uint32_t, std::shared_ptr<Inbox>> workers;
   };
   void listen();
-  void hear(Transport::Parcel parcel);
+  void hear(Transport::Packet packet);
   void hear(Rank& rank, HostMessage said);
   void look_for_lost();
   void lose(Rank& rank, const std::string& why);

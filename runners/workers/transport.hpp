@@ -8,7 +8,7 @@ namespace ricochet {
 /// order between any two of them. A rank may vanish without a word.
 class Transport {
  public:
-  struct Parcel {
+  struct Packet {
     int from = 0;
     std::string bytes;
   };
@@ -18,8 +18,8 @@ class Transport {
   virtual int size() const = 0;
   /// Does not wait for the other side. May be called from any thread.
   virtual void send(int to, std::string bytes) = 0;
-  /// The next parcel, from whomever; nothing where none came for so long. From one thread.
-  virtual std::optional<Parcel> receive(double seconds) = 0;
+  /// The next packet, from whomever; nothing where none came for so long. From one thread.
+  virtual std::optional<Packet> receive(double seconds) = 0;
 };
 
 }  // namespace ricochet

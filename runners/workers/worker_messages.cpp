@@ -103,7 +103,7 @@ void serialize(Archive& archive, BlockRequest& message) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, BlockNews& message) {
+void serialize(Archive& archive, BlockStatus& message) {
   archive(message.what, message.content, message.share);
 }
 
@@ -134,7 +134,7 @@ std::string to_bytes(const CaseOrder& message) {
 std::string to_bytes(const BlockRequest& message) {
   return packed(message, message_mark);
 }
-std::string to_bytes(const BlockNews& message) {
+std::string to_bytes(const BlockStatus& message) {
   return packed(message, message_mark);
 }
 std::string to_bytes(const CaseAnswer& message) {
@@ -163,7 +163,7 @@ template WorkerStudy message_from(const std::string&);
 template WorkerReady message_from(const std::string&);
 template CaseOrder message_from(const std::string&);
 template BlockRequest message_from(const std::string&);
-template BlockNews message_from(const std::string&);
+template BlockStatus message_from(const std::string&);
 template CaseAnswer message_from(const std::string&);
 template GivenUp message_from(const std::string&);
 template ShelfMessage message_from(const std::string&);

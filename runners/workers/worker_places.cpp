@@ -22,7 +22,7 @@ WorkerPlaces::Taken WorkerPlaces::take(Where where) {
   const std::lock_guard guard(mutex_);
   const std::size_t at = where == Where::here ? 0 : roomiest();
   Place& place = places_[at];
-  Taken taken{nullptr, where == Where::here ? Seat() : Seat(*this, at)};
+  Taken taken{nullptr, where == Where::here ? Slot() : Slot(*this, at)};
   if (where == Where::anywhere) ++place.at_work;
   if (!place.idle.empty()) {
     taken.member = std::move(place.idle.back());

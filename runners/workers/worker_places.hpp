@@ -27,13 +27,13 @@ class WorkerPlaces {
   };
 
   /// The room that one takes while it is at work.
-  class Seat {
+  class Slot {
    public:
-    Seat() = default;
-    Seat(WorkerPlaces& places, std::size_t place) : places_(&places), place_(place) {}
-    Seat(Seat&& other) noexcept : places_(std::exchange(other.places_, nullptr)), place_(other.place_) {}
-    Seat& operator=(Seat&&) = delete;
-    ~Seat() {
+    Slot() = default;
+    Slot(WorkerPlaces& places, std::size_t place) : places_(&places), place_(place) {}
+    Slot(Slot&& other) noexcept : places_(std::exchange(other.places_, nullptr)), place_(other.place_) {}
+    Slot& operator=(Slot&&) = delete;
+    ~Slot() {
       if (places_) places_->leave(place_);
     }
 
@@ -43,7 +43,7 @@ class WorkerPlaces {
   };
   struct Taken {
     MemberPointer member;
-    Seat seat;
+    Slot slot;
   };
 
   /// `hosts`: at least one; the first is this machine.

@@ -83,7 +83,7 @@ class WorkerService : public BlockService {
   int width() const override { return width_; }
   int share() const override { return share_; }
 
-  int begin(const std::string& case_id, const std::string& order, std::function<void(BlockNews)> heard) override {
+  int begin(const std::string& case_id, const std::string& order, std::function<void(BlockStatus)> heard) override {
     std::uint32_t about = 0;
     {
       const std::lock_guard guard(mutex_);
@@ -106,7 +106,7 @@ class WorkerService : public BlockService {
     Message message;
     while (channel_.receive(message) == Channel::Heard::message) {
       if (message.word == Word::stop) stop_ = true;
-      if (message.word == Word::block_news) {
+      if (message.word == Word::block_status) {
         hear(message);
         continue;
       }
@@ -123,17 +123,17 @@ class WorkerService : public BlockService {
   }
 
   void hear(const Message& message) {
-    auto news = message_from<BlockNews>(message.content);
-    std::function<void(BlockNews)> heard;
+    auto status = message_from<BlockStatus>(message.content);
+    std::function<void(BlockStatus)> heard;
     {
       const std::lock_guard guard(mutex_);
       const auto found = heard_.find(message.about);
       if (found == heard_.end()) return;
       heard = found->second;
-      if (news.what != BlockNews::What::so_far) heard_.erase(found);
+      if (status.what != BlockStatus::What::so_far) heard_.erase(found);
     }
-    if (news.share > 0) share_ = news.share;
-    heard(std::move(news));
+    if (status.share > 0) share_ = status.share;
+    heard(std::move(status));
   }
 
   Message next() {
@@ -176,18 +176,18 @@ class WorkerService : public BlockService {
 
   void serve_block(const BlockRequest& request, std::uint32_t about) {
     const StudyCase& study_case = *find_case(*study_, request.id);
-    const auto news = [&](BlockNews::What what, std::string content) {
-      tell({Word::block_news, to_bytes(BlockNews{what, std::move(content)}), about});
+    const auto status = [&](BlockStatus::What what, std::string content) {
+      tell({Word::block_status, to_bytes(BlockStatus{what, std::move(content)}), about});
     };
     std::string answer;
     const Caught caught = watched(request.budget, about, [&] {
       answer = cases_.block(
-          study_case, request.order, [&](std::string bytes) { news(BlockNews::What::so_far, std::move(bytes)); },
+          study_case, request.order, [&](std::string bytes) { status(BlockStatus::What::so_far, std::move(bytes)); },
           stop_);
     });
-    if (caught.interrupted) return news(BlockNews::What::interrupted, "");
-    if (!caught.error.empty()) return news(BlockNews::What::failed, caught.error);
-    news(BlockNews::What::done, std::move(answer));
+    if (caught.interrupted) return status(BlockStatus::What::interrupted, "");
+    if (!caught.error.empty()) return status(BlockStatus::What::failed, caught.error);
+    status(BlockStatus::What::done, std::move(answer));
   }
 
   /// What was thrown where a case or a block was worked for.
@@ -263,7 +263,7 @@ class WorkerService : public BlockService {
       width_ = wanted.width;
       cases_ = find_kind(study_->kind)
                    ->start({*study_, registry_, [this](const StudyCase& one) { return identity_->of(one); }, this});
-      if (cases_.open) cases_.open(shelf(), stop_);
+      if (cases_.open) cases_.open(checkpoint_store(), stop_);
       ready.identity = identity_->of_all();
       ready.arithmetic = arithmetic_digest();
       limit_memory(wanted.memory);
@@ -278,15 +278,15 @@ class WorkerService : public BlockService {
     return ready;
   }
 
-  MotionShelf shelf() {
-    MotionShelf shelf;
-    shelf.find = [this](const std::string& key) { return ask(Word::find, key); };
-    shelf.keep = [this](const std::string& key, const std::string& content) {
+  CheckpointStore checkpoint_store() {
+    CheckpointStore checkpoints;
+    checkpoints.find = [this](const std::string& key) { return ask(Word::find, key); };
+    checkpoints.keep = [this](const std::string& key, const std::string& content) {
       ask(Word::keep, to_bytes(ShelfMessage{key, content}));
     };
-    shelf.show = [this](const CaseRecord& record) { tell({Word::show, to_bytes(record)}); };
-    shelf.failed = [this](const std::string& id) { return !ask(Word::failed, id).empty(); };
-    return shelf;
+    checkpoints.show = [this](const CaseRecord& record) { tell({Word::show, to_bytes(record)}); };
+    checkpoints.failed = [this](const std::string& id) { return !ask(Word::failed, id).empty(); };
+    return checkpoints;
   }
 
   Channel channel_;
@@ -304,7 +304,7 @@ class WorkerService : public BlockService {
   std::condition_variable changed_;
   std::deque<Message> orders_;
   std::map<std::uint32_t, std::promise<std::string>> questions_;
-  std::map<std::uint32_t, std::function<void(BlockNews)>> heard_;  // of blocks that others march for this one
+  std::map<std::uint32_t, std::function<void(BlockStatus)>> heard_;  // of blocks that others march for this one
   std::uint32_t asked_ = 0;
   int width_ = 1;
   std::atomic<int> share_{1};

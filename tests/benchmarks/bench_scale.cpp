@@ -71,7 +71,7 @@ class Echo : public BlockService {
 
   int width() const override { return 1000; }
   int share() const override { return 1000; }
-  int begin(const std::string&, const std::string& order, std::function<void(BlockNews)> heard) override {
+  int begin(const std::string&, const std::string& order, std::function<void(BlockStatus)> heard) override {
     const std::lock_guard guard(mutex_);
     waiting_.push_back({order, std::move(heard)});
     asked_.notify_one();
@@ -85,7 +85,7 @@ class Echo : public BlockService {
  private:
   struct Asked {
     std::string order;
-    std::function<void(BlockNews)> heard;
+    std::function<void(BlockStatus)> heard;
   };
 
   void answer() {
@@ -103,8 +103,8 @@ class Echo : public BlockService {
         told.marched.finished.push_back(*known_);
         told.marched.finished.back().task = static_cast<int>(i);
       }
-      BlockNews all{.what = BlockNews::What::so_far, .content = to_bytes(told)};
-      BlockNews end{.what = BlockNews::What::done, .content = to_bytes(BlockAnswer{})};
+      BlockStatus all{.what = BlockStatus::What::so_far, .content = to_bytes(told)};
+      BlockStatus end{.what = BlockStatus::What::done, .content = to_bytes(BlockAnswer{})};
       messages += 3;
       bytes += static_cast<long long>(asked.order.size() + all.content.size() + end.content.size());
       seconds = thread_seconds();
@@ -229,9 +229,8 @@ int main(int argc, char** argv) {
     const auto of = [&](int way) { return median(taken[ways[static_cast<std::size_t>(way)]]); };
     std::cout << fmt::format("{}, medians of {} rounds:\n", fs::path(study).filename().string(), rounds);
     for (const std::string& way : ways) std::cout << fmt::format("  {:20s} {:.2f} s\n", way, median(taken[way]));
-    std::cout << fmt::format(
-        "two workers are {:.2f} of ideal; one worker takes {:.3f} of the time of one process\n", of(1) / (2 * of(2)),
-        of(1) / of(0));
+    std::cout << fmt::format("two workers are {:.2f} of ideal; one worker takes {:.3f} of the time of one process\n",
+                             of(1) / (2 * of(2)), of(1) / of(0));
   }
   fs::remove_all(scratch);
 }

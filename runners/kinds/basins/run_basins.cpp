@@ -31,9 +31,10 @@ bool refines(const StudyCase& study_case) {
 
 class BasinsRun {
  public:
-  BasinsRun(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk, const std::atomic<bool>& stop)
+  BasinsRun(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
+            const std::atomic<bool>& stop)
       : case_(study_case),
-        desk_(desk),
+        context_(context),
         stop_(stop),
         scenes_(study_case, registry),
         columns_(scenes_.axes()[0].values.size()),
@@ -60,7 +61,8 @@ class BasinsRun {
         for (Batch& batch : batches) take(batch.cells, std::move(batch.ends));
       }
     finish();
-    for (int batch = 0; desk_.shelf.keep && batch < batches_; ++batch) desk_.shelf.keep(batch_key(batch), "");
+    for (int batch = 0; context_.checkpoints.keep && batch < batches_; ++batch)
+      context_.checkpoints.keep(batch_key(batch), "");
     return std::move(record_);
   }
 
@@ -73,19 +75,19 @@ class BasinsRun {
     bool known() const { return !ends.empty(); }
   };
 
-  std::string batch_key(int batch) const { return fmt::format("cells/{}/{}", desk_.key, batch); }
+  std::string batch_key(int batch) const { return fmt::format("cells/{}/{}", context_.key, batch); }
 
   // Batches that are marched together: enough that those who march wait little for the longest orbit of them.
   std::size_t at_once() const {
     constexpr int rounds = 32, lanes = 8, most = 16;
-    const int marching = desk_.blocks ? desk_.blocks->width() : 1;
+    const int marching = context_.blocks ? context_.blocks->width() : 1;
     return static_cast<std::size_t>(std::clamp(rounds * lanes * marching / static_cast<int>(largest_batch), 1, most));
   }
 
   // The ends of these cells; batches that an interrupted run had finished are read.
   void march(std::vector<Batch>& batches) {
     for (Batch& batch : batches) {
-      auto found = recall(desk_.shelf, batch_key(batch.number), cell_ends);
+      auto found = recall(context_.checkpoints, batch_key(batch.number), cell_ends);
       if (!found || found->size() != batch.cells.size()) continue;
       if (scenes_.scenes().groups() == 0) prepare_some(batch.cells);
       batch.ends = std::move(*found);
@@ -94,7 +96,7 @@ class BasinsRun {
     const double begun = thread_seconds();
     scenes_.begin();
     // What is under way is found again by a run that marches the same batches together.
-    std::string under_way = desk_.key;
+    std::string under_way = context_.key;
     std::vector<CellEnd*> places;  // of the tasks
     std::vector<OrbitTask> tasks;
     std::vector<Batch*> marched;
@@ -119,10 +121,10 @@ class BasinsRun {
     OrbitScheduler scheduler(scenes_.scenes(), {.section = section_,
                                                 .budget = budget_of(case_) - record_.run_seconds,
                                                 .ends_only = true,
-                                                .blocks = desk_.blocks,
+                                                .blocks = context_.blocks,
                                                 .case_id = case_.id});
     for (OrbitTask& task : tasks) scheduler.add(std::move(task));
-    OrbitCheckpoints checkpoints(desk_.shelf, under_way);
+    OrbitCheckpoints checkpoints(context_.checkpoints, under_way);
     MarchedOrbits found = checkpoints.find();
     std::size_t ended = found.finished.size();
     scheduler.restore(std::move(found));
@@ -141,8 +143,8 @@ class BasinsRun {
       else
         *places[k] = unmarched();
     }
-    if (desk_.shelf.keep && !over_budget_)
-      for (const Batch* batch : marched) desk_.shelf.keep(batch_key(batch->number), to_bytes(batch->ends));
+    if (context_.checkpoints.keep && !over_budget_)
+      for (const Batch* batch : marched) context_.checkpoints.keep(batch_key(batch->number), to_bytes(batch->ends));
     checkpoints.forget();
   }
 
@@ -237,14 +239,14 @@ class BasinsRun {
   }
 
   void show_partial() {
-    if (!desk_.shelf.show || ends_.size() > most_shown || !pace_.due()) return;
+    if (!context_.checkpoints.show || ends_.size() > most_shown || !pace_.due()) return;
     CaseRecord partial = record_;
     write_tables(partial, false);
     partial.status = "done";
     std::size_t known = 0;
     for (std::size_t cell = 0; cell < ends_.size(); ++cell) known += refinement_.marched(cell);
     partial.reason = fmt::format("under way: {} cells marched", known);
-    pace_.take([&] { desk_.shelf.show(partial); });
+    pace_.take([&] { context_.checkpoints.show(partial); });
   }
 
   void finish() {
@@ -292,7 +294,7 @@ class BasinsRun {
   }
 
   const StudyCase& case_;
-  const CaseDesk& desk_;
+  const CaseContext& context_;
   const std::atomic<bool>& stop_;
   CellScenes scenes_;
   std::size_t columns_, rows_;
@@ -361,9 +363,9 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry) {
   return out;
 }
 
-CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                       const std::atomic<bool>& stop) {
-  return BasinsRun(study_case, registry, desk, stop).run();
+  return BasinsRun(study_case, registry, context, stop).run();
 }
 
 }  // namespace ricochet

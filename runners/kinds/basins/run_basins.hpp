@@ -2,7 +2,7 @@
 #include <ricochet/contract/registry.hpp>
 
 #include "runners/march/case_plan.hpp"
-#include "runners/march/motion_shelf.hpp"
+#include "runners/march/checkpoint_store.hpp"
 
 namespace ricochet {
 
@@ -18,7 +18,7 @@ CasePlan plan_basins(const StudyCase& study_case, const Registry& registry);
 /// same basin), source (its own number where it was marched), status, reason. Numbers `cell_points` (not exported):
 /// cell, index, tip_displacement, tip_velocity, opposite_displacement, opposite_velocity: the last strobed points, one
 /// period of what repeats, else at most 64; of filled cells those of the source.
-CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+CaseRecord run_basins(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                       const std::atomic<bool>& stop);
 
 }  // namespace ricochet

@@ -30,11 +30,11 @@ constexpr std::size_t most_brackets = 48;  // per start, that are refined at onc
 
 class BifurcationRun {
  public:
-  BifurcationRun(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+  BifurcationRun(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                  const std::atomic<bool>& stop)
       : case_(study_case),
         registry_(registry),
-        desk_(desk),
+        context_(context),
         stop_(stop),
         scenes_(study_case, registry),
         starts_(starts_of(study_case.settings)),
@@ -51,10 +51,10 @@ class BifurcationRun {
     describe_methods();
     record_.setup_seconds = thread_seconds() - begun;
     OrbitScheduler scheduler(
-        scenes_, {.section = section_, .budget = budget_of(case_), .blocks = desk_.blocks, .case_id = case_.id});
+        scenes_, {.section = section_, .budget = budget_of(case_), .blocks = context_.blocks, .case_id = case_.id});
     scheduler_ = &scheduler;
-    OrbitCheckpoints checkpoints(desk_.shelf, desk_.key);
-    ExponentCheckpoints batches(desk_.shelf, desk_.key);
+    OrbitCheckpoints checkpoints(context_.checkpoints, context_.key);
+    ExponentCheckpoints batches(context_.checkpoints, context_.key);
     saved_ = checkpoints.find();
     const auto keep = [&](const MarchedOrbits& marched) {
       checkpoints.save(marched);
@@ -125,7 +125,7 @@ class BifurcationRun {
     // At a depth of a thousandth of the room: whoever compares cases orders them by it.
     const auto one = make_law(case_, registry_);
     if (one->changes_problem()) {
-      const StudyCase met = with_parameters(at_rest(case_), scenes_[scenes_.pioneer()].variant.values);
+      const StudyCase met = with_parameters(at_rest(case_), scenes_[scenes_.reference_scene()].variant.values);
       discretise(met.scene, case_.elements, *make_mass(case_, registry_), one.get(), &case_.contact.parameters);
     }
     const auto compliance = contact_compliance(*one, case_.contact.parameters, 1e-3 * section_.scale);
@@ -242,14 +242,14 @@ class BifurcationRun {
   }
 
   void show_partial() {
-    if (!desk_.shelf.show || !pace_.due()) return;
+    if (!context_.checkpoints.show || !pace_.due()) return;
     CaseRecord partial = record_;
     std::vector<OrbitView> all = views();
     classify_all(all);
     write_tables(partial, all);
     partial.status = "done";
     partial.reason = fmt::format("under way: {} of {} orbits", all.size(), scheduler_->count());
-    pace_.take([&] { desk_.shelf.show(partial); });
+    pace_.take([&] { context_.checkpoints.show(partial); });
   }
 
   void classify_all(std::vector<OrbitView>& all) const {
@@ -285,7 +285,7 @@ class BifurcationRun {
     if (exponents() > 0 && !places.empty()) {
       for (const MarginalRoots& roots : marginal_) task.sawtooth.push_back(roots.sawtooth);
       task.count = exponents();
-      task.blocks = desk_.blocks;
+      task.blocks = context_.blocks;
       task.case_id = case_.id;
       task.lost = [this](const std::string& cause) {
         ++lost_;
@@ -366,7 +366,7 @@ class BifurcationRun {
 
   const StudyCase& case_;
   const Registry& registry_;
-  const CaseDesk& desk_;
+  const CaseContext& context_;
   const std::atomic<bool>& stop_;
   ForcedScenes scenes_;
   std::vector<StartSpec> starts_;
@@ -386,9 +386,9 @@ class BifurcationRun {
 
 }  // namespace
 
-CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                            const std::atomic<bool>& stop) {
-  return BifurcationRun(study_case, registry, desk, stop).run();
+  return BifurcationRun(study_case, registry, context, stop).run();
 }
 
 }  // namespace ricochet

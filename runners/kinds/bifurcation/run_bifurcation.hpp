@@ -2,7 +2,7 @@
 #include <ricochet/contract/registry.hpp>
 
 #include "runners/march/case_plan.hpp"
-#include "runners/march/motion_shelf.hpp"
+#include "runners/march/checkpoint_store.hpp"
 
 namespace ricochet {
 
@@ -13,7 +13,7 @@ CasePlan plan_bifurcation(const StudyCase& study_case, const Registry& registry)
 /// factorisation. Tables `values`, `bifurcations`; numbers `points`, `impacts`, `portraits` (see the README's table of
 /// files) and, not exported, `contact_law`: compliance (m/N; 0: rigid, absent: not known). A value that cannot be
 /// marched, diverges or fails is a row with its reason; the case is done when any value is.
-CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseDesk& desk,
+CaseRecord run_bifurcation(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
                            const std::atomic<bool>& stop);
 
 }  // namespace ricochet

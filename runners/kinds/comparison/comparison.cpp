@@ -26,13 +26,13 @@ bool marches_itself(const StudyCase& one) {
 
 // A study none of whose cases has a reference is told so before anything runs. Where it marches its methods themselves,
 // what these refuse is theirs to say, in the rows of their cases.
-void require_reference(const Study& study, References& references, const MotionShelf& shelf,
+void require_reference(const Study& study, References& references, const CheckpointStore& checkpoints,
                        const std::atomic<bool>& stop) {
   std::set<std::string> refusals;
   for (const StudyCase& one : study.cases) {
     if (one.excluded) continue;
     if (marches_itself(one)) return;
-    if (shelf.failed && shelf.failed(one.id)) return;
+    if (checkpoints.failed && checkpoints.failed(one.id)) return;
     try {
       const ReferenceSet set = references.of(one, stop);
       if (!set.applicable.empty()) return;
@@ -69,10 +69,10 @@ CaseRunner compare_cases(const RunContext& context) {
   // Made when the store is open.
   const auto references = std::make_shared<std::unique_ptr<References>>();
   CaseRunner runner;
-  runner.open = [references, &study = context.study, &registry = context.registry](MotionShelf shelf,
+  runner.open = [references, &study = context.study, &registry = context.registry](CheckpointStore checkpoints,
                                                                                    const std::atomic<bool>& stop) {
-    if (!*references) *references = std::make_unique<References>(study, registry, shelf);
-    require_reference(study, **references, shelf, stop);
+    if (!*references) *references = std::make_unique<References>(study, registry, checkpoints);
+    require_reference(study, **references, checkpoints, stop);
   };
   runner.run = [references, &registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
     return run_comparison(study_case, registry, **references, stop);

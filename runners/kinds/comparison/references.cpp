@@ -78,8 +78,8 @@ SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples)
   return grid;
 }
 
-References::References(const Study& study, const Registry& registry, MotionShelf shelf)
-    : study_(study), registry_(registry), shelf_(std::move(shelf)) {
+References::References(const Study& study, const Registry& registry, CheckpointStore checkpoints)
+    : study_(study), registry_(registry), checkpoints_(std::move(checkpoints)) {
   smallest_step_ = study.cases.front().step;
   coarsest_ = finest_ = study.cases.front().elements;
   for (const StudyCase& one : study.cases) {
@@ -223,14 +223,14 @@ ReferencePointer References::find(const StudyCase& study_case, const MethodChoic
                                   const std::atomic<bool>& stop) {
   const std::string name = key(study_case, choice);
   return once<ReferencePointer>(known_, name, [&]() -> ReferencePointer {
-    if (auto stored = recall(shelf_, name, motion_from_bytes)) {
+    if (auto stored = recall(checkpoints_, name, motion_from_bytes)) {
       const bool marched = choice.name == marched_reference;
       const bool mesh =
           marched ? coarsest_ == finest_ : registry_.reference(choice.name)->make(choice.parameters)->of_the_mesh();
       return std::make_shared<const KnownReference>(KnownReference{choice.name, "", mesh, std::move(*stored)});
     }
     KnownReference known = compute(study_case, choice, stop);
-    if (known.refusal.empty() && shelf_.keep) shelf_.keep(name, to_bytes(known.found));
+    if (known.refusal.empty() && checkpoints_.keep) checkpoints_.keep(name, to_bytes(known.found));
     return std::make_shared<const KnownReference>(std::move(known));
   });
 }
@@ -243,7 +243,7 @@ References::Twin References::twin_horizon(const StudyCase& study_case, const std
     bool blind = false;
     for (const StudyCase& chosen : study_.cases) {
       if (chosen.excluded || chosen.scene_json != study_case.scene_json || chosen.elements != study_case.elements ||
-          (shelf_.failed && shelf_.failed(chosen.id)))
+          (checkpoints_.failed && checkpoints_.failed(chosen.id)))
         continue;
       if (const auto twin = twin_of(chosen, blind, stop)) return *twin;
     }

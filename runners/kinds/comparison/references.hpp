@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/march/motion_shelf.hpp"
+#include "runners/march/checkpoint_store.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
@@ -36,7 +36,7 @@ struct ReferenceSet {
 };
 
 /// The references of a comparing study. Each is computed once, when a case first asks for it, by whichever thread asks
-/// first, and kept on the shelf by a hash of all that determines it.
+/// first, and kept in the checkpoint store by a hash of all that determines it.
 ///
 /// References of the scene (closed forms, the continuous problem) see rigid stops whatever the contact law: there a
 /// penalty is one more numerical choice, whose error is measured. Those of the mesh see the law itself: they leave the
@@ -47,7 +47,7 @@ struct ReferenceSet {
 /// declared order. Its own gap (`coarser`) is the extrapolation's correction, or the two meshes' difference if larger.
 class References {
  public:
-  References(const Study& study, const Registry& registry, MotionShelf shelf);
+  References(const Study& study, const Registry& registry, CheckpointStore checkpoints);
 
   /// Throws Interrupted when `stop` became true.
   ReferenceSet of(const StudyCase& study_case, const std::atomic<bool>& stop);
@@ -94,7 +94,7 @@ class References {
 
   const Study& study_;
   const Registry& registry_;
-  MotionShelf shelf_;
+  CheckpointStore checkpoints_;
   double smallest_step_ = 0;
   int coarsest_ = 0, finest_ = 0;  // elements
   std::map<std::string, Known<ReferencePointer>> known_;

@@ -66,8 +66,8 @@ BlockAnswer block_answer(const std::string& bytes) {
 
 int BlockOrders::place(int scene) {
   if (order_.scenes.empty()) {
-    places_[scenes_.pioneer()] = 0;
-    order_.scenes.push_back(scenes_[scenes_.pioneer()].variant);
+    places_[scenes_.reference_scene()] = 0;
+    order_.scenes.push_back(scenes_[scenes_.reference_scene()].variant);
   }
   const auto [known, added] = places_.try_emplace(scene, static_cast<int>(order_.scenes.size()));
   if (added) order_.scenes.push_back(scenes_[scene].variant);
@@ -80,16 +80,17 @@ int BlockOrders::add(int scene, const LaneSpec& lane) {
   return static_cast<int>(order_.orbits.size()) - 1;
 }
 
-BlockMarcher::Scenes& BlockMarcher::scenes_of(const StudyCase& study_case, const SceneVariant& pioneer) {
+BlockMarcher::Scenes& BlockMarcher::scenes_of(const StudyCase& study_case, const SceneVariant& reference_scene) {
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Scenes& one) {
-    return one.study_case == &study_case && one.pioneer == key_of(pioneer) && one.known.size() < most_scenes;
+    return one.study_case == &study_case && one.reference_scene == key_of(reference_scene) &&
+           one.known.size() < most_scenes;
   });
   if (found != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, found);
   } else {
     // Of another batch of cells: it does not come back.
     std::erase_if(kept_, [&](const Scenes& one) { return one.study_case == &study_case; });
-    kept_.push_front({&study_case, key_of(pioneer), std::make_unique<ForcedScenes>(study_case, registry_), {}});
+    kept_.push_front({&study_case, key_of(reference_scene), std::make_unique<ForcedScenes>(study_case, registry_), {}});
     if (kept_.size() > most_kept_cases) kept_.pop_back();
   }
   return kept_.front();

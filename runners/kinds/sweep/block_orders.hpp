@@ -79,12 +79,12 @@ class BlockMarcher {
   using Key = std::pair<std::vector<std::pair<std::string, double>>, bool>;
   struct Scenes {
     const StudyCase* study_case;
-    Key pioneer;
+    Key reference_scene;
     std::unique_ptr<ForcedScenes> all;
     std::map<Key, int> known;
   };
   static Key key_of(const SceneVariant& variant) { return {variant.values, variant.own_state}; }
-  Scenes& scenes_of(const StudyCase& study_case, const SceneVariant& pioneer);
+  Scenes& scenes_of(const StudyCase& study_case, const SceneVariant& reference_scene);
 
   const Registry& registry_;
   std::list<Scenes> kept_;  // the one that was used last first

@@ -26,8 +26,8 @@ class BlocksUnderWay {
   std::size_t count() const { return under_way_.size(); }
   /// Whether another one may begin: one more than this case may count on waits for a process that is free.
   bool room() const { return count() <= static_cast<std::size_t>(service_.share()); }
-  /// The next news, of the block of this number; nothing where so many seconds brought none.
-  std::optional<std::pair<int, BlockNews>> next(double seconds);
+  /// The next status, of the block of this number; nothing where so many seconds brought none.
+  std::optional<std::pair<int, BlockStatus>> next(double seconds);
   void stop();
 
  private:
@@ -35,7 +35,7 @@ class BlocksUnderWay {
   struct Inbox {
     std::mutex mutex;
     std::condition_variable changed;
-    std::deque<std::pair<int, BlockNews>> news;
+    std::deque<std::pair<int, BlockStatus>> status;
   };
 
   BlockService& service_;

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-using What = BlockNews::What;
+using What = BlockStatus::What;
 
 // Orbits that are sent together.
 struct Part {
@@ -65,18 +65,18 @@ void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, con
     }
     auto heard = service.next(look_up);
     if (!heard || heard->second.what == What::so_far) continue;
-    const BlockNews& news = heard->second;
+    const BlockStatus& status = heard->second;
     Part part = std::move(parts.extract(heard->first).mapped());
-    if (news.what == What::failed || news.what == What::gave_up) throw std::runtime_error(news.content);
-    if (news.what == What::done) {
-      BlockAnswer answer = block_answer(news.content);
+    if (status.what == What::failed || status.what == What::gave_up) throw std::runtime_error(status.content);
+    if (status.what == What::done) {
+      BlockAnswer answer = block_answer(status.content);
       seconds += answer.seconds;
       for (std::size_t i = 0; i < part.orbits.size(); ++i) found[part.orbits[i]] = std::move(answer.exponents.at(i));
       settle(part.batch, part.orbits.size());
-    } else if (news.what == What::lost && part.orbits.size() == 1 && part.attempts > 0) {
-      if (task.lost) task.lost(news.content);
+    } else if (status.what == What::lost && part.orbits.size() == 1 && part.attempts > 0) {
+      if (task.lost) task.lost(status.content);
       settle(part.batch, 1);
-    } else if (news.what == What::lost) {
+    } else if (status.what == What::lost) {
       for (const std::size_t orbit : part.orbits) waiting.push_back({part.batch, {orbit}, part.attempts + 1});
     }
   }

@@ -12,7 +12,7 @@
 namespace ricochet {
 namespace {
 
-using What = BlockNews::What;
+using What = BlockStatus::What;
 using Clock = std::chrono::steady_clock;
 
 constexpr double block_seconds = 2;  // of predicted work
@@ -149,16 +149,16 @@ void DistributedOrbits::run(const std::atomic<bool>& stop,
     if (!ending) fill();
     if (service_.count() == 0) break;
     if (auto heard = service_.next(look_up)) {
-      auto& [number, news] = *heard;
+      auto& [number, status] = *heard;
       Block& block = blocks_.at(number);
-      if (news.what == What::so_far || news.what == What::done) hear(block, news.content);
-      if (news.what == What::failed || news.what == What::gave_up) throw std::runtime_error(news.content);
-      if (news.what != What::so_far) {
+      if (status.what == What::so_far || status.what == What::done) hear(block, status.content);
+      if (status.what == What::failed || status.what == What::gave_up) throw std::runtime_error(status.content);
+      if (status.what != What::so_far) {
         const auto ended = blocks_.extract(number);
-        if (news.what == What::lost && !ending) lose(std::move(ended.mapped()), news.content);
-        if (news.what == What::done && !ending) queue_.give_back(std::move(ended.mapped().running));
-        if (news.what == What::interrupted || (news.what == What::done && ending) ||
-            (news.what == What::lost && ending))
+        if (status.what == What::lost && !ending) lose(std::move(ended.mapped()), status.content);
+        if (status.what == What::done && !ending) queue_.give_back(std::move(ended.mapped().running));
+        if (status.what == What::interrupted || (status.what == What::done && ending) ||
+            (status.what == What::lost && ending))
           interrupted.push_back(std::move(ended.mapped()));
       }
     }

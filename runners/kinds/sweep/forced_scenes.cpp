@@ -59,7 +59,7 @@ int ForcedScenes::add(SceneVariant variant) {
     const auto problem = candidate.problem;
     const double h = candidate.h;
     scene.group = groups_.add(std::move(candidate));
-    if (pioneer_ < 0) pioneer_ = number;
+    if (reference_ < 0) reference_ = number;
     if (scene.group == static_cast<int>(beyond_limit_.size()))
       beyond_limit_.push_back(beyond_explicit_limit(problem, std::get<StepPlan>(plan), h, plan_at));
     scene.refusal = beyond_limit_[static_cast<std::size_t>(scene.group)];

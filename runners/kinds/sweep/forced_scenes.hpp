@@ -44,7 +44,7 @@ class ForcedScenes {
   int count() const { return static_cast<int>(scenes_.size()); }
   int groups() const { return groups_.count(); }
   /// The scene that began the first group, and with it chose the operator of all; −1: there is none.
-  int pioneer() const { return pioneer_; }
+  int reference_scene() const { return reference_; }
 
   /// What the scenes of a group share, as LaneGroups has it.
   const SemiDiscrete& problem(int group) const { return *groups_.problem(group); }
@@ -67,7 +67,7 @@ class ForcedScenes {
   const Registry& registry_;
   std::vector<ForcedScene> scenes_;
   LaneGroups groups_;
-  int pioneer_ = -1;
+  int reference_ = -1;
   std::vector<std::string> beyond_limit_;  // per group: why an explicit step of it is refused
 };
 

@@ -15,35 +15,35 @@ std::string OrbitCheckpoints::part(int number) const {
 
 MarchedOrbits OrbitCheckpoints::find() {
   MarchedOrbits all;
-  if (!shelf_.find) return all;
+  if (!checkpoints_.find) return all;
   bool whole = true;
-  for (; !shelf_.find(part(parts_)).empty(); ++parts_) {
-    auto some = recall(shelf_, part(parts_), marched_orbits);
+  for (; !checkpoints_.find(part(parts_)).empty(); ++parts_) {
+    auto some = recall(checkpoints_, part(parts_), marched_orbits);
     whole = whole && some;
     if (some) std::move(some->finished.begin(), some->finished.end(), std::back_inserter(all.finished));
   }
   // An orbit on its way that follows one of a part that is lost would be begun again when that one ends.
   if (!whole) return all;
-  if (auto now = recall(shelf_, part(-1), marched_orbits)) all.running = std::move(now->running);
+  if (auto now = recall(checkpoints_, part(-1), marched_orbits)) all.running = std::move(now->running);
   return all;
 }
 
 void OrbitCheckpoints::save(const MarchedOrbits& marched) {
-  if (!shelf_.keep) return;
+  if (!checkpoints_.keep) return;
   // What thousands of workers have ended meanwhile is in memory several times while it becomes bytes.
   constexpr std::ptrdiff_t together = 1024;
   for (auto from = marched.finished.begin(); from != marched.finished.end();) {
     const auto to = from + std::min(together, marched.finished.end() - from);
-    shelf_.keep(part(parts_++), to_bytes(MarchedOrbits{{from, to}, {}}));
+    checkpoints_.keep(part(parts_++), to_bytes(MarchedOrbits{{from, to}, {}}));
     from = to;
   }
-  shelf_.keep(part(-1), to_bytes(MarchedOrbits{{}, marched.running}));
+  checkpoints_.keep(part(-1), to_bytes(MarchedOrbits{{}, marched.running}));
 }
 
 void OrbitCheckpoints::forget() {
-  if (!shelf_.keep) return;
-  for (int i = 0; i < parts_; ++i) shelf_.keep(part(i), "");
-  shelf_.keep(part(-1), "");
+  if (!checkpoints_.keep) return;
+  for (int i = 0; i < parts_; ++i) checkpoints_.keep(part(i), "");
+  checkpoints_.keep(part(-1), "");
 }
 
 std::string ExponentCheckpoints::part(std::size_t batch) const {
@@ -56,20 +56,20 @@ void ExponentCheckpoints::note(std::size_t batch) {
 }
 
 void ExponentCheckpoints::serve(ExponentTask& task) {
-  if (!shelf_.find || !shelf_.keep) return;
+  if (!checkpoints_.find || !checkpoints_.keep) return;
   task.find = [this](std::size_t batch) {
-    auto exponents = recall(shelf_, part(batch), orbit_exponents);
+    auto exponents = recall(checkpoints_, part(batch), orbit_exponents);
     if (exponents) note(batch);
     return exponents.value_or(std::vector<OrbitExponents>());
   };
   task.keep = [this](std::size_t batch, const std::vector<OrbitExponents>& exponents) {
-    shelf_.keep(part(batch), to_bytes(exponents));
+    checkpoints_.keep(part(batch), to_bytes(exponents));
     note(batch);
   };
 }
 
 void ExponentCheckpoints::forget() {
-  for (const std::size_t batch : kept_) shelf_.keep(part(batch), "");
+  for (const std::size_t batch : kept_) checkpoints_.keep(part(batch), "");
 }
 
 }  // namespace ricochet

@@ -24,12 +24,12 @@ Kind sweep_kind(RunSweep run, DeriveTables derive) {
   kind.format.complete = mark_sweep;
   kind.format.check_cases = check_values;
   kind.start = [run](const RunContext& context) {
-    const auto shelf = std::make_shared<MotionShelf>();
+    const auto checkpoints = std::make_shared<CheckpointStore>();
     CaseRunner runner;
-    runner.open = [shelf](MotionShelf opened, const std::atomic<bool>&) { *shelf = std::move(opened); };
-    runner.run = [run, shelf, blocks = context.blocks, key = context.key, &registry = context.registry](
+    runner.open = [checkpoints](CheckpointStore opened, const std::atomic<bool>&) { *checkpoints = std::move(opened); };
+    runner.run = [run, checkpoints, blocks = context.blocks, key = context.key, &registry = context.registry](
                      const StudyCase& study_case, const std::atomic<bool>& stop) {
-      CaseRecord record = run(study_case, registry, CaseDesk{*shelf, key(study_case), blocks}, stop);
+      CaseRecord record = run(study_case, registry, CaseContext{*checkpoints, key(study_case), blocks}, stop);
       if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
         add_doubts(record,
                    load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,

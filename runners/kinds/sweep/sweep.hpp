@@ -5,8 +5,8 @@
 /// What the kinds that go through a parameter have in common as kinds.
 namespace ricochet {
 
-/// A case of a sweep, with the desk at which it keeps what would be lost if it were killed.
-using RunSweep = CaseRecord (*)(const StudyCase&, const Registry&, const CaseDesk&, const std::atomic<bool>& stop);
+/// A case of a sweep, with the context at which it keeps what would be lost if it were killed.
+using RunSweep = CaseRecord (*)(const StudyCase&, const Registry&, const CaseContext&, const std::atomic<bool>& stop);
 
 /// Appends the tables that follow from the cases to results.derived.
 using DeriveTables = void (*)(StudyResults&);

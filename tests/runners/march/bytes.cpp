@@ -6,7 +6,7 @@
 #include <limits>
 #include <new>
 
-#include "runners/march/motion_shelf.hpp"
+#include "runners/march/checkpoint_store.hpp"
 
 using Catch::Matchers::Contains;
 
@@ -106,20 +106,20 @@ TEST_CASE("bytes: another version is named, whatever follows it") {
     CHECK_THROWS_WITH(read_stored(ricochet::to_bytes(full(), other)), Contains("of another version than things 7"));
 }
 
-TEST_CASE("bytes: what a shelf does not keep whole is computed again") {
+TEST_CASE("bytes: what a store does not keep whole is computed again") {
   const std::string bytes = ricochet::to_bytes(full(), mark);
-  ricochet::MotionShelf shelf;
-  CHECK_FALSE(ricochet::recall(shelf, "key", read_stored));
+  ricochet::CheckpointStore checkpoints;
+  CHECK_FALSE(ricochet::recall(checkpoints, "key", read_stored));
   std::string kept;
-  shelf.find = [&](const std::string&) { return kept; };
-  CHECK_FALSE(ricochet::recall(shelf, "key", read_stored));
+  checkpoints.find = [&](const std::string&) { return kept; };
+  CHECK_FALSE(ricochet::recall(checkpoints, "key", read_stored));
   for (const std::string& lost : {bytes.substr(0, 50), ricochet::to_bytes(full(), "things 6")}) {
     kept = lost;
-    CHECK_FALSE(ricochet::recall(shelf, "key", read_stored));
+    CHECK_FALSE(ricochet::recall(checkpoints, "key", read_stored));
   }
   kept = bytes;
-  REQUIRE(ricochet::recall(shelf, "key", read_stored));
-  CHECK(ricochet::recall(shelf, "key", read_stored)->words == full().words);
+  REQUIRE(ricochet::recall(checkpoints, "key", read_stored));
+  CHECK(ricochet::recall(checkpoints, "key", read_stored)->words == full().words);
 }
 
 }  // namespace bytes_tests

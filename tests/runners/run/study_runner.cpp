@@ -220,14 +220,14 @@ TEST_CASE("run: never more cases at once than --jobs") {
 TEST_CASE("run: cases on several threads show what they have so far, and none fails another") {
   const ScratchFolder scratch;
   FakeRun run(scratch);
-  MotionShelf shelf;
-  run.runner.cases.open = [&](MotionShelf opened, const std::atomic<bool>&) { shelf = std::move(opened); };
+  CheckpointStore checkpoints;
+  run.runner.cases.open = [&](CheckpointStore opened, const std::atomic<bool>&) { checkpoints = std::move(opened); };
   run.runner.cases.run = [&](const StudyCase& one, const std::atomic<bool>&) {
     for (int k = 0; k < 10; ++k) {
       CaseRecord partial = fake_result(one);
       partial.id = one.id;
       partial.axes = one.axes;
-      shelf.show(partial);
+      checkpoints.show(partial);
     }
     return fake_result(one);
   };

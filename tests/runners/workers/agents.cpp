@@ -39,18 +39,18 @@ class ScriptedHost : public WorkerHost {
 /// What a store keeps, and how often it was told each row.
 struct Kept {
   std::mutex mutex;
-  std::map<std::string, std::string> shelf, rows;
+  std::map<std::string, std::string> checkpoints, rows;
   std::map<std::string, int> told;
 
-  MotionShelf shelf_of() {
-    MotionShelf all;
+  CheckpointStore store_of() {
+    CheckpointStore all;
     all.find = [this](const std::string& key) {
       const std::lock_guard guard(mutex);
-      return shelf[key];
+      return checkpoints[key];
     };
     all.keep = [this](const std::string& key, const std::string& content) {
       const std::lock_guard guard(mutex);
-      shelf[key] = content;
+      checkpoints[key] = content;
     };
     all.show = [](const CaseRecord&) {};
     all.failed = [](const std::string&) { return false; };
@@ -85,7 +85,7 @@ void run_missing(const Study& study, std::vector<std::shared_ptr<WorkerHost>> ho
   StudyRunner runner;
   runner.cases = isolated.runner();
   try {
-    runner.cases.open(kept.shelf_of(), stop);
+    runner.cases.open(kept.store_of(), stop);
   } catch (const Interrupted&) {
     return;
   }
@@ -275,38 +275,38 @@ class Exchange {
     int rank() const override { return rank_; }
     int size() const override { return static_cast<int>(all_.boxes_.size()); }
     void send(int to, std::string bytes) override { all_.put(to, {rank_, std::move(bytes)}); }
-    std::optional<Parcel> receive(double seconds) override { return all_.take(rank_, seconds); }
+    std::optional<Packet> receive(double seconds) override { return all_.take(rank_, seconds); }
 
    private:
     Exchange& all_;
     const int rank_;
   };
 
-  /// Parcels to a rank that it has not taken.
+  /// Packets to a rank that it has not taken.
   std::size_t unheard(int rank) {
     const std::lock_guard guard(mutex_);
     return boxes_.at(static_cast<std::size_t>(rank)).size();
   }
 
  private:
-  void put(int to, Transport::Parcel parcel) {
+  void put(int to, Transport::Packet packet) {
     const std::lock_guard guard(mutex_);
-    boxes_.at(static_cast<std::size_t>(to)).push_back(std::move(parcel));
+    boxes_.at(static_cast<std::size_t>(to)).push_back(std::move(packet));
     changed_.notify_all();
   }
-  std::optional<Transport::Parcel> take(int rank, double seconds) {
+  std::optional<Transport::Packet> take(int rank, double seconds) {
     auto& box = boxes_.at(static_cast<std::size_t>(rank));
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return !box.empty(); }))
       return std::nullopt;
-    Transport::Parcel parcel = std::move(box.front());
+    Transport::Packet packet = std::move(box.front());
     box.pop_front();
-    return parcel;
+    return packet;
   }
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::deque<Transport::Parcel>> boxes_;
+  std::vector<std::deque<Transport::Packet>> boxes_;
 };
 
 /// Counts those that are there.

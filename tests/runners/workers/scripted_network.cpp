@@ -35,7 +35,7 @@ void ScriptedNetwork::send(int to, std::string bytes) {
   changed_.notify_all();
 }
 
-std::optional<Transport::Parcel> ScriptedNetwork::receive(double) {
+std::optional<Transport::Packet> ScriptedNetwork::receive(double) {
   // Nobody moves while nobody listens: a look now and then is soon enough.
   constexpr auto look_up = std::chrono::milliseconds(2);
   std::unique_lock lock(mutex_);
@@ -59,7 +59,7 @@ std::optional<Transport::Parcel> ScriptedNetwork::receive(double) {
     std::deque<std::string>& line = hears ? agent.to_it : agent.from_it;
     std::string bytes = std::move(line.front());
     line.pop_front();
-    if (!hears) return Parcel{static_cast<int>(i) + 1, std::move(bytes)};
+    if (!hears) return Packet{static_cast<int>(i) + 1, std::move(bytes)};
     hear(agent, bytes);
     if (++agent.heard == agent.fate.after) meet_fate(agent);
   }

@@ -16,21 +16,21 @@
 
 namespace ricochet::tests {
 
-/// A network with agents that are scripts, as rank 0 sees it: whole parcels, in order from any one rank, otherwise in
+/// A network with agents that are scripts, as rank 0 sees it: whole packets, in order from any one rank, otherwise in
 /// an order that luck decides, each rank at a pace of its own. An agent does its work while rank 0 listens.
 class ScriptedNetwork : public Transport {
  public:
   /// What becomes of an agent.
   struct Fate {
     enum class What { stays, vanishes, comes_back, cut, nonsense } what = What::stays;
-    int after = 0;         ///< parcels that it hears before
+    int after = 0;         ///< packets that it hears before
     double absence = 0.1;  ///< s, of one that comes back
   };
 
   /// A rank for each of the fates. `alive_every`: s.
   ScriptedNetwork(ScriptedWorld& world, std::uint32_t seed, std::vector<Fate> fates, double alive_every);
 
-  /// Rank 0 hears nothing for so many s, once, after so many parcels, as if it had been stopped; the others go on.
+  /// Rank 0 hears nothing for so many s, once, after so many packets, as if it had been stopped; the others go on.
   void stop_rank_0(int after, double seconds) {
     stop_after_ = after;
     stop_seconds_ = seconds;
@@ -39,7 +39,7 @@ class ScriptedNetwork : public Transport {
   int rank() const override { return 0; }
   int size() const override { return static_cast<int>(agents_.size()) + 1; }
   void send(int to, std::string bytes) override;
-  std::optional<Parcel> receive(double seconds) override;
+  std::optional<Packet> receive(double seconds) override;
 
   /// Once rank 0 has gone: agents hear what was sent to them. The workers that agents have then, and the agents that
   /// were sent home.

@@ -91,7 +91,7 @@ void ScriptedWorker::hear(const Message& message) {
     begin_case(message);
   } else if (message.word == Word::block) {
     march(message);
-  } else if (message.word == Word::block_news) {
+  } else if (message.word == Word::block_status) {
     hear_block(message);
   } else if (message.word == Word::stop && !id_.empty()) {
     id_.clear();
@@ -128,21 +128,21 @@ void ScriptedWorker::begin_block(const std::string& order) {
 }
 
 void ScriptedWorker::hear_block(const Message& message) {
-  const auto news = message_from<BlockNews>(message.content);
-  if (id_.empty() || blocks_.count(message.about) == 0 || news.what == BlockNews::What::so_far) return;
+  const auto status = message_from<BlockStatus>(message.content);
+  if (id_.empty() || blocks_.count(message.about) == 0 || status.what == BlockStatus::What::so_far) return;
   const std::string order = blocks_.extract(message.about).mapped();
-  if (news.what == BlockNews::What::lost && lost_.insert(order).second) return begin_block(order);
+  if (status.what == BlockStatus::What::lost && lost_.insert(order).second) return begin_block(order);
   CaseAnswer answer;
-  if (news.what != BlockNews::What::done) {
+  if (status.what != BlockStatus::What::done) {
     answer.record.status = "failed";
-    answer.record.reason = "block " + order + ": " + news.content;
+    answer.record.reason = "block " + order + ": " + status.content;
   } else {
-    parts_[order] = news.content;
+    parts_[order] = status.content;
     if (parts_.size() < at_one_time) return;
     if (parts_.size() == at_one_time) return begin_block(last_block(id_, parts_));
     if (ends_ == Ends::at_its_end) return end_with("signal 6 (abort)");
     answer.record.status = "done";
-    answer.record.notes = {shared_content, news.content};
+    answer.record.notes = {shared_content, status.content};
     answer.record.measures = {{"impacts", static_cast<double>(id_.back())}};
     CaseRecord shown = answer.record;
     shown.id = id_;
@@ -157,9 +157,9 @@ void ScriptedWorker::march(const Message& order) {
   const auto request = message_from<BlockRequest>(order.content);
   const Ends ends = world_.ends(request.order);
   if (ends == Ends::at_its_beginning) return end_with("signal 9 (killed)");
-  say(Word::block_news, to_bytes(BlockNews{BlockNews::What::so_far, "half"}), order.about);
+  say(Word::block_status, to_bytes(BlockStatus{BlockStatus::What::so_far, "half"}), order.about);
   if (ends != Ends::never) return end_with("exit code 7");
-  say(Word::block_news, to_bytes(BlockNews{BlockNews::What::done, marched(request.order)}), order.about);
+  say(Word::block_status, to_bytes(BlockStatus{BlockStatus::What::done, marched(request.order)}), order.about);
 }
 
 }  // namespace ricochet::tests

@@ -14,8 +14,8 @@
 #include "tests/runners/kinds/sweep/block_threads.hpp"
 
 using namespace ricochet;
-using ricochet::testing::BlockThreads;
 using Catch::Matchers::Contains;
+using ricochet::testing::BlockThreads;
 
 namespace {
 
@@ -46,9 +46,9 @@ struct Opened {
   Registry registry;
   Study study;
   explicit Opened(const Json& text) : study(parse_study(text.dump(1), catalogue, registry)) {}
-  CaseRecord run(const CaseDesk& desk = {{}, "key"}) const {
+  CaseRecord run(const CaseContext& context = {{}, "key"}) const {
     const std::atomic<bool> stop = false;
-    return run_basins(study.cases.front(), registry, desk, stop);
+    return run_basins(study.cases.front(), registry, context, stop);
   }
 };
 
@@ -195,18 +195,18 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   // Stopped with all three under way, and gone on with one at a time: what was kept is of no batch or of whole ones.
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
-  CaseDesk desk{{}, "key", &workers};
-  desk.shelf.find = [&](const std::string& key) {
+  CaseContext context{{}, "key", &workers};
+  context.checkpoints.find = [&](const std::string& key) {
     stop = key.starts_with("orbits/");  // looked for when the march begins
     return kept.count(key) ? kept[key] : "";
   };
-  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
-  CHECK_THROWS_AS(run_basins(opened.study.cases.front(), opened.registry, desk, stop), Interrupted);
+  context.checkpoints.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
+  CHECK_THROWS_AS(run_basins(opened.study.cases.front(), opened.registry, context, stop), Interrupted);
   CHECK_FALSE(kept.empty());
   stop = false;
-  desk.blocks = nullptr;
-  desk.shelf.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
-  CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, desk, stop)) == wanted));
+  context.blocks = nullptr;
+  context.checkpoints.find = [&](const std::string& key) { return kept.count(key) ? kept[key] : ""; };
+  CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, context, stop)) == wanted));
 }
 
 TEST_CASE("Workers, interruptions and damage to what was stored do not change the bits of basins") {
@@ -220,13 +220,13 @@ TEST_CASE("Workers, interruptions and damage to what was stored do not change th
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
   int saves = 0, looks = 0;
-  CaseDesk desk;
-  desk.key = "key";
-  desk.shelf.find = [&](const std::string& key) {
+  CaseContext context;
+  context.key = "key";
+  context.checkpoints.find = [&](const std::string& key) {
     if (key.starts_with("orbits/") && ++looks % 5 == 0) stop = true;  // a march that ends in its first periods
     return kept.contains(key) ? kept.at(key) : std::string();
   };
-  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
+  context.checkpoints.keep = [&](const std::string& key, const std::string& bytes) {
     bytes.empty() ? void(kept.erase(key)) : void(kept[key] = bytes);
     if (++saves % 5 == 0) stop = true;
   };
@@ -235,7 +235,7 @@ TEST_CASE("Workers, interruptions and damage to what was stored do not change th
     REQUIRE(interruptions < 100);
     stop = false;
     try {
-      const CaseRecord record = run_basins(opened.study.cases.front(), opened.registry, desk, stop);
+      const CaseRecord record = run_basins(opened.study.cases.front(), opened.registry, context, stop);
       CHECK((bits(record) == wanted));  // not printed when it fails
       break;
     } catch (const Interrupted&) {

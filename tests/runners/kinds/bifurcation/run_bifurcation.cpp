@@ -67,10 +67,10 @@ TEST_CASE("bifurcation: what was stored and is damaged is marched again, to the 
   std::map<std::string, std::string> kept;
   std::atomic<bool> stop = false;
   int saves = 0;
-  CaseDesk desk;
-  desk.key = "key";
-  desk.shelf.find = [&](const std::string& key) { return kept.contains(key) ? kept.at(key) : std::string(); };
-  desk.shelf.keep = [&](const std::string& key, const std::string& bytes) {
+  CaseContext context;
+  context.key = "key";
+  context.checkpoints.find = [&](const std::string& key) { return kept.contains(key) ? kept.at(key) : std::string(); };
+  context.checkpoints.keep = [&](const std::string& key, const std::string& bytes) {
     bytes.empty() ? void(kept.erase(key)) : void(kept[key] = bytes);
     if (++saves % 3 == 0) stop = true;  // orbits, those on their way, exponents
   };
@@ -79,7 +79,7 @@ TEST_CASE("bifurcation: what was stored and is damaged is marched again, to the 
     REQUIRE(interruptions < 20);
     stop = false;
     try {
-      const CaseRecord record = run_bifurcation(opened.first(), *opened.registry, desk, stop);
+      const CaseRecord record = run_bifurcation(opened.first(), *opened.registry, context, stop);
       CHECK((tables_of(record) == wanted));
       break;
     } catch (const Interrupted&) {

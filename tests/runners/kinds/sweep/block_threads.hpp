@@ -34,7 +34,7 @@ class BlockThreads : public BlockService {
 
   int width() const override { return width_; }
   int share() const override { return width_; }
-  int begin(const std::string&, const std::string& order, std::function<void(BlockNews)> heard) override {
+  int begin(const std::string&, const std::string& order, std::function<void(BlockStatus)> heard) override {
     const std::lock_guard guard(mutex_);
     const int number = ++begun_;
     stops_[number] = std::make_shared<std::atomic<bool>>(false);
@@ -50,11 +50,11 @@ class BlockThreads : public BlockService {
  private:
   struct Block {
     std::string order;
-    std::function<void(BlockNews)> heard;
+    std::function<void(BlockStatus)> heard;
     std::shared_ptr<std::atomic<bool>> stop;
   };
   void work() {
-    using What = BlockNews::What;
+    using What = BlockStatus::What;
     BlockMarcher marcher(registry_);
     for (;;) {
       Block block;
@@ -67,7 +67,10 @@ class BlockThreads : public BlockService {
       }
       try {
         std::string answer = marcher.march(
-            study_case_, block.order, [&](std::string bytes) { block.heard({What::so_far, std::move(bytes)}); },
+            study_case_, block.order,
+            [&](std::string bytes) {
+              block.heard({What::so_far, std::move(bytes)});
+            },
             *block.stop);
         block.heard({What::done, std::move(answer)});
       } catch (const Interrupted&) {

@@ -122,10 +122,10 @@ inline std::string bits_of(const CaseRecord& record) {
 inline CaseRecord run_sweep(const Json& text, int workers = 0) {
   const OpenedSweep opened = opened_sweep(text);
   BlockThreads blocks(opened.first(), *opened.registry, workers);
-  CaseDesk desk;
-  if (workers > 0) desk.blocks = &blocks;
+  CaseContext context;
+  if (workers > 0) context.blocks = &blocks;
   const std::atomic<bool> stop = false;
-  return run_bifurcation(opened.first(), *opened.registry, desk, stop);
+  return run_bifurcation(opened.first(), *opened.registry, context, stop);
 }
 
 }  // namespace ricochet::testing

@@ -12,7 +12,7 @@ namespace ricochet {
 
 /// What outlives the program of a case under way and of what cases share: find(key) gives what keep(key, content) once
 /// stored, or "".
-struct MotionShelf {
+struct CheckpointStore {
   std::function<std::string(const std::string& key)> find;
   std::function<void(const std::string& key, const std::string& content)> keep;
   /// Shows what a case under way has so far; empty where nobody looks.
@@ -26,8 +26,9 @@ struct MotionShelf {
 /// What `read` makes of what is kept under the key; nothing where nothing is, or where it is not whole or of another
 /// version: what was stored is there to save time, and is computed again.
 template <class T>
-std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*read)(const std::string& bytes)) {
-  const std::string bytes = shelf.find ? shelf.find(key) : "";
+std::optional<T> recall(const CheckpointStore& checkpoints, const std::string& key,
+                        T (*read)(const std::string& bytes)) {
+  const std::string bytes = checkpoints.find ? checkpoints.find(key) : "";
   if (bytes.empty()) return std::nullopt;
   try {
     return read(bytes);
@@ -37,8 +38,8 @@ std::optional<T> recall(const MotionShelf& shelf, const std::string& key, T (*re
 }
 
 /// Where a case keeps what would be lost if it were killed, and says how far it is.
-struct CaseDesk {
-  MotionShelf shelf;               ///< bytes by key; empty bytes forget a key
+struct CaseContext {
+  CheckpointStore checkpoints;     ///< bytes by key; empty bytes forget a key
   std::string key;                 ///< of this case and everything its bits depend on
   BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
