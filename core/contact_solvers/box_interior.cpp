@@ -2,7 +2,7 @@
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/held_band.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 

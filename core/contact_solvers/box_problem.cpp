@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 namespace {

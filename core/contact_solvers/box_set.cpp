@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ricochet/contact_solvers/box_problem.hpp>
 #include <ricochet/contact_solvers/held_band.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 /// \file
 /// One set of active points: its effort, what that does to all measures, and how far it is from (1).

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/pointwise_solver.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 namespace {

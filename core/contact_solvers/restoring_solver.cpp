@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/contact_solvers/restoring_solver.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <ricochet/engine/cost_model.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 #include <string>
 
 namespace ricochet {

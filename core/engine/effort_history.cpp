@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
-#include <ricochet/scene/start_force.hpp>
+#include <ricochet/scene/massless_part.hpp>
 #include <utility>
 
 namespace ricochet {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <ricochet/engine/energy_bounds.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 

@@ -4,7 +4,7 @@
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
 #include <ricochet/engine/flight_choice.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 namespace {

@@ -6,8 +6,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/band_ldlt.hpp>
-#include <ricochet/kernels/flush_denormals.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 #include <utility>
 
 namespace ricochet {

@@ -8,7 +8,7 @@
 #include <ricochet/engine/marcher.hpp>
 #include <ricochet/engine/stage_state.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/scene/formula.hpp>
-#include <ricochet/scene/formula_errors.hpp>
 #include <vector>
 
 namespace ricochet {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 #include <ricochet/contract/errors.hpp>
-#include <ricochet/scene/formula_errors.hpp>
+#include <ricochet/scene/formula.hpp>
 #include <ricochet/scene/named_formulas.hpp>
 #include <set>
 

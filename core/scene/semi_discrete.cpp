@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <ricochet/contract/contact_law.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
-#include <ricochet/scene/start_force.hpp>
 #include <stdexcept>
 
 namespace ricochet {

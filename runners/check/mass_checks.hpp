@@ -1,9 +1,43 @@
 #pragma once
-#include "runners/check/mass_spaces.hpp"
+#include <Eigen/Core>
+#include <ricochet/contract/mass_strategy.hpp>
+
+#include "runners/check/parameter_values.hpp"
 
 /// \file
-/// What is looked at in a mass strategy (mass_matrix.cpp, mass_structure.cpp).
+/// Displacement spaces on which masses are checked: a beam or a bar of unit length and density, fixed or free at each
+/// end, with stops nowhere, at its free ends or at all nodes.
 namespace ricochet::checking {
+
+using Mass = Subject<MassStrategy>;
+
+struct SpaceBench {
+  enum class Stops { none, ends, nodes };
+  bool beam = false;
+  int elements = 6;
+  bool left_fixed = false, right_fixed = false;
+  bool point_mass = false;  ///< 0.3 kg in the middle
+  Stops stops = Stops::none;
+};
+/// Where stops may stand.
+std::vector<SpaceBench::Stops> stops_of(bool no_free_end);
+FiniteElementSpace unit_space(const SpaceBench& bench);
+/// "a beam of 6 elements, fixed at its left end".
+std::string space_text(const SpaceBench& bench);
+/// One mass of 1 kg without elements.
+FiniteElementSpace oscillator_space();
+
+/// What the strategy builds; throws Refused.
+Inertia built(const Mass& mass, const FiniteElementSpace& space);
+InertiaOrRefusal ask_mass(const Mass& mass, const FiniteElementSpace& space);
+/// M, formed where it is factored. Throws std::runtime_error where sizes do not fit or numbers are none.
+Eigen::MatrixXd dense(const Inertia& inertia, const FiniteElementSpace& space);
+/// K of EI = 1 or EA = 1.
+Eigen::MatrixXd unit_stiffness(const FiniteElementSpace& space);
+/// The spaces (of beams and bars, with any stops) that the strategy does not refuse.
+std::vector<SpaceBench> accepted(const Mass& mass, int elements);
+
+// What is looked at in a mass strategy (mass_matrix.cpp, mass_structure.cpp).
 
 Verdict some_structure_is_accepted(const Mass& mass);
 Verdict matrix_is_symmetric(const Mass& mass);

@@ -1,6 +1,6 @@
 #pragma once
 #include "runners/check/bench.hpp"
-#include "runners/check/closed_forms.hpp"
+#include "runners/check/reference_scenes.hpp"
 
 /// \file
 /// What is looked at in a time scheme. Each declared fact has a check that measures it, apart from the others.

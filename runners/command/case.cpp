@@ -5,20 +5,17 @@
 #include "runners/command/command.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/kinds/kind.hpp"
-#include "runners/kinds/single_study.hpp"
 #include "runners/kinds/stored_study.hpp"
-#include "runners/march/arithmetic_digest.hpp"
-#include "runners/run/case_again.hpp"
+#include "runners/march/study_identity.hpp"
+#include "runners/run/merge_folders.hpp"
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/number_rows.hpp"
-#include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/snapshots.hpp"
 #include "runners/store/store.hpp"
-#include "runners/table/csv_text.hpp"
-#include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

@@ -9,9 +9,8 @@
 
 #include "runners/command/subcommand.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/run/part_cases.hpp"
-#include "runners/store/curve_files.hpp"
-#include "runners/store/store_error.hpp"
+#include "runners/run/study_cases.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/workers/worker_service.hpp"
 
 namespace ricochet {

@@ -9,11 +9,10 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/describe_words.hpp"
-#include "runners/command/plain.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

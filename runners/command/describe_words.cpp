@@ -6,13 +6,24 @@
 #include <functional>
 #include <ostream>
 
-#include "runners/command/plain.hpp"
 #include "runners/store/record.hpp"
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 #include "runners/study/study_kind.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
+
+std::string plain(const nlohmann::ordered_json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_null()) return "none";
+  if (value.is_number_float()) {
+    const auto number = value.get<double>();
+    const std::string exact = fmt::format("{}", number), brief = fmt::format("{:g}", number);
+    return brief.size() < exact.size() && std::stod(brief) == number ? brief : exact;
+  }
+  return value.dump();
+}
+
 namespace {
 
 constexpr const char* whole_study = "study";

@@ -1,12 +1,16 @@
 #pragma once
 #include <iosfwd>
+#include <nlohmann/json.hpp>
 #include <ricochet/contract/parameters.hpp>
 #include <string>
 #include <vector>
 
-/// \file
-/// The manual of what a study or its results call by a name and no plugin provides.
 namespace ricochet {
+
+/// A value of an axis as a person reads it: words bare, numbers in their shortest form, null as "none".
+std::string plain(const nlohmann::ordered_json& value);
+
+// The manual of what a study or its results call by a name and no plugin provides.
 
 /// "number", "whole number", "true or false", "word".
 const char* type_word(const ParameterSpec& spec);

@@ -11,7 +11,7 @@
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/report/assets.hpp"
 #include "runners/run/environment.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

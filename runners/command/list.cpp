@@ -5,7 +5,8 @@
 #include "runners/command/subcommand.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/study/study_schema.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {
@@ -48,6 +49,14 @@ int command_list(const Arguments& arguments, std::ostream& out) {
   for (const Unusable& file : catalogue.unusable())
     out << "\ncannot serve: " << file.file.string() << ": " << file.reason << "\n";
   return failed.empty() ? exit_done : exit_plugin;
+}
+
+int command_schema(const Arguments& arguments, std::ostream& out) {
+  Catalogue catalogue = standard_catalogue(arguments.plugins);
+  Registry registry;
+  catalogue.open_all(registry);
+  out << study_schema(registry).dump() << "\n";
+  return exit_done;
 }
 
 }  // namespace ricochet

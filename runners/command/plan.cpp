@@ -7,12 +7,12 @@
 
 #include "runners/command/command.hpp"
 #include "runners/command/plan_physics.hpp"
-#include "runners/command/study_file.hpp"
+#include "runners/command/study_commands.hpp"
 #include "runners/run/forecast.hpp"
-#include "runners/run/part_cases.hpp"
 #include "runners/run/plan_cases.hpp"
+#include "runners/run/study_cases.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {

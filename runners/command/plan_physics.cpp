@@ -8,9 +8,9 @@
 #include <numbers>
 #include <ricochet/measure/stability/structure_physics.hpp>
 
-#include "runners/run/plan_contacts.hpp"
+#include "runners/run/plan_cases.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "runners/command/command.hpp"
-#include "runners/command/study_file.hpp"
+#include "runners/command/study_commands.hpp"
 #include "runners/command/subcommand.hpp"
 #include "runners/store/fingerprint.hpp"
 

@@ -1,22 +1,60 @@
+#include "runners/command/study_commands.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <iostream>
+#include <ostream>
+#include <set>
 
 #include "runners/command/command.hpp"
-#include "runners/command/study_file.hpp"
 #include "runners/command/subcommand.hpp"
+#include "runners/kinds/kind.hpp"
 #include "runners/march/study_identity.hpp"
-#include "runners/report/index_page.hpp"
-#include "runners/run/derive.hpp"
+#include "runners/plan_files/plan_file.hpp"
+#include "runners/report/summary_page.hpp"
+#include "runners/run/compare_studies.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/run/league.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
+#include "runners/study/load_study.hpp"
+#include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {
+
+int with_study(const Arguments& arguments, const std::function<int(const OpenStudy&)>& use) {
+  const std::filesystem::path file = arguments.operands.front();
+  OpenStudy open{{}, standard_catalogue(arguments.plugins), {}};
+  try {
+    open.study = load_study(file, open.catalogue, open.registry);
+    return use(open);
+  } catch (const InputError& error) {
+    throw StudyError(explain(error, file));
+  }
+}
+
+std::vector<std::string> plugin_warnings(const OpenStudy& open) {
+  std::set<std::pair<Role, std::string>> used;
+  for (const StudyCase& study_case : open.study.cases) {
+    used.insert({{Role::mass, study_case.mass.name},
+                 {Role::contact, study_case.contact.name},
+                 {Role::time, study_case.time.name}});
+    for (const MethodChoice& reference : study_case.references) used.emplace(Role::reference, reference.name);
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [role, name] : used)
+    for (const std::filesystem::path& file : open.catalogue.shadowed(role, name))
+      warnings.push_back(std::string(role_name(role)) + " '" + name + "' of " + file.string() + " is shadowed by " +
+                         open.catalogue.provider(role, name)->string());
+  for (const std::filesystem::path& folder : open.catalogue.missing_folders())
+    warnings.push_back("no such plugin folder: " + folder.string());
+  return warnings;
+}
 
 namespace {
 
@@ -115,6 +153,86 @@ int command_league(const Arguments& arguments, std::ostream& out) {
   const std::size_t beginning = common_beginning(studies).size();
   for (const StudyResults& study : studies)
     out << "[" << study.name.substr(beginning) << "]: " << study.name << ".json\n";
+  return exit_done;
+}
+
+int command_compare(const Arguments& arguments, std::ostream& out) {
+  const StudyResults a = with_tables(read_store(arguments.operands[0])),
+                     b = with_tables(read_store(arguments.operands[1]));
+  const StudyComparison found = compare_studies(a, b);
+  out << (arguments.table ? table_csv(comparison_table(found)) : comparison_text(found, a, b));
+  return exit_done;
+}
+
+namespace {
+
+// "bifurcation or basins".
+std::string kinds_with_points() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds())
+    if (kind.point) names.push_back(kind.format.name);
+  return fmt::format("{}", fmt::join(names, " or "));
+}
+
+}  // namespace
+
+int command_point(const Arguments& arguments, std::ostream& out) {
+  const StudyResults results = read_store(arguments.operands[0]);
+  const Kind* kind = find_kind(results.kind);
+  if (!kind || !kind->point)
+    throw UsageError(fmt::format("{} holds a study of kind {}; a point is one of kind {}", arguments.operands[0],
+                                 results.kind, kinds_with_points()));
+  const PointRequest asked{arguments.operands[1], arguments.plugins, arguments.parameter, arguments.start,
+                           arguments.cell,        arguments.periods, arguments.samples};
+  try {
+    return kind->point(results, asked, out);
+  } catch (const PointRefused& refused) {
+    throw UsageError(refused.what());
+  }
+}
+
+namespace {
+
+// A run writes how far it is every few seconds, and what it has under way is kept as often.
+constexpr double silence = 60;  // s
+
+std::string status_text(const std::string& folder, const RunStatus& status) {
+  int finished = 0;
+  std::string kinds;
+  for (const auto& [word, count] : status.rows) {
+    finished += count;
+    kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", count, word);
+  }
+  const std::string part = status.part.whole() ? "" : ", " + status.part.text();
+  std::string text = fmt::format("{} ({}, {}{}): {} of {} case{} finished{}\n", folder, status.name, status.kind, part,
+                                 finished, status.expected, status.expected == 1 ? "" : "s", kinds);
+  const std::string who = status.run ? status.run->text() : "a run";
+  if (!status.progress.empty()) {
+    text += fmt::format("  {}\n", who);
+    text += fmt::format("  {}, {} ago\n", status.progress, duration_text(status.silent));
+    if (status.silent > silence)
+      text += fmt::format(
+          "  it has not written for {}: it has ended, or cannot write; the same command again goes on where it was\n",
+          duration_text(status.silent));
+  } else if (finished < status.expected) {
+    text += fmt::format("  not under way; last {}: the same command again goes on where it was\n", who);
+  }
+  constexpr std::size_t most = 8;
+  std::vector<std::string> running;
+  for (const RunStatus::UnderWay& one : status.under_way)
+    if (one.stage == "run") running.push_back(fmt::format("{} (since {})", one.id, one.since));
+  const std::size_t told = std::min(most, running.size());
+  if (told > 0)
+    text +=
+        fmt::format("  under way: {}{}\n", fmt::join(running.begin(), running.begin() + static_cast<long>(told), ", "),
+                    running.size() > told ? fmt::format(" and {} more", running.size() - told) : "");
+  return text;
+}
+
+}  // namespace
+
+int command_status(const Arguments& arguments, std::ostream& out) {
+  for (const std::string& folder : arguments.operands) out << status_text(folder, read_status(folder));
   return exit_done;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runners/command/command.hpp"
-#include "runners/study/study_part.hpp"
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 

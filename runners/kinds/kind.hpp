@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/march/block_service.hpp"
-#include "runners/march/case_plan.hpp"
-#include "runners/march/checkpoint_store.hpp"
+#include "runners/march/case_context.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/report/kind_page.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study_kind.hpp"

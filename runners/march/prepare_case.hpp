@@ -1,15 +1,43 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
+#include <ricochet/contract/step_plan.hpp>
 #include <ricochet/engine/marcher.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {
+
+/// What would run for a case, decided without running it.
+struct CasePlan {
+  std::string refusal;        ///< "" when the case applies
+  std::string operator_name;  ///< diagonal, modal, band, sparse
+  long long steps = 0;
+  double predicted_seconds = 0;
+  /// Of these, what no more processors shorten: orbits that begin where others end, the last block of a grid. 0: all.
+  double chain_seconds = 0;
+  double bytes = 0;                           ///< of its results in the store, roughly
+  double coarsest_step = 0, finest_step = 0;  ///< s, of those that the case takes; 0 where it is refused
+  std::vector<std::pair<std::string, std::string>> left_out;  ///< item, reason
+  std::vector<std::string> notes;
+};
+
+/// Thrown out of a case when `stop` became true while it marched; the case leaves nothing behind.
+struct Interrupted {};
+
+/// The sentence with which the step h (s) of an explicit scheme is refused where the free structure grows in it: no
+/// stage of `plan` solves with K, and the spectral radius of the step, contact open, is beyond 1. It names the
+/// largest stable step, found by bisection of the spectrum over plans that `plan_at` makes. "" where the step is
+/// stable, the scheme is implicit, or the structure has more dofs than modes are found of.
+std::string beyond_explicit_limit(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
+                                  const std::function<PlanOrRefusal(double)>& plan_at);
 
 /// A case made ready: its semi-discrete problem and its program, or the sentence that says why it does not apply.
 struct Prepared {

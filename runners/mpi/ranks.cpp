@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include "runners/command/command.hpp"
-#include "runners/workers/agent.hpp"
 #include "runners/workers/machines.hpp"
 #include "runners/workers/worker_process.hpp"
 

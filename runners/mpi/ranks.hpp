@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/workers/transport.hpp"
+#include "runners/workers/host_messages.hpp"
 
 namespace ricochet {
 

@@ -19,8 +19,7 @@
 
 #include "runners/mpi/ranks.hpp"
 #include "runners/workers/host_messages.hpp"
-#include "runners/workers/transport.hpp"
-#include "runners/workers/worker_environment.hpp"
+#include "runners/workers/worker_process.hpp"
 
 namespace ricochet {
 namespace {

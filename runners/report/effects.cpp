@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "runners/report/axis_rows.hpp"
+#include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/report/html_table.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::report {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "runners/store/snapshots.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
@@ -94,6 +96,91 @@ PanelJson panel_data(const CaseView& view, CurveData& blocks) {
   if (view.all().size() > most_cases) return out;
   out["impacts"] = impacts_json(view);
   out["portraits"] = portraits_json(view, blocks);
+  return out;
+}
+
+namespace {
+
+using PageJson = nlohmann::ordered_json;
+
+constexpr size_t most_bytes = 1'500'000;  // of all cases together, before base64
+
+template <class Whole>
+void put_whole(CurveData& blocks, const std::string& key, const std::string& type, const std::vector<Whole>& values) {
+  std::vector<unsigned char> bytes;
+  for (const Whole value : values)
+    for (size_t k = 0; k < sizeof(Whole); ++k)
+      bytes.push_back(static_cast<unsigned char>(static_cast<std::uint32_t>(value) >> (8 * k)));
+  blocks.put(key, type, bytes);
+}
+
+/// Every `stride`th instant.
+Snapshots thinned(const Snapshots& all, size_t stride) {
+  if (stride == 1) return all;
+  Snapshots out = all;
+  out.t.clear();
+  out.clamp.clear();
+  out.displacement.clear();
+  const size_t places = all.x.size(), points = all.point.size();
+  for (size_t i = 0; i < all.t.size(); i += stride) {
+    out.t.push_back(all.t[i]);
+    out.clamp.push_back(all.clamp[i]);
+    const auto begin = all.displacement.begin() + static_cast<std::ptrdiff_t>(i * places);
+    out.displacement.insert(out.displacement.end(), begin, begin + static_cast<std::ptrdiff_t>(places));
+  }
+  // A force of instant i is of the time since i − 1: it goes to the first instant kept that is not before it.
+  std::map<std::uint32_t, double> sums;
+  for (size_t k = 0; k < all.pushed.size(); ++k) {
+    const size_t kept = (all.pushed[k] / points + stride - 1) / stride;
+    if (kept < out.t.size()) sums[static_cast<std::uint32_t>(kept * points + all.pushed[k] % points)] += all.force[k];
+  }
+  out.pushed.clear();
+  out.force.clear();
+  for (const auto& [at, sum] : sums) {
+    out.pushed.push_back(at);
+    out.force.push_back(static_cast<std::int16_t>(std::lround(sum / static_cast<double>(stride))));
+  }
+  return out;
+}
+
+/// Stops as JSON knows them: null where there is none.
+PageJson stops_json(const std::vector<double>& places) {
+  PageJson out = PageJson::array();
+  for (const double place : places) out.push_back(std::isfinite(place) ? PageJson(place) : PageJson());
+  return out;
+}
+
+PageJson one_case(const std::string& id, const Snapshots& shots, CurveData& blocks) {
+  const std::string key = id + "/" + snapshots_name + "/";
+  blocks.put_floats(key + "t", shots.t);
+  blocks.put_floats(key + "clamp", shots.clamp);
+  put_whole(blocks, key + "u", "i16", shots.displacement);
+  put_whole(blocks, key + "pushed", "u32", shots.pushed);
+  put_whole(blocks, key + "force", "i16", shots.force);
+  return {{"along", shots.along},
+          {"x", shots.x},
+          {"point", shots.point},
+          {"lower", stops_json(shots.lower)},
+          {"upper", stops_json(shots.upper)},
+          {"metres", shots.metres},
+          {"newtons", shots.newtons}};
+}
+
+}  // namespace
+
+PageJson snapshot_data(const CaseView& view, CurveData& blocks) {
+  std::vector<std::pair<std::string, Snapshots>> found;
+  size_t bytes = 0;
+  for (const CaseRecord* record : view.all())
+    if (const NumberTable* table = find_table(record->numbers, snapshots_name))
+      if (auto shots = snapshots_of(*table); shots && !shots->t.empty()) {
+        bytes += 2 * shots->displacement.size() + 6 * shots->force.size() + 8 * shots->t.size();
+        found.emplace_back(record->id, std::move(*shots));
+      }
+  if (found.empty()) return nullptr;
+  const size_t stride = (bytes + most_bytes - 1) / most_bytes;
+  PageJson out = {{"stride", stride}, {"cases", PageJson::object()}};
+  for (const auto& [id, shots] : found) out["cases"][id] = one_case(id, thinned(shots, stride), blocks);
   return out;
 }
 

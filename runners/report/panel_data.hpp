@@ -15,4 +15,9 @@ namespace ricochet::report {
 /// Of a study of many cases only the ledger.
 nlohmann::ordered_json panel_data(const CaseView& view, CurveData& blocks);
 
+/// The snapshots of the cases that have some, as the player reads them: by case the places, points and stops, the units
+/// of the counts and the names of its blocks. Where all of them together would make the page big, of each case every
+/// second instant, every third, … is left: `stride`; forces are then the mean over the longer time.
+nlohmann::ordered_json snapshot_data(const CaseView& view, CurveData& blocks);
+
 }  // namespace ricochet::report

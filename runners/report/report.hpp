@@ -1,7 +1,21 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "runners/report/kind_page.hpp"
+#include "runners/store/record.hpp"
+
+namespace ricochet::report {
+
+/// render_report() with the chart library given: `library` empty writes the tables alone and says how to get charts.
+std::string render_page(const StudyResults& results, const KindPage& kind, std::string_view library,
+                        std::string_view library_version);
+
+/// The section "Answer" as HTML: what the kind says, or why there is nothing to say.
+std::string answer_html(const CaseView& view, const KindPage& kind);
+
+}  // namespace ricochet::report
 
 namespace ricochet {
 
@@ -11,3 +25,19 @@ namespace ricochet {
 std::string render_report(const StudyResults& results, const report::KindPage& kind);
 
 }  // namespace ricochet
+
+namespace ricochet::report {
+
+/// Cases that the figures and the table of cases of one page hold, at most; of a study of more, these are shown:
+constexpr std::size_t most_shown_cases = 2000;
+
+/// The results without the cases that a page of so many leaves out of its figures and of its table of cases, and
+/// without their rows in derived tables; nothing where all are shown. Shown are the first case of each value of an
+/// axis, up to a quarter of the most that are not done, and others in the order of their ids, which are hashes: drawn
+/// by lot, and the same ones each time.
+std::optional<StudyResults> shown_cases(const StudyResults& results);
+
+/// How many of how many are shown, and where all are.
+std::string shown_sentence(const StudyResults& shown, const StudyResults& all);
+
+}  // namespace ricochet::report

@@ -4,17 +4,49 @@
 
 #include <algorithm>
 
-#include "runners/report/answer_lines.hpp"
+#include "runners/report/assets.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_sketch.hpp"
-#include "runners/report/status_counts.hpp"
-#include "runners/report/template.hpp"
-#include "runners/store/environment_entries.hpp"
+#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/table/in_order_met.hpp"
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
+
+std::vector<std::string> answer_lines(const StudyResults& results) {
+  std::vector<std::string> lines;
+  const Table* table = find_table(results.derived, "answers");
+  if (!table) return lines;
+  const TableReader rows(*table);
+  const size_t column = rows.column("sentence");
+  for (size_t row = 0; row < rows.size(); ++row)
+    if (std::string text = rows.text(row, column); !text.empty()) lines.push_back(std::move(text));
+  return lines;
+}
+
+std::vector<std::pair<std::string, size_t>> status_counts(const StudyResults& results) {
+  std::vector<std::pair<std::string, size_t>> counts;
+  for (const char* status : {"done", "refused", "diverged", "failed"})
+    if (const size_t count = with_status(all_cases(results), status).size()) counts.emplace_back(status, count);
+  return counts;
+}
+
+std::string statuses_text(const StudyResults& results) {
+  std::string text;
+  for (const auto& [status, count] : status_counts(results))
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + status;
+  return text;
+}
+
+std::string counts_text(const StudyResults& results) {
+  const std::string statuses = statuses_text(results);
+  const std::string part =
+      results.part.whole() ? "" : fmt::format("Part {} of {}, ", results.part.number, results.part.of);
+  return part + count_text(results.cases.size(), "case", "cases") + (statuses.empty() ? "" : ": " + statuses) + ".";
+}
+
 namespace {
 
 // So much stands on one sheet beside a sketch and a figure.
@@ -176,6 +208,80 @@ std::string page_margins(const StudyResults& results) {
       "white-space: nowrap; }} @bottom-right {{ content: {} \"page \" counter(page) \" of \" counter(pages); font: "
       "7.5pt sans-serif; color: #5c5c5c; white-space: nowrap; }} }}\n",
       css_string(left), started.empty() ? "" : css_string(started + " · "));
+}
+
+namespace {
+
+// A row is read at a glance; the report has the rest.
+constexpr std::size_t most_index_lines = 3;
+
+Fill study_fill(const IndexEntry& entry) {
+  const StudyResults& results = entry.results;
+  Fill out, lines{Fill::type::list}, statuses{Fill::type::list};
+  out.set("name", results.name);
+  out.set("kind", results.kind);
+  out.set("question", results.question);
+  out.set("link", entry.link);
+  const std::vector<std::string> all = answer_lines(results);
+  for (std::size_t k = 0; k < std::min(all.size(), most_index_lines); ++k) {
+    Fill line;
+    line.set("line", all[k]);
+    lines << line;
+  }
+  out.set("lines", lines);
+  if (all.size() > most_index_lines)
+    out.set("more", count_text(all.size() - most_index_lines, "more line", "more lines") + " in the report");
+  for (const auto& [status, count] : status_counts(results)) {
+    Fill one;
+    one.set("status", status);
+    one.set("text", status_mark(status) + " " + std::to_string(count) + " " + status);
+    statuses << one;
+  }
+  if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0) {
+    Fill one;
+    one.set("status", "missing");
+    one.set("text", std::to_string(missing) + " not run yet");
+    statuses << one;
+  }
+  out.set("statuses", statuses);
+  if (const std::string started = environment_entry(results.environment, kStarted); !started.empty())
+    out.set("date", started.substr(0, started.find('T')));
+  return out;
+}
+
+/// What Markdown would read as a mark.
+std::string plain_markdown(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '*' || c == '_' || c == '<' || c == '|' || c == '`') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string index_markdown(const std::vector<IndexEntry>& studies) {
+  std::string out;
+  for (const IndexEntry& entry : studies) {
+    const StudyResults& results = entry.results;
+    out += "**`" + results.name + "`** " + plain_markdown(results.question) + " (" + statuses_text(results) + ")\n\n";
+    for (const std::string& line : answer_lines(results)) out += "* " + plain_markdown(line) + "\n";
+    out += "\n";
+  }
+  return out;
+}
+
+std::string index_page(const std::vector<IndexEntry>& studies) {
+  Fill page, rows{Fill::type::list};
+  for (const IndexEntry& one : studies) rows << study_fill(one);
+  page.set("style", std::string(asset("page.css")));
+  page.set("count", count_text(studies.size(), "study", "studies"));
+  page.set("studies", rows);
+  return filled("index", page) + "<script>" +
+         script_text("\"use strict\";\nconst ricochet = {};\n" + std::string(asset("script/sorting.js")) +
+                     "document.querySelectorAll(\"table.sortable\").forEach(ricochet.startSorting);\n") +
+         "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace ricochet::report

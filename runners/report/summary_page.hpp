@@ -1,9 +1,28 @@
 #pragma once
+#include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "runners/report/case_view.hpp"
+#include "runners/store/record.hpp"
 
 namespace ricochet::report {
+
+/// So many sentences of an answer are shown at first.
+inline constexpr size_t most_answer_lines = 8;
+
+/// The sentences of the table `answers`, in its order.
+std::vector<std::string> answer_lines(const StudyResults& results);
+
+/// How many cases ended so: done, refused, diverged, failed, in this order; none that no case has.
+std::vector<std::pair<std::string, size_t>> status_counts(const StudyResults& results);
+
+/// "20 done, 4 refused".
+std::string statuses_text(const StudyResults& results);
+
+/// "24 cases: 20 done, 4 refused."
+std::string counts_text(const StudyResults& results);
 
 /// Sixteen hexadecimal digits that tell studies apart by what was asked and what answered: the resolved study, the
 /// commit, the plugins' bytes.
@@ -15,5 +34,17 @@ std::string summary_html(const CaseView& view);
 
 /// The style of the printed pages' margins: which study, which fingerprint, when it ran, which page of how many.
 std::string page_margins(const StudyResults& results);
+
+/// A study of a page that lists several: its results, and its report as the page links to it.
+struct IndexEntry {
+  StudyResults results;
+  std::string link;
+};
+
+/// One HTML file with a row per study: name, question, answer, cases by status, when it ran. In the style of reports.
+std::string index_page(const std::vector<IndexEntry>& studies);
+/// The same in Markdown, for a page of text: name, question, cases by status, every line of the answer; no dates, no
+/// links.
+std::string index_markdown(const std::vector<IndexEntry>& studies);
 
 }  // namespace ricochet::report

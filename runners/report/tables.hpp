@@ -2,6 +2,7 @@
 #include <string>
 
 #include "runners/report/case_view.hpp"
+#include "runners/store/record.hpp"
 
 namespace ricochet::report {
 
@@ -18,5 +19,9 @@ std::string notes_html(const CaseView& view);
 
 /// Compiler, processor, libraries, and the resolved study.
 std::string environment_html(const CaseView& view);
+
+/// The derived tables of the results as folded HTML tables that a click on a header sorts; the first rows of each, and
+/// how many more its CSV file has. Empty where nothing was derived.
+std::string derived_tables_html(const StudyResults& results);
 
 }  // namespace ricochet::report

@@ -16,9 +16,9 @@
 #include <suitesparse/cholmod.h>
 #endif
 
-#include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/run/build_facts.hpp"
-#include "runners/store/arithmetics.hpp"
+#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/run_identity.hpp"
 #include "runners/workers/allowed_processors.hpp"

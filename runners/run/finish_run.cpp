@@ -3,13 +3,78 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <regex>
+#include <string_view>
 
-#include "runners/run/derive.hpp"
-#include "runners/run/say.hpp"
+#include "runners/kinds/kind.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/run/answers_table.hpp"
+#include "runners/run/choice_effects.hpp"
+#include "runners/run/study_runner.hpp"
 #include "runners/run/summary.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/store.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
+
+void derive_tables(StudyResults& results) {
+  results.derived.clear();
+  const Kind* kind = find_kind(results.kind);
+  if (kind && kind->tables)
+    kind->tables(results);
+  else
+    collect_tables(results);
+  // The answer says the shares, and stands before them.
+  const auto before_shares = static_cast<std::ptrdiff_t>(results.derived.size());
+  if (Table shares = effects_table(results); !shares.rows.empty()) results.derived.push_back(std::move(shares));
+  if (Table answers = answers_table(results); !answers.rows.empty())
+    results.derived.insert(results.derived.begin() + before_shares, std::move(answers));
+  if (Table reasons = reasons_table(results); !reasons.rows.empty()) results.derived.push_back(std::move(reasons));
+  for (Table& table : report::page_tables(results, page_of(results.kind))) results.derived.push_back(std::move(table));
+}
+
+namespace {
+
+/// A sentence without its numbers, lists of them being one: doubts of one kind are alike.
+std::string without_numbers(const std::string& text) {
+  static const std::regex number(R"([-+]?[0-9][0-9.]*(e[-+]?[0-9]+)?)"), list(R"(#(( to |, )#)+)"), more(" and # more");
+  return std::regex_replace(std::regex_replace(std::regex_replace(text, number, "#"), list, "#"), more, "");
+}
+
+}  // namespace
+
+Table reasons_table(const StudyResults& results) {
+  Table out{"reasons",
+            "One row per reason for which finished cases have no result, or a doubtful one, in the study's order.",
+            {{"status", "", "refused (does not apply), diverged or failed; done, with a doubt."},
+             {"reason", "", "Why, as it stands in cases.csv; doubts of one kind are one, that of the first case."},
+             {"cases", "1", "Number of cases that give this reason."},
+             {"case", "", "The first of them: its row in cases.csv."}},
+            {}};
+  std::vector<std::pair<Row, Cases>> groups;
+  std::map<std::string, std::string> kinds;
+  for (const CaseRecord& record : results.cases) {
+    if (record.partial) continue;
+    if (record.status == "done") {
+      constexpr std::string_view between = "; ";
+      for (std::size_t begin = 0; begin < record.reason.size();) {
+        const std::size_t end = std::min(record.reason.find(between, begin), record.reason.size());
+        const std::string doubt = record.reason.substr(begin, end - begin);
+        // The first of a kind speaks for all.
+        const std::string& first = kinds.try_emplace(without_numbers(doubt), doubt).first->second;
+        in_order_met(groups, Row{record.status, first}).push_back(&record);
+        begin = end + between.size();
+      }
+      continue;
+    }
+    in_order_met(groups, Row{record.status, record.reason}).push_back(&record);
+  }
+  for (const auto& [said, cases] : groups) out.rows.push_back({said[0], said[1], cases.size(), cases.front()->id});
+  return out;
+}
 
 StudyResults write_folder(Store& store, const std::filesystem::path& folder, const RenderReport& render,
                           const std::set<std::string>* changed) {
@@ -36,6 +101,44 @@ int tell_results(std::FILE* out, const StudyResults& results, const std::filesys
                                code, (folder / "failures").string())
                  : fmt::format("exit code {}: the methods of some cases are in error\n", code));
   return code;
+}
+
+// What is made of a folder's store alone: its report and tables anew, or the tables elsewhere.
+
+namespace {
+
+/// 0, or the code of a store that cannot be used, with its cause said.
+int unless_unusable(const std::function<void()>& work) {
+  constexpr int store_unusable = 5;
+  try {
+    work();
+    return 0;
+  } catch (const StoreError& error) {
+    say(stderr, fmt::format("ricochet: {}\n", error.what()));
+    return store_unusable;
+  }
+}
+
+}  // namespace
+
+int rebuild_report_with(const RenderReport& render, const std::filesystem::path& folder) {
+  return unless_unusable([&] {
+    const StudyResults results = with_tables(read_store(folder));
+    write_outputs(folder, results, render);
+    say(stdout, fmt::format("{}\nreport: {}\n", totals_text(results), (folder / "report.html").string()));
+  });
+}
+
+int export_tables(const std::filesystem::path& folder, const std::filesystem::path& to, bool one_file) {
+  return unless_unusable([&] {
+    const StudyResults results = with_tables(read_store(folder));
+    write_tables(to, results, one_file);
+    say(stdout, fmt::format("tables: {}\n", to.string()));
+    if (!one_file && !has_curve_files(results))
+      say(stdout,
+          fmt::format("curves: not written, for more than {} cases have one; --curves writes them all into one file\n",
+                      kMostCurveFiles));
+  });
 }
 
 }  // namespace ricochet

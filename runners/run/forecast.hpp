@@ -1,7 +1,9 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "runners/run/plan_cases.hpp"
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 
@@ -17,5 +19,9 @@ struct Forecast {
 /// storing and describing cases. Fills predicted_seconds of each plan. Within a factor of 3: contact, divergence and
 /// transients are not foreseen.
 Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Registry& registry);
+
+/// Cases of the same key cost about the same: the same methods, mesh, steps and settings, in scenes whose numbers
+/// differ in size alone. One that is 0 here and not there sets cases apart, as what it feeds is left out.
+std::string cost_key(const StudyCase& study_case);
 
 }  // namespace ricochet

@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "runners/run/outputs.hpp"
+#include "runners/store/record.hpp"
 
 namespace ricochet {
 
@@ -19,5 +21,18 @@ namespace ricochet {
 int merge_folders_with(const RenderReport& render, const std::vector<std::filesystem::path>& folders,
                        const std::filesystem::path& out, const std::vector<std::filesystem::path>& plugins,
                        std::FILE* said);
+
+/// What a case that was marched again has in common with what is stored of it.
+struct Comparison {
+  std::size_t measures = 0, series = 0, tables = 0;  ///< compared: measures of the motion, columns of numbers, tables
+  std::vector<std::string> differences;              ///< one sentence each; empty: the same to the last bit
+};
+
+/// Status, steps, measures (not those of the computation: its times), curve and tables of two records of a case, bit
+/// for bit.
+Comparison compare(const CaseRecord& stored, const CaseRecord& again);
+
+/// "as stored to the last bit: 31 measures, 16 series, 2 tables", or what differs, a line each.
+std::string text(const Comparison& comparison);
 
 }  // namespace ricochet

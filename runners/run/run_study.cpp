@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"

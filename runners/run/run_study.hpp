@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "runners/march/case_plan.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/study/study.hpp"
-#include "runners/study/study_part.hpp"
 #include "runners/workers/worker.hpp"
 
 namespace ricochet {

@@ -11,21 +11,16 @@
 
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
-#include "runners/run/derive.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/finish_run.hpp"
-#include "runners/run/part_cases.hpp"
 #include "runners/run/progress.hpp"
-#include "runners/run/run_words.hpp"
-#include "runners/run/say.hpp"
 #include "runners/run/stop_signal.hpp"
 #include "runners/run/study_cases.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/store/merge_environments.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
-#include "runners/table/plain_text.hpp"
+#include "runners/table/text.hpp"
 #include "runners/workers/allowed_processors.hpp"
 
 namespace ricochet {

@@ -6,14 +6,13 @@
 #include <map>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/report/answer_lines.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/report/status_counts.hpp"
+#include "runners/report/summary_page.hpp"
 #include "runners/run/answers_table.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/plain_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 namespace {

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <vector>
-
-#include "runners/store/store_error.hpp"
 
 namespace ricochet {
 namespace {
@@ -96,6 +95,18 @@ void make_folder(const std::filesystem::path& folder) {
   if (!error && !std::filesystem::is_directory(folder, error) && !error)
     error = std::make_error_code(std::errc::not_a_directory);
   if (error) throw StoreError(fmt::format("{}: the folder cannot be created: {}", folder.string(), error.message()));
+}
+
+bool has_curve_files(const StudyResults& results) {
+  const auto curves = std::count_if(results.cases.begin(), results.cases.end(),
+                                    [](const CaseRecord& record) { return !record.curve.names.empty(); });
+  return static_cast<std::size_t>(curves) <= kMostCurveFiles;
+}
+
+std::string where_curves_are(const StudyResults& results) {
+  return has_curve_files(results) ? "each case has its own in curves/ID.csv"
+                                  : "cases are too many for a file each, all curves are in the store: `ricochet export "
+                                    "DIR --to CSVDIR --curves` writes them into one curves.csv";
 }
 
 }  // namespace ricochet

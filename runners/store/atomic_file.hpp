@@ -1,9 +1,19 @@
 #pragma once
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "runners/store/record.hpp"
+
 namespace ricochet {
+
+/// The results folder cannot serve (exit code 5). The message names the path, says what was found and what was
+/// expected, and what to do.
+class StoreError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A file written in pieces, to a temporary file of the same folder: nothing is seen of it before commit(), which
 /// renames it to `file`. Destroyed without commit(), it leaves an older `file` as it was. Throws StoreError (path and
@@ -34,5 +44,15 @@ void remove_leftovers(const std::filesystem::path& folder);
 
 /// Creates the folder and its parents. Throws StoreError (path and cause).
 void make_folder(const std::filesystem::path& folder);
+
+/// Cases with a curve that have each a file of their own, curves/ID.csv: where there are more, nobody opens them one by
+/// one, and file systems that machines share suffer from so many; their curves are exported into one file.
+inline constexpr std::size_t kMostCurveFiles = 2000;
+
+/// Whether each case that has a curve has its file.
+bool has_curve_files(const StudyResults& results);
+
+/// Where all curves are, as the end of a sentence: "each case has its own in curves/ID.csv".
+std::string where_curves_are(const StudyResults& results);
 
 }  // namespace ricochet

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "runners/store/store_error.hpp"
-#include "runners/study/field.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/study/fields.hpp"
 
 namespace ricochet {
 namespace {

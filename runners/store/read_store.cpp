@@ -5,14 +5,17 @@
 #include <SQLiteCpp/Transaction.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <map>
+#include <nlohmann/json.hpp>
 
-#include "runners/store/arithmetics.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/environments.hpp"
+#include "runners/store/number_rows.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/schema.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
-#include "runners/store/stored_series.hpp"
 
 namespace ricochet {
 namespace {
@@ -252,6 +255,91 @@ std::string read_motion(const std::filesystem::path& folder, const std::string& 
   std::string content;
   with_store(folder, [&](SQLite::Database& database) { content = find_motion(database, motion_key(arithmetic, key)); });
   return content;
+}
+
+StoreReader::StoreReader(const std::filesystem::path& folder)
+    : file_(folder / "results.sqlite"), database_(open_store(folder)) {}
+
+StudyResults StoreReader::head() const {
+  StudyResults head;
+  guarded(file_, database_.get(), [&] { head = read_head(*database_); });
+  return head;
+}
+
+std::vector<StoreReader::Finished> StoreReader::finished() const {
+  std::vector<Finished> found;
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement rows(*database_,
+                           "SELECT id, fingerprint, status, arithmetic FROM cases WHERE fingerprint != '' "
+                           "ORDER BY position");
+    while (rows.executeStep())
+      found.push_back({rows.getColumn(0).getString(), rows.getColumn(1).getString(), rows.getColumn(2).getString(),
+                       rows.getColumn(3).getString()});
+  });
+  return found;
+}
+
+CaseRecord StoreReader::read(const std::string& id) const {
+  std::optional<CaseRecord> found;
+  guarded(file_, database_.get(), [&] { found = read_case(*database_, id); });
+  if (!found) throw StoreError(fmt::format("{}: the case {} is no longer there", file_.string(), id));
+  return std::move(*found);
+}
+
+std::vector<std::string> StoreReader::motion_keys(const std::string& arithmetic) const {
+  std::vector<std::string> found;
+  const std::string prefix = motion_key(arithmetic, "");
+  guarded(file_, database_.get(), [&] {
+    SQLite::Statement rows(*database_, "SELECT key FROM motions ORDER BY key");
+    while (rows.executeStep())
+      if (const std::string key = rows.getColumn(0).getString(); key.starts_with(prefix))
+        found.push_back(key.substr(prefix.size()));
+  });
+  return found;
+}
+
+std::string StoreReader::motion(const std::string& key, const std::string& arithmetic) const {
+  std::string content;
+  guarded(file_, database_.get(), [&] { content = find_motion(*database_, motion_key(arithmetic, key)); });
+  return content;
+}
+
+RunStatus read_status(const std::filesystem::path& folder) {
+  RunStatus status;
+  with_store(folder, [&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database);
+    SQLite::Statement study(database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes')");
+    while (study.executeStep()) {
+      const std::string key = study.getColumn(0).getString();
+      const auto value = nlohmann::json::parse(study.getColumn(1).getString());
+      if (key == "name") status.name = value.get<std::string>();
+      if (key == "question") status.question = value.get<std::string>();
+      if (key == "kind") status.kind = value.get<std::string>();
+      if (key == "expected_cases") status.expected = value.get<int>();
+      if (key == "progress") {
+        status.progress = value.at("text").get<std::string>();
+        status.heard = value.at("at").get<std::string>();
+      }
+    }
+    status.part = read_part(database).value_or(StudyPart{});
+    SQLite::Statement rows(database, "SELECT status, fingerprint = '', count(*) FROM cases GROUP BY 1, 2");
+    while (rows.executeStep()) {
+      const int count = rows.getColumn(2).getInt();
+      (rows.getColumn(1).getInt() != 0 ? status.partial : status.rows[rows.getColumn(0).getString()]) += count;
+    }
+    SQLite::Statement begun(database, "SELECT case_id, stage, since FROM begun ORDER BY since, case_id");
+    while (begun.executeStep())
+      status.under_way.push_back(
+          {begun.getColumn(0).getString(), begun.getColumn(1).getString(), begun.getColumn(2).getString()});
+    SQLite::Statement epoch(database, "SELECT run FROM epoch");
+    if (epoch.executeStep()) status.run = RunIdentity::from_json(epoch.getColumn(0).getString());
+  });
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(folder / "results.sqlite", error);
+  if (!error)
+    status.silent =
+        std::max(0.0, std::chrono::duration<double>(std::filesystem::file_time_type::clock::now() - written).count());
+  return status;
 }
 
 }  // namespace ricochet

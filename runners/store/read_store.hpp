@@ -3,11 +3,16 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "runners/store/record.hpp"
+#include "runners/store/run_identity.hpp"
 #include "runners/store/store.hpp"
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 
@@ -35,5 +40,49 @@ std::string find_motion(SQLite::Database& database, const std::string& whole_key
 
 /// Where the stored cases ran.
 Environment read_environment(SQLite::Database& database);
+
+/// FOLDER/results.sqlite, read case by case: what it holds may be larger than the memory. Errors are StoreError.
+class StoreReader {
+ public:
+  explicit StoreReader(const std::filesystem::path& folder);
+
+  /// The study and the environment, without cases.
+  StudyResults head() const;
+  /// A case that is finished, and what tells whether it is still that of the study.
+  struct Finished {
+    std::string id, fingerprint, status, arithmetic;
+  };
+  /// In the study's order.
+  std::vector<Finished> finished() const;
+  /// A case that finished() names.
+  CaseRecord read(const std::string& id) const;
+
+  /// The keys of Store::motion() for runs of this arithmetic, and what is kept under one of them.
+  std::vector<std::string> motion_keys(const std::string& arithmetic) const;
+  std::string motion(const std::string& key, const std::string& arithmetic) const;
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<SQLite::Database> database_;
+};
+
+/// How far the run of a folder is, as its store tells anybody who may read it.
+struct RunStatus {
+  std::string name, question, kind;
+  int expected = 0;
+  StudyPart part;                   ///< of the study, whose cases are expected
+  std::map<std::string, int> rows;  ///< status → finished cases
+  int partial = 0;                  ///< rows of cases under way
+  struct UnderWay {
+    std::string id, stage, since;  ///< UTC
+  };
+  std::vector<UnderWay> under_way;
+  std::optional<RunIdentity> run;  ///< the one that began last
+  std::string progress, heard;     ///< what it last said of itself, and when (UTC); "" once it has ended in order
+  double silent = 0;               ///< s since the store was last written to
+};
+
+/// Reads it without reading results. Throws StoreError where there is no store.
+RunStatus read_status(const std::filesystem::path& folder);
 
 }  // namespace ricochet

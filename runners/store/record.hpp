@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/study/study_part.hpp"
+#include "runners/study/study.hpp"
 #include "runners/table/number_table.hpp"
 #include "runners/table/table.hpp"
 

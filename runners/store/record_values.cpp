@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "runners/study/axis_meaning.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 
@@ -149,6 +150,172 @@ nlohmann::ordered_json json_of(const Cell& cell) {
     else
       return content;
   });
+}
+
+namespace {
+
+std::vector<Column> measure_columns(const StudyResults& results) {
+  std::vector<Column> columns;
+  for (const std::string& name : standing_measures(results.kind)) columns.push_back(measure_column(name));
+  for (const CaseRecord& record : results.cases)
+    for (const auto& [name, value] : record.measures)
+      if (!find_column(columns, name)) columns.push_back(measure_column(name));
+  return columns;
+}
+
+/// A column of a table of numbers as it is written: none (the table has no such column), numbers, or words.
+struct Source {
+  std::shared_ptr<const std::vector<double>> values;
+  bool worded = false;
+  std::vector<std::string> words;  // quoted
+};
+
+std::vector<Source> sources_of(const NumberTable& table, const std::vector<Column>& columns) {
+  std::vector<Source> sources;
+  for (const Column& column : columns) {
+    Source& source = sources.emplace_back();
+    if (const Series* series = table.series(column.name)) source.values = series->share();
+    const auto* words = table.words_of(column.name);
+    if (!words) continue;
+    source.worded = true;
+    for (const std::string& word : *words) source.words.push_back(csv_field(word));
+  }
+  return sources;
+}
+
+void write_rows(const NumberTable& table, const std::vector<Column>& columns, const std::string& place,
+                std::string& text, const std::function<void(std::string_view)>& write) {
+  constexpr std::size_t piece = std::size_t{1} << 20U;
+  const std::vector<Source> sources = sources_of(table, columns);
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    text += place;
+    for (const Source& source : sources) {
+      text += ',';
+      if (!source.values || i >= source.values->size()) continue;
+      const double value = (*source.values)[i];
+      if (!source.worded)
+        append_csv_number(value, text);
+      else if (value >= 0 && value < static_cast<double>(source.words.size()))
+        text += source.words[static_cast<std::size_t>(value)];
+    }
+    text += '\n';
+    if (text.size() < piece) continue;
+    write(text);
+    text.clear();
+  }
+}
+
+}  // namespace
+
+Column measure_column(const std::string& name) {
+  if (const MeasureInfo* info = measure_info(name)) return {name, info->unit, info->text};
+  return {name, "", "A measure of the case that the program does not describe."};
+}
+
+Table cases_table(const StudyResults& results) {
+  const std::vector<Column> measures = measure_columns(results);
+  Table table = table_of_cases(
+      results, "cases", "One case: a combination of the study's axes, what became of it, and its measures.",
+      {{"status", "", "done, refused (the combination does not apply), diverged, failed, or partial while it runs."},
+       {"reason", "", "Why the case was refused, diverged or failed; of a done one, what makes its figures doubtful."},
+       {"steps", "1", "Steps of time that were marched."},
+       {"setup_seconds", "s", "Processor time of what comes before the first step."},
+       {"run_seconds", "s", "Processor time of the marching."}});
+  table.columns = joined(std::move(table.columns), measures);
+  for (const CaseRecord& record : results.cases) {
+    Row row = place_of(results, record);
+    row.insert(row.end(), {record.partial ? std::string("partial") : record.status, record.reason, record.steps,
+                           record.setup_seconds, record.run_seconds});
+    for (const Column& column : measures) row.emplace_back(measure(record, column.name));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string curve_csv(const Curve& curve) {
+  std::vector<std::string> fields;
+  for (const std::string& name : curve.names) fields.push_back(csv_field(name));
+  std::string table = csv_line(fields);
+  std::size_t samples = 0;
+  std::vector<std::shared_ptr<const std::vector<double>>> columns;
+  for (const Series& column : curve.columns) {
+    columns.push_back(column.share());
+    samples = std::max(samples, column.size());
+  }
+  for (std::size_t i = 0; i < samples; ++i) {
+    fields.clear();
+    for (const auto& column : columns) fields.push_back(i < column->size() ? csv_number((*column)[i]) : "");
+    table += csv_line(fields);
+  }
+  return table;
+}
+
+std::vector<Table> number_heads(const StudyResults& results) {
+  std::vector<Table> heads;
+  for (const CaseRecord& record : results.cases)
+    for (const NumberTable& table : record.numbers) {
+      if (!table.exported) continue;
+      auto head = std::find_if(heads.begin(), heads.end(), [&](const Table& one) { return one.name == table.name; });
+      if (head == heads.end()) head = heads.insert(heads.end(), table_of_cases(results, table.name, table.text, {}));
+      for (const Column& column : table.columns)
+        if (!find_column(head->columns, column.name)) head->columns.push_back(column);
+    }
+  return heads;
+}
+
+void write_numbers_csv(const StudyResults& results, const Table& head,
+                       const std::function<void(std::string_view)>& write) {
+  const auto own = static_cast<std::ptrdiff_t>(1 + results.columns.size());
+  const std::vector<Column> columns(head.columns.begin() + own, head.columns.end());
+  std::string text = csv_line(csv_head(head.columns));
+  for (const CaseRecord& record : results.cases) {
+    std::string place;
+    for (const Cell& cell : place_of(results, record)) place += (place.empty() ? "" : ",") + csv_cell(cell);
+    for (const NumberTable& table : record.numbers)
+      if (table.exported && table.name == head.name) write_rows(table, columns, place, text, write);
+  }
+  write(text);
+}
+
+Table measures_table() {
+  Table table{"measures",
+              "One measure of a case.",
+              {{"measure", "", "Name of the measure, a column of cases.csv."},
+               {"unit", "", "Its unit; 1 for ratios and counts."},
+               {"text", "", "What it means."}},
+              {}};
+  for (const MeasureInfo& measure : all_measures()) table.rows.push_back({measure.name, measure.unit, measure.text});
+  return table;
+}
+
+Table left_out_table(const StudyResults& results) {
+  Table table{"left_out",
+              "One thing that the computation of a case leaves out because its scene does not need it.",
+              {case_column(), {"item", "", "What is left out."}, {"reason", "", "Why the scene does not need it."}},
+              {}};
+  for (const CaseRecord& record : results.cases)
+    for (const auto& [item, reason] : record.left_out) table.rows.push_back({record.id, item, reason});
+  return table;
+}
+
+Table notes_table(const StudyResults& results) {
+  Table table{"notes",
+              "One remark on a case.",
+              {case_column(), {"note", "", "What is to be known to read the figures of the case."}},
+              {}};
+  for (const CaseRecord& record : results.cases)
+    for (const std::string& note : record.notes) table.rows.push_back({record.id, note});
+  return table;
+}
+
+Table environment_table(const Environment& environment) {
+  Table table{
+      "environment",
+      "One fact about the program and the machine that made the results.",
+      {{"name", "", "What the fact is about: commit, compiler, processor, a library."}, {"value", "", "The fact."}},
+      {}};
+  for (const auto& [name, value] : environment.entries) table.rows.push_back({name, value});
+  return table;
 }
 
 }  // namespace ricochet

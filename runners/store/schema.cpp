@@ -5,14 +5,17 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
-#include "runners/store/store_error.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/record_values.hpp"
 
 namespace ricochet {
 namespace {
@@ -231,6 +234,36 @@ void forget_store(const std::filesystem::path& file) {
     std::filesystem::remove(file.string() + suffix, error);
     if (error) throw StoreError(fmt::format("{}{}: cannot be removed: {}", file.string(), suffix, error.message()));
   }
+}
+
+namespace {
+
+/// A text of SQL: a name in double quotes, a value in single ones.
+std::string in_quotes(const std::string& text, char quote) {
+  std::string result(1, quote);
+  for (const char c : text) result += c == quote ? std::string(2, c) : std::string(1, c);
+  return result + quote;
+}
+
+std::string expression(const std::string& column, const StudyResults& results) {
+  static const std::set<std::string> own = {"status", "reason", "steps", "setup_seconds", "run_seconds"};
+  if (column == "case") return "id";
+  const bool axis = std::find(results.columns.begin(), results.columns.end(), column) != results.columns.end();
+  if (!axis && own.count(column) != 0) return in_quotes(column, '"');
+  return fmt::format("(SELECT {} FROM {} WHERE case_id = cases.id AND name = {})",
+                     axis ? "json_extract(value, '$')" : "value", axis ? "axes" : "measures", in_quotes(column, '\''));
+}
+
+}  // namespace
+
+void make_views(SQLite::Database& database, const StudyResults& results) {
+  std::string columns;
+  for (const Column& column : cases_table(results).columns)
+    columns += fmt::format("{}{} AS {}", columns.empty() ? "" : ", ", expression(column.name, results),
+                           in_quotes(column.name, '"'));
+  database.exec("DROP VIEW IF EXISTS v_cases");
+  database.exec(
+      fmt::format("CREATE VIEW v_cases AS SELECT {} FROM cases WHERE fingerprint != '' ORDER BY position", columns));
 }
 
 }  // namespace ricochet

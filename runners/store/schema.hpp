@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "runners/store/record.hpp"
+
 namespace ricochet {
 
 /// Identity of results.sqlite, in the file's header (PRAGMA application_id, user_version).
@@ -24,5 +26,11 @@ void forget_store(const std::filesystem::path& file);
 
 /// Runs `work`, turning what SQLite reports into a StoreError that names the file, the cause and what to do.
 void guarded(const std::filesystem::path& file, const SQLite::Database* database, const std::function<void()>& work);
+
+/// Makes the view v_cases of these results: the columns of cases.csv (cases_table) over the finished cases, by the same
+/// names, so that a query needs neither the rows of axes and measures nor JSON. Truth values are 0 and 1. There is no
+/// view of curves, nor of tables of numbers (impacts): their series are packed, and SQL cannot read doubles out of a
+/// blob.
+void make_views(SQLite::Database& database, const StudyResults& results);
 
 }  // namespace ricochet

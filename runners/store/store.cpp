@@ -10,17 +10,14 @@
 #include <ctime>
 #include <numeric>
 
-#include "runners/store/arithmetics.hpp"
 #include "runners/store/aside.hpp"
 #include "runners/store/atomic_file.hpp"
-#include "runners/store/merge_environments.hpp"
+#include "runners/store/environments.hpp"
 #include "runners/store/number_rows.hpp"
 #include "runners/store/read_store.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/run_identity.hpp"
 #include "runners/store/schema.hpp"
-#include "runners/store/store_error.hpp"
-#include "runners/store/views.hpp"
 
 namespace ricochet {
 namespace {

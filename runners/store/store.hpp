@@ -17,7 +17,6 @@
 #include "runners/store/epoch.hpp"
 #include "runners/store/folder_lock.hpp"
 #include "runners/store/record.hpp"
-#include "runners/store/write_group.hpp"
 
 namespace ricochet {
 

@@ -4,7 +4,7 @@
 #include <ricochet/contract/errors.hpp>
 
 #include "runners/study/check_object.hpp"
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {

@@ -1,12 +1,84 @@
 #pragma once
 #include <limits>
+#include <optional>
+#include <ricochet/contract/parameters.hpp>
+#include <ricochet/contract/registry.hpp>
+#include <string>
+#include <vector>
 
-#include "runners/study/field.hpp"
+#include "runners/study/study.hpp"
 
 /// \file
-/// Keys of the study format, as kinds of study declare theirs. A key whose value may be a list (an axis of the cross
-/// product) says so by `axis`; an absent fallback makes a key required.
+/// The study format as data: each key is declared once, and the checker, the defaults and the JSON Schema all read the
+/// declaration.
+namespace ricochet {
+
+struct Field;
+struct Variant;
+
+/// A closed JSON object: the keys it may have. With a discriminator (a pointer relative to the object, such as
+/// "/type"), further keys depend on the word found there; variants may have a discriminator of their own. With ways,
+/// the object has the keys of exactly one of them, told by the keys that are present.
+struct ObjectForm {
+  std::vector<Field> fields;
+  std::string discriminator;
+  std::vector<Variant> variants;
+  std::vector<ObjectForm> ways = {};
+};
+
+/// One key of an object.
+struct Field {
+  enum class Form {
+    scalar,    ///< a number, whole number, boolean or word, as `spec` declares
+    text,      ///< any string
+    formula,   ///< a number or a formula in `variables`; where there is a nested object, also a list of such objects
+    places,    ///< where stops act: "nodes", "tip" or a list of positions
+    object,    ///< a nested object
+    methods,   ///< methods of `role`: a name, an object, or a list of either
+    objects,   ///< a list of exactly `count` nested objects, one value together
+    numbers,   ///< a number or a list of different numbers in `spec.range`, one value together
+    words,     ///< a word or a list of words out of `spec.words`, one value together
+    starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
+    excludes,  ///< partial matches with a reason
+  };
+  Form form = Form::scalar;
+  ParameterSpec spec;              ///< key, unit, text; for scalars also type, range, words
+  std::optional<Json> fallback;    ///< what an absent key means; none: the study must give it
+  bool axis = false;               ///< a list here is an axis of the cross product
+  bool nullable = false;           ///< null is a value (an absent stop, no limit)
+  std::string variables;           ///< for formulas: a subset of "xt"
+  Role role = Role::mass;          ///< for methods
+  bool marched = false;            ///< for references: marched_reference is one as well
+  std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects, starts and such formulas
+  std::size_t count = 0;           ///< for Form::objects
+
+  const std::string& key() const { return spec.key; }
+  bool required() const { return !fallback; }
+};
+
+struct Variant {
+  std::vector<std::string> words;  ///< values of the discriminator that lead here
+  ObjectForm keys;                 ///< keys in addition to the enclosing object's
+};
+
+/// The keys of a whole study; its variants are the kinds, each with its own keys (study_kind.hpp).
+const ObjectForm& study_form();
+
+/// The reference that no plugin provides: the method itself, marched on finer steps and meshes.
+inline constexpr const char* marched_reference = "self";
+
+/// The keys of one method as a study writes it: "name" and the plugin's parameters, each of which may be a list.
+ObjectForm method_form(const PluginManual& manual);
+
+/// A default or a bound as JSON.
+Json to_json(const ParameterValue& value);
+
+}  // namespace ricochet
+
 namespace ricochet::keys {
+
+// Keys of the study format, as kinds of study declare theirs. A key whose value may be a list (an axis of the cross
+// product) says so by `axis`; an absent fallback makes a key required.
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline const Range any{};

@@ -8,9 +8,7 @@
 
 #include "runners/json/json_text.hpp"
 #include "runners/study/axis_meaning.hpp"
-#include "runners/study/case_id.hpp"
 #include "runners/study/check_object.hpp"
-#include "runners/study/excludes.hpp"
 #include "runners/study/product.hpp"
 #include "runners/study/read_methods.hpp"
 #include "runners/study/read_scene.hpp"

@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+
+#include "runners/json/json_text.hpp"
+#include "runners/study/check_object.hpp"
+
 namespace ricochet {
 
 void Product::refuse_above(std::size_t limit, const std::string& pointer) const {
@@ -11,6 +17,131 @@ void Product::refuse_above(std::size_t limit, const std::string& pointer) const 
         fmt::format(
             "the lists multiply to {:.10g} combinations; expected at most {}: shorten a list or split the study",
             count(), limit));
+}
+
+namespace {
+
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t value = 14695981039346656037ULL;
+  for (const char c : text) {
+    value ^= static_cast<unsigned char>(c);
+    value *= 1099511628211ULL;
+  }
+  // The last bytes reach the high digits of FNV-1a only weakly; this mixing (MurmurHash3, fmix64) spreads them.
+  value ^= value >> 33U;
+  value *= 0xff51afd7ed558ccdULL;
+  value ^= value >> 33U;
+  value *= 0xc4ceb9fe1a85ec53ULL;
+  value ^= value >> 33U;
+  return value;
+}
+
+}  // namespace
+
+std::string CaseIds::next(const StudyCase& study_case, const std::string& kind) {
+  // nlohmann::json keeps its keys sorted, whatever the order they were given in.
+  nlohmann::json all;
+  all["kind"] = kind;
+  for (const auto& [axis, value] : study_case.axes) all["axes"][axis] = value;
+  all["scene"] = study_case.scene_json;
+  all["duration"] = study_case.duration;
+  all["samples"] = study_case.samples;
+  if (!study_case.settings.is_null()) all["settings"] = study_case.settings;
+  std::string text = all.dump();
+  while (true) {
+    std::string id = fmt::format("{:016x}", hash(text)).substr(0, 10);
+    const auto [known, fresh] = canonical_.emplace(id, text);
+    if (fresh || known->second == text) return id;
+    text += '#';
+  }
+}
+
+namespace {
+
+const Json* axis_value(const StudyCase& study_case, const std::string& axis) {
+  for (const auto& [name, value] : study_case.axes)
+    if (name == axis) return &value;
+  return nullptr;
+}
+
+// A list means any of its elements, unless the axis itself has lists for values (positions of stops).
+bool matches(const Json& wanted, const Json& value) {
+  if (wanted == value) return true;
+  return wanted.is_array() && std::find(wanted.begin(), wanted.end(), value) != wanted.end();
+}
+
+std::vector<Json> values_of(const Study& study, const std::string& axis) {
+  std::vector<Json> values;
+  for (const StudyCase& study_case : study.cases)
+    if (const Json* value = axis_value(study_case, axis))
+      if (std::find(values.begin(), values.end(), *value) == values.end()) values.push_back(*value);
+  return values;
+}
+
+void check_value(const Study& study, const std::string& axis, const Json& wanted, const std::string& pointer) {
+  const std::vector<Json> values = values_of(study, axis);
+  if (std::find(values.begin(), values.end(), wanted) != values.end()) return;
+  if (wanted.is_array()) {
+    if (wanted.empty()) throw InputError(pointer, "an empty list matches nothing");
+    for (std::size_t i = 0; i < wanted.size(); ++i) check_value(study, axis, wanted[i], pointer_to(pointer, i));
+    return;
+  }
+  std::string there;
+  std::vector<std::string> words;
+  for (const Json& value : values) {
+    there += (there.empty() ? "" : ", ") + quote(value);
+    if (value.is_string()) words.push_back(value.get<std::string>());
+  }
+  const std::string hint = wanted.is_string() ? did_you_mean(wanted.get<std::string>(), words) : "";
+  throw InputError(pointer, "no case has " + axis + " = " + quote(wanted) + hint + " (its values are " + there + ")");
+}
+
+void check_entry(const Study& study, const Json& entry, const std::string& pointer) {
+  if (!entry.is_object())
+    throw InputError(pointer, "expected an object {axis: value, …, \"why\": reason}, found " + quote(entry));
+  std::vector<std::string> names = study.columns;
+  names.emplace_back("why");
+  for (const auto& [key, wanted] : entry.items()) {
+    const std::string here = pointer_to(pointer, key);
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      throw InputError(here, "\"" + shortened(key) + "\" is no axis of this study" + did_you_mean(key, names) +
+                                 " (axes: " + quoted_list(study.columns) + ")");
+    if (key != "why") check_value(study, key, wanted, here);
+  }
+  const auto why = entry.find("why");
+  if (why == entry.end())
+    throw InputError(pointer_to(pointer, "why"), "missing; an exclusion needs its reason, which the report shows");
+  if (!why->is_string() || why->get<std::string>().find_first_not_of(" \t\n") == std::string::npos)
+    throw InputError(pointer_to(pointer, "why"), "expected the reason as a text, found " + quote(*why));
+  if (entry.size() == 1)
+    throw InputError(pointer, "names no axis, which would exclude every case; expected at least one axis");
+}
+
+}  // namespace
+
+void apply_excludes(const Json& excludes, Study& study) {
+  if (!excludes.is_array())
+    throw InputError("/exclude",
+                     "expected a list of objects {axis: value, …, \"why\": reason}, found " + quote(excludes));
+  for (std::size_t i = 0; i < excludes.size(); ++i) {
+    const std::string pointer = pointer_to("/exclude", i);
+    check_entry(study, excludes[i], pointer);
+    bool any = false;
+    for (StudyCase& study_case : study.cases) {
+      bool all = true;
+      for (const auto& [key, wanted] : excludes[i].items()) {
+        if (key == "why") continue;
+        const Json* value = axis_value(study_case, key);
+        all = all && value && matches(wanted, *value);
+      }
+      if (all && !study_case.excluded) study_case.excluded = excludes[i].at("why").get<std::string>();
+      any = any || all;
+    }
+    if (!any) throw InputError(pointer, "no case has all of these values together: the exclusion matches nothing");
+  }
+  if (std::all_of(study.cases.begin(), study.cases.end(),
+                  [](const StudyCase& study_case) { return study_case.excluded.has_value(); }))
+    throw InputError("/exclude", "every case is excluded; nothing would run");
 }
 
 }  // namespace ricochet

@@ -2,7 +2,10 @@
 #include <cstddef>
 #include <ricochet/contract/errors.hpp>
 #include <string>
+#include <unordered_map>
 #include <vector>
+
+#include "runners/study/study.hpp"
 
 namespace ricochet {
 
@@ -40,5 +43,21 @@ class Product {
   std::vector<std::size_t> sizes_, index_;
   bool ended_ = false;
 };
+
+/// Gives cases their ids: 10 hex digits of FNV-1a (64 bits, finalised) over the canonical text (keys sorted, numbers in
+/// shortest form) of everything that determines the case: kind, axes, scene, duration, samples. The order of keys and
+/// of cases has no part in it; two different cases whose digits coincide are told apart by hashing the later one again.
+class CaseIds {
+ public:
+  std::string next(const StudyCase& study_case, const std::string& kind);
+
+ private:
+  std::unordered_map<std::string, std::string> canonical_;  // id → text
+};
+
+/// Marks the cases that `exclude` names: a list of objects {axis: value or list of values, …, "why": reason}; a case is
+/// left out when every axis named has (one of) the value(s) given. Throws InputError for an unknown axis, a value that
+/// no case has, a combination that matches nothing, a missing reason, and when nothing remains.
+void apply_excludes(const Json& excludes, Study& study);
 
 }  // namespace ricochet

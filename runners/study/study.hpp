@@ -4,6 +4,7 @@
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/scene/scene.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runners/json/json_text.hpp"
@@ -53,5 +54,18 @@ struct Study {
 
 /// The case of this id; null where there is none.
 const StudyCase* find_case(const Study& study, const std::string& id);
+
+/// One of the parts into which the cases of a study are dealt, each for a run of its own; 0 of 0: all of the study.
+struct StudyPart {
+  int number = 0, of = 0;
+
+  bool whole() const { return of == 0; }
+  /// "part 3 of 64", "the whole study".
+  std::string text() const;
+  bool operator==(const StudyPart&) const = default;
+};
+
+/// Reads "3/64"; nothing where the text is not K/N with 1 ≤ K ≤ N.
+std::optional<StudyPart> part_from(std::string_view text);
 
 }  // namespace ricochet

@@ -1,5 +1,7 @@
 #include "runners/study/study_kind.hpp"
 
+#include "runners/study/fields.hpp"
+
 namespace ricochet {
 
 const StudyKind* find_study_kind(const std::string& name) {
@@ -13,6 +15,176 @@ Json given_settings(const Json& resolved, const std::vector<std::string>& keys) 
   for (const std::string& key : keys)
     if (const auto found = resolved.find(key); found != resolved.end() && !found->is_null()) settings[key] = *found;
   return settings.empty() ? Json(nullptr) : settings;
+}
+
+namespace {
+
+using namespace keys;
+
+ObjectForm section() {
+  ObjectForm keys;
+  keys.fields = {word("type", {"tube", "circle", "rectangle", "given"}, std::nullopt, "Shape of the cross-section.")};
+  keys.discriminator = "/type";
+  keys.variants = {
+      {{"tube"},
+       {{real("outer_diameter", "m", positive, std::nullopt,
+              "Outer diameter D; I = π(D⁴ − d⁴)/64 with d = D − 2·wall."),
+         real("wall", "m", positive, std::nullopt, "Wall thickness, at most half of the outer diameter.")},
+        "",
+        {}}},
+      {{"circle"}, {{real("diameter", "m", positive, std::nullopt, "Diameter D; I = πD⁴/64.")}, "", {}}},
+      {{"rectangle"},
+       {{real("width", "m", positive, std::nullopt, "Width b, along the axis of bending; I = b h³/12."),
+         real("height", "m", positive, std::nullopt, "Height h, across which the section bends.")},
+        "",
+        {}}},
+      {{"given"},
+       {{real("EI", "N m²", positive, std::nullopt, "Bending stiffness."),
+         real("rhoS", "kg/m", positive, std::nullopt, "Mass per length.")},
+        "",
+        {}}},
+  };
+  return keys;
+}
+
+ObjectForm structure() {
+  ObjectForm damping;
+  damping.fields = {real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM."),
+                    real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM.")};
+  ObjectForm beam;
+  beam.fields = {real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L."),
+                 object("section", std::nullopt, "Cross-section: EI and ρS follow from it.", section()),
+                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  beam.discriminator = "/section/type";
+  beam.variants = {{{"tube", "circle", "rectangle"},
+                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
+                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.")},
+                     "",
+                     {}}},
+                   {{"given"}, {}}};
+  ObjectForm force;
+  force.fields = {real("amplitude", "N", any, 0.0, "F of the force F cos(ωt + ψ)."),
+                  real("pulsation", "rad/s", non_negative, 0.0, "ω of the force."),
+                  real("phase", "rad", any, 0.0, "ψ of the force.")};
+  ObjectForm oscillator;
+  oscillator.fields = {real("mass", "kg", positive, std::nullopt, "Mass m."),
+                       real("stiffness", "N/m", non_negative, std::nullopt, "Stiffness k; 0: a free mass."),
+                       real("damping", "N s/m", non_negative, 0.0, "Damping c."),
+                       object("force", Json::object(), "Harmonic force on the mass; absent: none.", force)};
+  ObjectForm bar;
+  bar.fields = {real("length", "m", positive, std::nullopt, "Length L."),
+                real("EA", "N", positive, std::nullopt, "Stiffness EA."),
+                real("rhoA", "kg/m", positive, std::nullopt, "Mass per length ρA."),
+                word("fixed", {"right", "left", "none"}, std::nullopt,
+                     "The end that is held; the tip is the free one, or x = 0."),
+                object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  ObjectForm keys;
+  keys.fields = {word("type", {"beam", "oscillator", "bar"}, std::nullopt, "What moves.")};
+  keys.discriminator = "/type";
+  keys.variants = {{{"beam"}, beam}, {{"oscillator"}, oscillator}, {{"bar"}, bar}};
+  return keys;
+}
+
+ObjectForm scene() {
+  ObjectForm stops;
+  stops.fields = {formula("lower", "m", "x", true, Json(nullptr),
+                          "Lower stop g1(x) ≤ u; null: absent. Above the upper one under compliant laws only."),
+                  formula("upper", "m", "x", true, Json(nullptr), "Upper stop u ≤ g2(x); null: absent."),
+                  of_form(Field::Form::places, "at", Json("nodes"),
+                          "Where stops act: \"nodes\", \"tip\" or a list of positions x in ]0, L].")};
+  stops.fields.back().axis = true;
+
+  ObjectForm support;
+  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the clamp's motion."),
+                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the clamp's motion."),
+                    real("phase", "rad", any, 0.0, "ψ of the clamp's motion.")};
+
+  ObjectForm initial;
+  initial.fields = {
+      formula("displacement", "m", "x", false, Json("0"),
+              "Absolute displacement u(x,0); beyond a stop under compliant laws only."),
+      formula("velocity", "m/s", "x", false, Json("0"), "Absolute velocity u_t(x,0)."),
+      word("projection", {"none", "constraint"}, "none",
+           "\"constraint\" projects the initial data on Zᵀ(Kq − F) = 0, Z the kernel of a singular mass.")};
+  initial.fields.back().axis = true;
+
+  ObjectForm point;
+  point.fields = {optional(real("at", "m", any, std::nullopt, "Where the force acts; an oscillator has none.")),
+                  single(formula("force", "N", "t", false, std::nullopt, "Force F(t)."))};
+  ObjectForm spread;
+  spread.fields = {single(formula("shape", "N/m", "x", false, std::nullopt, "f(x) of a load f(x) g(t).")),
+                   single(formula("time", "1", "t", false, std::nullopt, "g(t)."))};
+  Field load = formula("load", "N/m", "xt", false, Json("0"), "Load f(x,t), or a list of forces and of shapes.");
+  load.nested.emplace_back();
+  load.nested.back().ways = {point, spread};
+
+  ObjectForm keys;
+  keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
+                 object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: none.", stops),
+                 object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
+                        "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+                 std::move(load),
+                 object("initial", Json::object(), "Absolute initial state; absent: at rest.", initial)};
+  return keys;
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const StudyKind* kind : study_kinds()) names.push_back(kind->name);
+  return names;
+}
+
+ObjectForm study() {
+  ObjectForm mesh;
+  mesh.fields = {integer("elements", {1, 100000, false, false}, std::nullopt, "Number of equal elements.")};
+  mesh.fields.back().axis = true;
+
+  ObjectForm chosen;
+  chosen.fields = {methods("mass", Role::mass, "How velocities are discretised."),
+                   methods("contact", Role::contact, "The contact law."),
+                   methods("time", Role::time, "The time scheme.")};
+
+  ObjectForm keys;
+  keys.fields = {
+      of_form(Field::Form::text, "name", std::nullopt,
+              "Letters, digits, '-', '_' and '.'; results go to results/NAME."),
+      of_form(Field::Form::text, "question", Json(""), "The question that the study answers."),
+      word("kind", kind_names(), std::nullopt, "What is made of each case."),
+      object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
+      object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),
+      object("methods", std::nullopt, "The methods that are combined.", chosen),
+      of_form(Field::Form::excludes, "exclude", Json::array(), "Combinations left out, each with its reason.")};
+  keys.discriminator = "/kind";
+  for (const StudyKind* kind : study_kinds()) keys.variants.push_back({{kind->name}, {kind->keys, "", {}}});
+  return keys;
+}
+
+}  // namespace
+
+const ObjectForm& study_form() {
+  static const ObjectForm form = study();
+  return form;
+}
+
+Json to_json(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+ObjectForm method_form(const PluginManual& manual) {
+  ObjectForm keys;
+  keys.fields = {word("name", {manual.name}, std::nullopt, manual.summary.c_str())};
+  for (const ParameterSpec& spec : manual.parameters) {
+    Field field;
+    field.spec = spec;
+    field.axis = true;
+    if (spec.fallback) {
+      const auto* whole = std::get_if<long long>(&*spec.fallback);
+      field.fallback =
+          whole && spec.type == ParameterSpec::Type::real ? Json(static_cast<double>(*whole)) : to_json(*spec.fallback);
+    }
+    keys.fields.push_back(std::move(field));
+  }
+  return keys;
 }
 
 }  // namespace ricochet

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 
 namespace ricochet {
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "runners/plan_files/plan_file.hpp"
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runners/table/csv_text.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
 

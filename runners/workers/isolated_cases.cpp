@@ -10,14 +10,11 @@
 #include <optional>
 #include <ricochet/contract/errors.hpp>
 
-#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
-#include "runners/workers/block_pool.hpp"
-#include "runners/workers/key_claims.hpp"
 #include "runners/workers/worker_messages.hpp"
-#include "runners/workers/worker_places.hpp"
+#include "runners/workers/worker_pool.hpp"
 #include "runners/workers/worker_process.hpp"
 
 namespace ricochet {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "runners/workers/host_messages.hpp"
-#include "runners/workers/transport.hpp"
 
 namespace ricochet {
 

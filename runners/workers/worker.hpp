@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "runners/workers/channel.hpp"
+#include "runners/workers/worker_messages.hpp"
 
 namespace ricochet {
 

@@ -19,15 +19,12 @@
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/kinds/kind.hpp"
-#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/march/study_identity.hpp"
 #include "runners/plan_files/plan_file.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/workers/call_watch.hpp"
-#include "runners/workers/channel.hpp"
 #include "runners/workers/crash_record.hpp"
-#include "runners/workers/worker_environment.hpp"
 #include "runners/workers/worker_messages.hpp"
 #include "runners/workers/worker_process.hpp"
 

@@ -25,8 +25,8 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/sweep/block_orders.hpp"
-#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/seconds.hpp"
+#include "runners/march/study_identity.hpp"
 #include "runners/report/report.hpp"
 #include "runners/run/environment.hpp"
 #include "runners/run/study_runner.hpp"

@@ -24,7 +24,7 @@
 #include <optional>
 #include <ricochet/engine/flight/flight.hpp>
 #include <ricochet/engine/marcher.hpp>
-#include <ricochet/kernels/flush_denormals.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/loader/catalogue.hpp>
 #include <ricochet/measure/contact/impact_recorder.hpp>
 #include <ricochet/measure/energy/energy_audit.hpp>

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <ricochet/engine/flight/closed_steps.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 namespace ricochet {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <ricochet/engine/flight/flight_bound.hpp>
 #include <ricochet/kernels/flight_kernels.hpp>
-#include <ricochet/kernels/infinity.hpp>
+#include <ricochet/kernels/floating_point.hpp>
 
 // What is asked of a bound while a march goes on; how it is made stands in flight_bound.cpp.
 namespace ricochet {

@@ -3,7 +3,7 @@
 #include <map>
 #include <ricochet/measure/attractors/attractors.hpp>
 #include <ricochet/measure/attractors/diagram.hpp>
-#include <ricochet/measure/attractors/presence.hpp>
+#include <ricochet/measure/attractors/opinions.hpp>
 #include <set>
 #include <string>
 #include <utility>

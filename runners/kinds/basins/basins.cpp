@@ -1,11 +1,20 @@
 #include "runners/kinds/basins/basins.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <iostream>
+
 #include "runners/kinds/basins/basin_tables.hpp"
+#include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
-#include "runners/kinds/basins/point.hpp"
 #include "runners/kinds/basins/run_basins.hpp"
+#include "runners/kinds/sweep/march_point.hpp"
 #include "runners/kinds/sweep/sweep.hpp"
-#include "runners/kinds/sweep/sweep_keys.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/study/fields.hpp"
 
 namespace ricochet {
@@ -47,6 +56,86 @@ Kind basins_kind() {
   };
   kind.page = report::basins_page;
   return kind;
+}
+
+namespace {
+
+// "X,Y" as two numbers.
+std::pair<double, double> two_numbers(const std::string& text) {
+  std::pair<double, double> out;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, out.first);
+  if (first.ec == std::errc() && first.ptr != end && *first.ptr == ',')
+    if (const auto second = std::from_chars(first.ptr + 1, end, out.second);
+        second.ec == std::errc() && second.ptr == end)
+      return out;
+  throw PointRefused(fmt::format("--cell \"{}\": expected two numbers X,Y, the values of the study's axes", text));
+}
+
+std::size_t find_place(const GridAxis& axis, double wanted) {
+  for (std::size_t k = 0; k < axis.values.size(); ++k)
+    if (is_value(axis.values[k], wanted)) return k;
+  throw PointRefused(fmt::format("no cell was marched at {} {}; the nearest values are {}", axis.pointer, wanted,
+                                 nearest_values(axis.values, wanted)));
+}
+
+// The strobed points that the run stored for a row of cells.csv.
+std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t row) {
+  std::vector<SectionPoint> out;
+  const NumberTable* table = find_table(record.numbers, "cell_points");
+  const auto* cells = table ? table->numbers("cell") : nullptr;
+  if (!cells) return out;
+  std::vector<const std::vector<double>*> columns;
+  for (const char* name : {"tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"})
+    columns.push_back(table->numbers(name));
+  if (std::count(columns.begin(), columns.end(), nullptr) > 0) return out;
+  for (std::size_t i = 0; i < table->rows(); ++i)
+    if ((*cells)[i] == static_cast<double>(row))
+      out.push_back({(*columns[0])[i], (*columns[1])[i], (*columns[2])[i], (*columns[3])[i]});
+  return out;
+}
+
+std::string text_of(const CellEnd& end) {
+  if (end.status != "done") return end.status + ": " + end.reason;
+  return text(end.motion);
+}
+
+}  // namespace
+
+int march_cell_again(const StudyResults& results, const PointRequest& asked, std::ostream& out) {
+  if (asked.cell.empty() || asked.parameter || !asked.start.empty())
+    throw PointRefused("ricochet point: this is a study of kind basins; expected --cell X,Y, as in cells.csv");
+  const auto [x, y] = two_numbers(asked.cell);
+  const CaseRecord& record = find_case(results, asked.case_id);
+  const StoredStudy stored(results, asked.plugins);
+  const StudyCase& study_case = stored.find(record.id);
+  const std::vector<GridAxis> axes = grid_axes(study_case.settings);
+  const std::size_t column = find_place(axes[0], x), line = find_place(axes[1], y);
+  const TableReader cells(stored_table(record, "cells"));
+  const std::size_t across = cells.column("x"), along = cells.column("y");
+  std::size_t row = 0;
+  while (row < cells.size() &&
+         !(cells.number(row, across) == axes[0].values[column] && cells.number(row, along) == axes[1].values[line]))
+    ++row;
+
+  SamplePrinter print(out);
+  const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(asked), std::ref(print));
+  std::cerr << text_of(end);
+  if (row == cells.size()) {
+    std::cerr << "; the run has not come to this cell";
+  } else if (cells.truth(row, "marched") == false) {
+    std::cerr << fmt::format("; the run filled this cell from a marched one of its basin ({})",
+                             regime_text(cells.text(row, "class"), cells.number(row, "period")));
+  } else {
+    const std::vector<SectionPoint> section = stored_section(record, row);
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < std::min(section.size(), end.section.size()); ++i)
+      equal += section[i].displacement == end.section[i].displacement && section[i].velocity == end.section[i].velocity;
+    std::cerr << comparison_text(equal, std::max(section.size(), end.section.size()));
+  }
+  std::cerr << "\n";
+  constexpr int some_failed = 3;
+  return end.status == "done" ? 0 : some_failed;
 }
 
 }  // namespace ricochet

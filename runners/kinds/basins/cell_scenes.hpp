@@ -1,8 +1,13 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <ricochet/measure/attractors/attractors.hpp>
+#include <string>
+#include <vector>
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
+#include "runners/kinds/sweep/march_point.hpp"
+#include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 
@@ -38,5 +43,42 @@ class CellScenes {
   std::unique_ptr<ForcedScenes> scenes_;
   std::map<double, int> displacements_, velocities_;  // scenes by value
 };
+
+/// What the orbit of one cell of a grid ended in.
+struct CellEnd {
+  MotionClass motion{Regime::failed};
+  int period = 0;                     ///< of what repeats, be it without contact; 0: nothing does
+  long long periods = 0;              ///< marched, transient and kept
+  std::string status, reason;         ///< done, refused, no start, diverged, failed
+  bool lost = false;                  ///< the processes that marched it ended
+  std::vector<SectionPoint> section;  ///< strobed: one period of what repeats, else the last points
+  std::vector<double> displacements;  ///< of the same strobes, without the sawtooth of single steps
+};
+
+/// The end of a finished orbit of which its end is kept (keep_end).
+CellEnd cell_end(const Orbit& orbit);
+CellEnd refused_end(const std::string& sentence);
+
+/// The class and the status of a cell that begins beyond a stop: no motion begins there, so it has no end.
+inline constexpr const char* no_start = "no start";
+CellEnd no_start_end(const std::string& sentence);
+
+/// Ends as bytes and back, bit for bit. Bytes that to_bytes() did not write throw std::runtime_error.
+std::string to_bytes(const std::vector<CellEnd>& ends);
+std::vector<CellEnd> cell_ends(const std::string& bytes);
+
+/// The section of an end, ready to be compared (core/measure/attractors/orbit_ends.hpp), in units of
+/// SectionPlan::scale and ω·scale, without the sawtooth of single steps.
+SettledSection settled_section(const CellEnd& end, const SectionPlan& plan);
+
+/// A cell of a case of kind `basins`, by its places on the axes.
+struct CellPlace {
+  std::size_t column = 0, row = 0;
+};
+
+/// Marches the orbit of a cell from its initial state to its end, with the bits of a run that marches it; then hands
+/// over samples of the kept periods, as march_on() does. A cell that is refused or stops hands over none.
+CellEnd march_cell(const StudyCase& study_case, const Registry& registry, CellPlace cell, SampleCount count,
+                   const std::function<void(const PointSample&)>& use);
 
 }  // namespace ricochet

@@ -9,11 +9,10 @@
 #include <ricochet/measure/attractors/branches.hpp>
 #include <ricochet/measure/attractors/grid_refinement.hpp>
 
-#include "runners/kinds/basins/cell_ends.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/march/partial_pace.hpp"
+#include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 #include <ricochet/contract/registry.hpp>
 
-#include "runners/march/case_plan.hpp"
-#include "runners/march/checkpoint_store.hpp"
+#include "runners/march/case_context.hpp"
+#include "runners/march/prepare_case.hpp"
 
 namespace ricochet {
 

@@ -11,13 +11,11 @@
 #include <ricochet/measure/stability/linear_response.hpp>
 
 #include "runners/kinds/sweep/orbit_checkpoints.hpp"
-#include "runners/kinds/sweep/orbit_entries.hpp"
 #include "runners/kinds/sweep/orbit_exponents.hpp"
-#include "runners/kinds/sweep/orbit_portraits.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/march/partial_pace.hpp"
+#include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 #include "runners/store/record_values.hpp"

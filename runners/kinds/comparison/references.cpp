@@ -13,11 +13,10 @@
 #include <ricochet/scene/discrete_problem.hpp>
 #include <set>
 
-#include "runners/kinds/comparison/motion_bytes.hpp"
-#include "runners/march/case_plan.hpp"
+#include "runners/march/bytes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/store/fingerprint.hpp"
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 
 namespace ricochet {
 namespace {
@@ -303,6 +302,36 @@ ReferenceSet References::of(const StudyCase& study_case, const std::atomic<bool>
   set.horizon = twin.horizon;
   set.horizon_why = twin.why;
   return set;
+}
+
+namespace {
+
+constexpr const char* motion_mark = "motion 2";
+
+}  // namespace
+
+template <class Archive>
+void serialize(Archive& archive, ContactEvent& event) {
+  archive(event.time, event.side, event.begins, event.velocity);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SampledMotion& motion) {
+  archive(motion.tip, motion.tip_velocity, motion.energy, motion.impulse, motion.displacement, motion.strain,
+          motion.velocity, motion.events);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ReferenceMotion& reference) {
+  archive(reference.motion, reference.coarser, reference.how, reference.notes);
+}
+
+std::string to_bytes(const ReferenceMotion& motion) {
+  return to_bytes(motion, motion_mark);
+}
+
+ReferenceMotion motion_from_bytes(const std::string& bytes) {
+  return from_bytes<ReferenceMotion>(bytes, motion_mark);
 }
 
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/march/checkpoint_store.hpp"
+#include "runners/march/case_context.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 
@@ -107,5 +107,11 @@ SampleGrid comparison_grid(const SceneSpec& scene, double duration, int samples)
 /// What a reference may read of a case. `discrete` is filled, and `problem.discrete` points to it, when the case has
 /// been discretised.
 ReferenceProblem reference_problem(const StudyCase& study_case, const Registry& registry);
+
+/// A reference motion as bytes, bit for bit.
+std::string to_bytes(const ReferenceMotion& motion);
+
+/// The motion that to_bytes() was given; throws std::runtime_error for bytes that are none.
+ReferenceMotion motion_from_bytes(const std::string& bytes);
 
 }  // namespace ricochet

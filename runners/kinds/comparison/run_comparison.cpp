@@ -7,7 +7,6 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
-#include "runners/march/gap_watch.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

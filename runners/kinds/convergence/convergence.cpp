@@ -2,15 +2,12 @@
 
 #include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_answers.hpp"
-#include "runners/kinds/comparison/comparison_keys.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/page/page.hpp"
-#include "runners/kinds/comparison/precision_targets.hpp"
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/contact_rows.hpp"
-#include "runners/kinds/trajectory/curves_head.hpp"
-#include "runners/kinds/trajectory/minimal_study.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 
 namespace ricochet {
 

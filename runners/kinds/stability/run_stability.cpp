@@ -11,8 +11,8 @@
 #include <ricochet/measure/stability/plan_restitution.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
+#include "runners/kinds/stability/stability.hpp"
 #include "runners/kinds/stability/stability_roots.hpp"
-#include "runners/kinds/stability/stability_steps.hpp"
 #include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

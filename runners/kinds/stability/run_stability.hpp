@@ -2,7 +2,7 @@
 #include <atomic>
 #include <ricochet/contract/registry.hpp>
 
-#include "runners/march/case_plan.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 

@@ -1,4 +1,8 @@
 #pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "runners/store/record.hpp"
 
 namespace ricochet {
@@ -18,5 +22,61 @@ void describe_stability(CaseRecord& record);
 
 /// Rows of `answers`: which schemes have a largest step and which none, and how often march and spectrum agree.
 Table stability_answers(const StudyResults& results);
+
+// The cells that a case of kind `stability` left, as a range of steps.
+
+/// One step of a range.
+struct StepCell {
+  double step = 0;               ///< s
+  std::optional<double> radius;  ///< of the contact state itself
+  std::optional<double> worst;   ///< the larger of the radii that the marched cell meets: a scene is open as well
+  std::string marginal, status, reason;
+  std::string behaviour;  ///< "" where not observed; stable, marginal, unstable, diverged, failed
+  /// By the tolerance of the spectrum itself (growth_tolerance).
+  bool predicted_unstable() const;
+  bool observed_unstable() const { return behaviour == "unstable" || behaviour == "diverged" || behaviour == "failed"; }
+  bool disagrees() const { return worst && !behaviour.empty() && predicted_unstable() != observed_unstable(); }
+};
+
+/// One contact state of one case, along the step.
+struct StepRange {
+  std::vector<StepCell> cells;                ///< steps increase
+  std::optional<double> predicted, observed;  ///< step limits, s
+  std::optional<double> expected;             ///< the smaller of the predicted limits that the marched cell meets
+};
+
+/// The open or closed range of a case; nothing where its tables have no such rows.
+std::optional<StepRange> step_range(const CaseRecord& record, bool closed);
+
+/// Neighbouring steps at which prediction and observation differ in the same way.
+struct Disagreement {
+  double from = 0, to = 0;  ///< s
+  std::size_t steps = 0;
+  bool predicted_unstable = false;
+};
+
+/// How the cells of a range disagree; empty where they agree.
+std::vector<Disagreement> disagreements(const StepRange& range);
+
+// What the cells of a stability study come to: the step limits of each method and whether prediction and march agree.
+
+/// An observed limit agrees with the expected one within this share of it.
+inline constexpr double limit_tolerance = 0.02;
+
+/// step_limits: one row per case and contact state, open before closed. A scene is open as well as closed: the limit
+/// expected of it is the smaller of both predictions, and a cell is expected to grow where either radius exceeds one.
+/// The open structure does not depend on the contact law: of cases that differ in it alone one is `counted`, the first
+/// that was done.
+Table step_limits_table(const StudyResults& results);
+
+/// step_limit_agreement: how many of the counted ranges agree, for the open structure, for closed contact, and for
+/// both together.
+Table step_limit_agreement_table(const Table& step_limits);
+
+/// stability_cells: each step of each contact state with what was predicted and observed of it.
+Table stability_cells_table(const StudyResults& results);
+
+/// stability_disagreements: ranges of neighbouring steps where prediction and observation differ.
+Table stability_disagreements_table(const StudyResults& results);
 
 }  // namespace ricochet

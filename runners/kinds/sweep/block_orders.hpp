@@ -1,15 +1,20 @@
 #pragma once
 #include <atomic>
+#include <condition_variable>
+#include <deque>
 #include <functional>
 #include <list>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
+#include "runners/march/case_context.hpp"
 
 /// \file
 /// Orbits of a case that another process marches, as bytes: what it must be told so that each gets the bits that it has
@@ -88,6 +93,39 @@ class BlockMarcher {
 
   const Registry& registry_;
   std::list<Scenes> kept_;  // the one that was used last first
+};
+
+/// The blocks of one case that other processes march, and what was heard of them. Those that are left at the end are
+/// asked to stop.
+class BlocksUnderWay {
+ public:
+  BlocksUnderWay(BlockService& service, std::string case_id);
+  ~BlocksUnderWay() { stop(); }
+  BlocksUnderWay(const BlocksUnderWay&) = delete;
+  BlocksUnderWay& operator=(const BlocksUnderWay&) = delete;
+
+  int begin(const std::string& order);
+  /// Blocks of which there is still something to hear.
+  std::size_t count() const { return under_way_.size(); }
+  /// Whether another one may begin: one more than this case may count on waits for a process that is free.
+  bool room() const { return count() <= static_cast<std::size_t>(service_.share()); }
+  /// The next status, of the block of this number; nothing where so many seconds brought none.
+  std::optional<std::pair<int, BlockStatus>> next(double seconds);
+  void stop();
+
+ private:
+  // Outlives this object: what is told late is told to nobody.
+  struct Inbox {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<std::pair<int, BlockStatus>> status;
+  };
+
+  BlockService& service_;
+  const std::string case_id_;
+  std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
+  std::map<int, int> under_way_;  // numbers of the service, by ours
+  int begun_ = 0;
 };
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "runners/kinds/sweep/block_orders.hpp"
-#include "runners/kinds/sweep/blocks_under_way.hpp"
+#include "runners/kinds/sweep/orbit_exponents.hpp"
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
 namespace ricochet {
@@ -54,5 +55,13 @@ class DistributedOrbits {
   long long lane_periods_ = 0;
   bool over_budget_ = false;
 };
+
+/// Measures batches of orbits of a task in other processes: `found` of each orbit is set, and `measured` told of each
+/// batch that is complete. A batch whose process ends goes back orbit by orbit; an orbit that ends a process of its own
+/// for the second time has no exponents, and task.lost says why. Adds the processor seconds.
+void measure_elsewhere(const ForcedScenes& scenes, const ExponentTask& task, const SectionPlan& plan,
+                       const std::vector<std::vector<std::size_t>>& batches, std::vector<OrbitExponents>& found,
+                       double& seconds, const std::function<void(std::size_t batch)>& measured,
+                       const std::atomic<bool>& stop);
 
 }  // namespace ricochet

@@ -5,7 +5,6 @@
 #include <ricochet/scene/checks.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/march/explicit_limit.hpp"
 #include "runners/march/prepare_case.hpp"
 
 namespace ricochet {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/march/case_plan.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/study/study.hpp"
 
 namespace ricochet {

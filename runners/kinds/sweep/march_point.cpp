@@ -1,12 +1,39 @@
 #include "runners/kinds/sweep/march_point.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <ostream>
 
 #include "runners/kinds/sweep/orbit_rows.hpp"
-#include "runners/kinds/sweep/tip_march.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
+#include "runners/table/text.hpp"
 
 namespace ricochet {
+
+TipMarch::TipMarch(Program program, const std::vector<const Orbit*>& orbits, const SectionPlan& plan)
+    : marcher_(std::move(program)), begin_(plan.strobe + 1), before_(orbits.size()) {
+  turn_back();
+  for (const Orbit* orbit : orbits) {
+    const int lane = static_cast<int>(at_.size());
+    marcher_.set_lane(lane, orbit->lane, orbit->entry);
+    at_.push_back(marcher_.tip(lane));
+  }
+}
+
+void TipMarch::march(long long steps, const Use& use) {
+  for (long long made = 0; made < steps; ++made, ++made_) {
+    marcher_.march(1);
+    for (std::size_t lane = 0; lane < at_.size(); ++lane) {
+      const double after = marcher_.tip(static_cast<int>(lane));
+      if (made_ > 1) use(lane, made_, at_[lane], (after - before_[lane]) / (2 * h()));
+      before_[lane] = at_[lane];
+      at_[lane] = after;
+    }
+  }
+}
+
 namespace {
 
 // The scenes of a case, added as its run did until the first one that can be marched: that one chose the operator.
@@ -63,6 +90,54 @@ void march_point(const StudyCase& study_case, const Registry& registry, const Po
   orbit.lane = found.lane;
   orbit.entry = task.entry;
   march_on(made.scenes(), scene, orbit, section_plan(study_case, made.scenes()), task.count, use);
+}
+
+namespace {
+
+constexpr int default_periods = 8, default_samples = 200;
+constexpr std::size_t neighbours = 5;
+constexpr double same_value = 1e-9;  // relative
+
+}  // namespace
+
+const Table& stored_table(const CaseRecord& record, const std::string& name) {
+  if (const Table* table = find_table(record.tables, name)) return *table;
+  throw PointRefused(fmt::format("the case {} has no {}: it is {}{}", record.id, name, record.status,
+                                 record.reason.empty() ? "" : ", " + record.reason));
+}
+
+SamplePrinter::SamplePrinter(std::ostream& out) : out_(out) {
+  out_ << "t,tip_displacement,tip_velocity\n";
+}
+
+void SamplePrinter::operator()(const PointSample& sample) {
+  out_ << csv_number(sample.time) << ',' << csv_number(sample.displacement) << ',' << csv_number(sample.velocity)
+       << '\n';
+}
+
+SampleCount wanted_count(const PointRequest& asked) {
+  return {asked.periods > 0 ? asked.periods : default_periods, asked.samples > 0 ? asked.samples : default_samples};
+}
+
+std::string comparison_text(std::size_t equal, std::size_t compared) {
+  if (compared == 0) return "";
+  return fmt::format("; {} of {} strobes as stored{}", equal, compared,
+                     equal < compared ? ": the results are of another build of the program" : "");
+}
+
+std::string nearest_values(const std::vector<double>& values, double wanted) {
+  std::vector<double> near = values;
+  std::stable_sort(near.begin(), near.end(),
+                   [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
+  near.resize(std::min(near.size(), neighbours));
+  std::sort(near.begin(), near.end());
+  std::vector<std::string> named;
+  for (const double value : near) named.push_back(csv_number(value));
+  return fmt::format("{}", fmt::join(named, ", "));
+}
+
+bool is_value(double stored, double wanted) {
+  return std::abs(stored - wanted) <= same_value * std::max(std::abs(stored), std::abs(wanted));
 }
 
 }  // namespace ricochet

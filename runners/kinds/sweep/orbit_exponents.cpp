@@ -6,8 +6,8 @@
 #include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <ricochet/measure/stability/stability.hpp>
 
-#include "runners/kinds/sweep/distributed_exponents.hpp"
-#include "runners/march/case_plan.hpp"
+#include "runners/kinds/sweep/distributed_orbits.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"
 
 namespace ricochet {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runners/kinds/sweep/forced_scenes.hpp"
-#include "runners/march/block_service.hpp"
+#include "runners/march/case_context.hpp"
 
 namespace ricochet {
 

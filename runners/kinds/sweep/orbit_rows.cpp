@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <tuple>
 
+#include "runners/kinds/sweep/march_point.hpp"
 #include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/march/prepare_case.hpp"
@@ -206,6 +210,133 @@ void add_grazing_row(CaseRecord& record, const Grazing& grazing) {
   if (Table* changes = find_table(record.tables, "bifurcations"))
     changes->rows.push_back(change_row_type().row(
         ChangeRow({"open orbit", below, above, "grazing", grazing.value, grazing.low, grazing.high}, grazing.steps)));
+}
+
+namespace {
+
+constexpr std::size_t state_counts = 3, entry_columns = 4;  // numbers in front of a state; columns of the table
+
+std::vector<double> flat(const LaneState& state) {
+  std::vector<double> all;
+  for (const auto* part : {&state.slots, &state.efforts, &state.fastest})
+    all.push_back(static_cast<double>(part->size()));
+  for (const auto* part : {&state.slots, &state.efforts, &state.fastest})
+    all.insert(all.end(), part->begin(), part->end());
+  // What the law remembers stands last: the count of the others says where.
+  all.insert(all.end(), state.memory.begin(), state.memory.end());
+  return all;
+}
+
+LaneState lane_state(const std::vector<double>& all) {
+  LaneState state;
+  std::array<std::vector<double>*, state_counts> parts = {&state.slots, &state.efforts, &state.fastest};
+  std::size_t at = state_counts;
+  for (std::size_t k = 0; k < state_counts; ++k) {
+    const double count = k < all.size() ? all[k] : -1;
+    if (!(count >= 0) || count > static_cast<double>(all.size() - at))
+      throw std::runtime_error("a stored state is cut short");
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(at);
+    parts[k]->assign(first, first + static_cast<std::ptrdiff_t>(count));
+    at += static_cast<std::size_t>(count);
+  }
+  state.memory.assign(all.begin() + static_cast<std::ptrdiff_t>(at), all.end());
+  return state;
+}
+
+}  // namespace
+
+void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
+  NumberTable table = entries_head();
+  table.words = {{"start", starts}};
+  for (const OrbitView& view : views) {
+    if (!view.complete()) continue;
+    const std::vector<double> state = flat(view.orbit->entry);
+    if (entry_columns * (table.rows() + state.size()) > most_entry_numbers) {
+      record.notes.push_back(
+          fmt::format("the states that \"ricochet point\" begins with would take more than {} numbers: none are kept",
+                      most_entry_numbers));
+      return;
+    }
+    for (std::size_t i = 0; i < state.size(); ++i)
+      table.add({view.value, static_cast<double>(view.start), static_cast<double>(i), state[i]});
+  }
+  record.numbers.push_back(std::move(table));
+}
+
+std::vector<double> orbit_numbers(const CaseRecord& record, const char* table, const char* column, double parameter,
+                                  const std::string& start) {
+  std::vector<double> found;
+  const NumberTable* numbers = find_table(record.numbers, table);
+  const auto* starts = numbers ? numbers->words_of("start") : nullptr;
+  const auto *parameters = numbers ? numbers->numbers("parameter") : nullptr,
+             *froms = numbers ? numbers->numbers("start") : nullptr,
+             *values = numbers ? numbers->numbers(column) : nullptr;
+  if (!starts || !parameters || !froms || !values) return found;
+  const auto index = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
+  for (std::size_t row = 0; row < numbers->rows(); ++row)
+    if ((*parameters)[row] == parameter && (*froms)[row] == index) found.push_back((*values)[row]);
+  return found;
+}
+
+std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
+  const std::vector<double> all = orbit_numbers(record, "entries", "value", parameter, start);
+  if (all.size() >= state_counts) return lane_state(all);
+  return std::nullopt;
+}
+
+namespace {
+
+constexpr std::size_t most_portraits = 400;  // per case
+constexpr int samples_per_period = 100, longest = 4, portrait_width = 8;
+
+struct TipSample {
+  double time, displacement, velocity;
+};
+
+}  // namespace
+
+void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::vector<OrbitView>& views,
+                   const SectionPlan& plan) {
+  std::vector<const OrbitView*> complete;
+  for (const OrbitView& view : views)
+    if (view.complete()) complete.push_back(&view);
+  if (complete.empty()) return;
+  if (complete.size() > most_portraits) {
+    record.notes.push_back(
+        fmt::format("phase portraits are stored for up to {} orbits per case; this one has {}: "
+                    "\"ricochet point\" marches any of them again",
+                    most_portraits, complete.size()));
+    return;
+  }
+  NumberTable table = portraits_head();
+  if (const NumberTable* points = find_table(record.numbers, "points")) table.words = {points->words.front()};
+  const int stride = std::max(2, plan.steps_per_period / samples_per_period);
+  std::map<std::pair<int, int>, std::vector<const OrbitView*>> batches;  // by group and periods
+  for (const OrbitView* view : complete) {
+    const int period = view->judged.verdict.period > 0 ? std::min(view->judged.verdict.period, longest) : longest;
+    batches[{view->group, period}].push_back(view);
+  }
+  for (const auto& [key, members] : batches)
+    for (std::size_t first = 0; first < members.size(); first += portrait_width) {
+      std::vector<const Orbit*> orbits;
+      std::vector<LaneSpec> lanes;
+      const std::size_t last = std::min(first + portrait_width, members.size());
+      for (std::size_t i = first; i < last; ++i) {
+        orbits.push_back(members[i]->orbit);
+        lanes.push_back(members[i]->orbit->lane);
+      }
+      TipMarch tips(scenes.program(key.first, lanes), orbits, plan);
+      std::vector<std::vector<TipSample>> portraits(orbits.size());
+      tips.march(static_cast<long long>(key.second) * plan.steps_per_period - 1,
+                 [&](std::size_t lane, long long step, double displacement, double velocity) {
+                   if (step % stride == 0)
+                     portraits[lane].push_back({static_cast<double>(step) * tips.h(), displacement, velocity});
+                 });
+      for (std::size_t i = first; i < last; ++i)
+        for (const auto& [time, displacement, velocity] : portraits[i - first])
+          table.add({members[i]->value, static_cast<double>(members[i]->start), time, displacement, velocity});
+    }
+  record.numbers.push_back(std::move(table));
 }
 
 }  // namespace ricochet

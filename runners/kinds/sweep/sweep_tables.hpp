@@ -3,7 +3,7 @@
 #include <optional>
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
 
-#include "runners/kinds/sweep/swept_columns.hpp"
+#include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/table/number_table.hpp"
 #include "runners/table/row_type.hpp"
 

@@ -2,6 +2,7 @@
 #include <ricochet/measure/contact/impact_recorder.hpp>
 
 #include "runners/store/record.hpp"
+#include "runners/table/table.hpp"
 
 namespace ricochet {
 
@@ -12,5 +13,8 @@ void add_contact(CaseRecord& record, const ImpactRecorder& recorder, const March
 
 /// Units and meanings of these tables, for records that come from a store.
 void describe_contact(std::vector<CaseRecord>& records);
+
+/// `curves`, without rows: the sampled series of one trajectory, curves/ID.csv.
+Table curves_head();
 
 }  // namespace ricochet

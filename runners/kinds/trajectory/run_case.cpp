@@ -11,11 +11,8 @@
 #include <ricochet/measure/energy/energy_audit.hpp>
 
 #include "runners/kinds/trajectory/contact_rows.hpp"
-#include "runners/kinds/trajectory/curves_head.hpp"
-#include "runners/kinds/trajectory/force_window.hpp"
 #include "runners/kinds/trajectory/snapshot_taker.hpp"
 #include "runners/kinds/trajectory/window_means.hpp"
-#include "runners/march/gap_watch.hpp"
 #include "runners/march/load_changes.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/march/seconds.hpp"

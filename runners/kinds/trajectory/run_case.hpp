@@ -4,7 +4,7 @@
 #include <ricochet/contract/registry.hpp>
 #include <ricochet/engine/marcher.hpp>
 
-#include "runners/march/case_plan.hpp"
+#include "runners/march/prepare_case.hpp"
 #include "runners/store/record.hpp"
 #include "runners/study/study.hpp"
 

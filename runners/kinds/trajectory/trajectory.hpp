@@ -1,5 +1,6 @@
 #pragma once
 #include "runners/kinds/kind.hpp"
+#include "runners/store/record.hpp"
 
 namespace ricochet {
 
@@ -8,5 +9,9 @@ Kind trajectory_kind();
 
 /// "energy 3.61 J → 3.02 J (−16.4 %), 12 impacts, 0.8 µs/step": what a marched case has of these.
 std::string energies_text(const CaseRecord& record);
+
+/// The smallest study that shows what happened to one case: kind `trajectory`, its scene and methods alone, every list
+/// replaced by the case's value, without excludes. Runs as it stands.
+nlohmann::ordered_json minimal_study(const StudyResults& results, const CaseRecord& record);
 
 }  // namespace ricochet

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <ricochet/measure/orbits/regime.hpp>
-#include <ricochet/measure/orbits/zero_one_test.hpp>
 
 using namespace ricochet;
 

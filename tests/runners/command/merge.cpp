@@ -6,8 +6,8 @@
 #include <set>
 
 #include "runners/store/folder_lock.hpp"
+#include "runners/store/read_store.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_reader.hpp"
 #include "tests/runners/command/said.hpp"
 #include "tests/runners/same_tables.hpp"
 

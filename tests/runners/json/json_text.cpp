@@ -2,8 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "runners/json/json_fault.hpp"
-
 using namespace ricochet;
 using Catch::Matchers::Contains;
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <new>
 
-#include "runners/march/checkpoint_store.hpp"
+#include "runners/march/case_context.hpp"
 
 using Catch::Matchers::Contains;
 

@@ -11,8 +11,8 @@
 #include <functional>
 #include <random>
 
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
 #include "tests/runners/mpi/launch.hpp"
 #include "tests/runners/same_tables.hpp"
 

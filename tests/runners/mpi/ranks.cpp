@@ -1,4 +1,5 @@
-/// One study on the ranks of mpirun, all on this machine: the tables that one process makes, one message for one mistake.
+/// One study on the ranks of mpirun, all on this machine: the tables that one process makes, one message for one
+/// mistake.
 #include <signal.h>
 #include <unistd.h>
 
@@ -6,7 +7,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "runners/march/arithmetic_digest.hpp"
+#include "runners/march/study_identity.hpp"
 #include "tests/runners/mpi/launch.hpp"
 #include "tests/runners/same_tables.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "runners/kinds/trajectory/page/page.hpp"
-#include "runners/report/page.hpp"
+#include "runners/report/report.hpp"
 #include "tests/runners/report/synthetic.hpp"
 
 using namespace ricochet;

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <set>
 
-#include "runners/kinds/basins/page/basin_data.hpp"
 #include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
 #include "runners/kinds/bifurcation/bifurcation_answers.hpp"

@@ -6,8 +6,7 @@
 
 #include "runners/kinds/comparison/page/page.hpp"
 #include "runners/kinds/work-precision/page/page.hpp"
-#include "runners/kinds/work-precision/page/work_precision.hpp"
-#include "runners/report/axis_rows.hpp"
+#include "runners/report/case_view.hpp"
 #include "runners/report/effects.hpp"
 #include "tests/runners/report/evidence_results.hpp"
 

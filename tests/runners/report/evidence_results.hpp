@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/kinds/comparison/precision_targets.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "tests/runners/report/synthetic.hpp"
 

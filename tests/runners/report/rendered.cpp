@@ -1,7 +1,7 @@
 #include "tests/runners/report/rendered.hpp"
 
 #include "runners/kinds/kind.hpp"
-#include "runners/report/page.hpp"
+#include "runners/report/report.hpp"
 
 namespace ricochet::synthetic {
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "runners/kinds/stability/page/page.hpp"
-#include "runners/kinds/stability/step_range.hpp"
-#include "runners/report/page.hpp"
-#include "runners/run/derive.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/report/report.hpp"
+#include "runners/run/finish_run.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"
 
 using namespace ricochet;

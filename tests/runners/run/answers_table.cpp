@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "runners/run/effects_table.hpp"
+#include "runners/run/choice_effects.hpp"
 #include "runners/table/table_reader.hpp"
 
 using namespace ricochet;

@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <functional>
 
-#include "runners/store/record_tables.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
-#include "runners/table/csv_text.hpp"
+#include "runners/table/text.hpp"
 #include "tests/runners/run/fake_study.hpp"
 
 using namespace ricochet;

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "runners/store/curve_files.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/study/study_fixture.hpp"

@@ -7,9 +7,9 @@
 #include <catch2/catch.hpp>
 #include <ricochet/contract/errors.hpp>
 
-#include "runners/store/record_tables.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
-#include "runners/store/store_error.hpp"
 #include "tests/runners/run/fake_study.hpp"
 
 using namespace ricochet;

@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "runners/store/store_error.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "runners/store/store_error.hpp"
+#include "runners/store/atomic_file.hpp"
 #include "tests/runners/scratch_folder.hpp"
 
 using namespace ricochet;

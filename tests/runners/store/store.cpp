@@ -7,8 +7,8 @@
 #include <cstring>
 #include <limits>
 
-#include "runners/store/record_tables.hpp"
-#include "runners/store/store_error.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/record_values.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/store/sample_results.hpp"
 

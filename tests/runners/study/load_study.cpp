@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include "runners/study/field.hpp"
+#include "runners/study/fields.hpp"
 #include "tests/runners/study/study_fixture.hpp"
 
 using namespace ricochet;

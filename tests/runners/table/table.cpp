@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "runners/table/csv_text.hpp"
 #include "runners/table/number_table.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 using namespace ricochet;
 

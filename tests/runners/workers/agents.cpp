@@ -5,10 +5,9 @@
 #include <thread>
 #include <utility>
 
-#include "runners/march/arithmetic_digest.hpp"
 #include "runners/march/study_identity.hpp"
-#include "runners/workers/agent.hpp"
 #include "runners/workers/isolated_cases.hpp"
+#include "runners/workers/machines.hpp"
 #include "runners/workers/remote_hosts.hpp"
 #include "tests/runners/run/fake_study.hpp"
 #include "tests/runners/workers/scripted_network.hpp"

@@ -13,8 +13,8 @@
 #include <set>
 #include <sstream>
 
-#include "runners/store/read_status.hpp"
-#include "runners/store/store_error.hpp"
+#include "runners/store/atomic_file.hpp"
+#include "runners/store/read_store.hpp"
 #include "tests/runners/same_tables.hpp"
 #include "tests/runners/scratch_folder.hpp"
 #include "tests/runners/workers/quick_studies.hpp"

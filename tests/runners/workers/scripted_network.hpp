@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "runners/workers/host_messages.hpp"
-#include "runners/workers/transport.hpp"
 #include "tests/runners/workers/scripted_worker.hpp"
 
 namespace ricochet::tests {

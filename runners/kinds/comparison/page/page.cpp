@@ -1,5 +1,15 @@
 #include "runners/kinds/comparison/page/page.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/store/record_values.hpp"
+
 namespace ricochet::report {
 
 KindPage comparison_page() {
@@ -9,6 +19,246 @@ KindPage comparison_page() {
   page.derived = {order_lines};
   page.answer = orders_html;
   return page;
+}
+
+namespace {
+
+constexpr double line_factor = 2;  // within which a point follows the fitted line
+
+/// An error of a case at x.
+struct LinePoint {
+  double x = 0, error = 0, floor = 0;
+};
+
+/// e = C x^p where the points follow it.
+struct OrderLine {
+  double from = 0, to = 0, constant = 0, power = 0;
+  double at(double x) const { return constant * std::pow(x, power); }
+};
+
+/// The longest run of three or more points above their floor that stays within the factor of a line of this power.
+std::optional<OrderLine> longest_line(const std::vector<LinePoint>& points, double power) {
+  std::vector<LinePoint> above;
+  for (const LinePoint& p : points)
+    if (p.error > p.floor && p.error > 0) above.push_back(p);
+  for (size_t count = above.size(); count >= 3; --count)
+    for (size_t from = 0; from + count <= above.size(); ++from) {
+      const auto first = above.begin() + static_cast<std::ptrdiff_t>(from),
+                 last = first + static_cast<std::ptrdiff_t>(count);
+      double mean = 0;
+      for (auto p = first; p != last; ++p)
+        mean += (std::log(p->error) - power * std::log(p->x)) / static_cast<double>(count);
+      const OrderLine line{first->x, (last - 1)->x, std::exp(mean), power};
+      if (std::all_of(first, last, [&](const LinePoint& p) {
+            return std::abs(std::log(p.error / line.at(p.x))) <= std::log(line_factor);
+          }))
+        return line;
+    }
+  return std::nullopt;
+}
+
+/// All cases; for elements, those at the smallest step of their method: what the orders in elements are fitted to.
+Cases cases_along(const CaseView& view, const std::string& refined) {
+  if (refined == "step") return view.all();
+  Cases out;
+  const auto step = [](const CaseRecord* r) { return CaseView::number(*r, "step").value_or(HUGE_VAL); };
+  for (const CaseGroup& group : view.group(view.all(), view.varying_without({"step", "elements"}))) {
+    double smallest = HUGE_VAL;
+    for (const CaseRecord* r : group.cases) smallest = std::min(smallest, step(r));
+    for (const CaseRecord* r : group.cases)
+      if (step(r) == smallest) out.push_back(r);
+  }
+  return out;
+}
+
+}  // namespace
+
+Table order_lines(const CaseView& view) {
+  const AxisRows errors(view.results(), "errors", {"error"}), orders(view.results(), "orders", {"refined", "error"});
+  Table out{"order_lines",
+            "One row per line of a convergence figure: the longest run of points above their floor within a factor of "
+            "two of e = C x^p.",
+            {},
+            {}};
+  for (const Column& column : axis_columns(view.results(), orders.axes())) out.columns.push_back(column);
+  for (Column column :
+       std::initializer_list<Column>{{"refined", "", "step or elements: what the line runs along."},
+                                     {"error", "", "Name of the error."},
+                                     {"order", "1", "The fitted power p."},
+                                     {"from", "that of what is refined", "First abscissa of the line."},
+                                     {"to", "that of what is refined", "Last abscissa of the line."},
+                                     {"error_from", "that of the error", "Height of the line at its first abscissa."},
+                                     {"error_to", "that of the error", "Height of the line at its last abscissa."}})
+    out.columns.push_back(std::move(column));
+  for (const std::string refined : {"step", "elements"}) {
+    std::vector<std::string> method = view.varying();
+    std::erase(method, refined);
+    if (refined == "elements") std::erase(method, "step");
+    for (CaseGroup& group : view.group(cases_along(view, refined), method)) {
+      std::stable_sort(group.cases.begin(), group.cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
+        return CaseView::number(*a, refined).value_or(0) < CaseView::number(*b, refined).value_or(0);
+      });
+      for (const std::string& error : errors.values("error")) {
+        std::optional<size_t> row;
+        std::vector<LinePoint> points;
+        for (const CaseRecord* record : group.cases) {
+          if (!row) row = orders.find(*record, {refined, error}, {refined});
+          const auto found = errors.find(*record, {error});
+          const auto x = CaseView::number(*record, refined), value = found ? errors.number(*found, "value") : x;
+          if (found && x && value && record->status == "done")
+            points.push_back({*x, *value, errors.number(*found, "floor").value_or(0)});
+        }
+        const auto order = row ? orders.number(*row, "order") : std::nullopt;
+        const auto line = order ? longest_line(points, refined == "step" ? *order : -*order) : std::nullopt;
+        if (!line) continue;
+        Row cells;
+        for (const std::string& column : orders.axes()) cells.push_back(orders.value(*row, column));
+        cells.insert(cells.end(),
+                     {refined, error, *order, line->from, line->to, line->at(line->from), line->at(line->to)});
+        out.rows.push_back(std::move(cells));
+      }
+    }
+  }
+  return out;
+}
+
+namespace {
+
+std::string interval_text(const AxisRows& rows, size_t row) {
+  const auto low = rows.number(row, "low"), high = rows.number(row, "high");
+  return low && high ? fmt::format("[{}, {}]", order_number(*low), order_number(*high)) : "";
+}
+
+/// The looks of a verdict: those of a status.
+std::string verdict_class(const std::string& verdict) {
+  return verdict == "refuted" ? "status failed" : verdict == "undecided" ? "status refused" : "status";
+}
+
+/// One order as "0.99 ✓": ✓ confirmed, ✕ refuted, ? undecided, none where nothing is declared.
+void order_cell(HtmlTable& table, const AxisRows& rows, size_t row) {
+  const std::string verdict = rows.text(row, "verdict"), interval = interval_text(rows, row);
+  const auto order = rows.number(row, "order");
+  const bool declared = rows.number(row, "declared").has_value();
+  const std::string floor = rows.text(row, "saturates_at");
+  if (!floor.empty()) {
+    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, verdict + ": " + rows.text(row, "reason"),
+                 verdict_class(declared ? verdict : ""));
+    return;
+  }
+  const char* mark = !declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
+  table.number((order ? order_number(*order) : "–") + mark,
+               fmt::format("{}{}{}: {}", interval, order ? " " : "", verdict, rows.text(row, "reason")),
+               verdict_class(declared ? verdict : ""));
+}
+
+/// What a row is about, without the kind of error.
+struct Method {
+  std::string label, colour, key, refined;
+  std::vector<size_t> rows;
+};
+
+std::vector<Method> methods(const CaseView& view, const AxisRows& rows) {
+  std::vector<Method> out;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    // What the row does not say (the element count of a refinement of elements) is not said.
+    std::vector<std::string> columns;
+    std::string key = rows.text(row, "refined");
+    for (const std::string& column : rows.axes()) {
+      if (!rows.text(row, column).empty()) columns.push_back(column);
+      key += '\x1f' + rows.text(row, column);
+    }
+    auto found = std::find_if(out.begin(), out.end(), [&](const Method& m) { return m.key == key; });
+    if (found == out.end()) {
+      const CaseRecord* example = rows.example(row, view.results());
+      found = out.insert(out.end(), {example ? view.name(*example, columns) : "the one method",
+                                     example ? view.colour(*example) : "",
+                                     key,
+                                     rows.text(row, "refined"),
+                                     {}});
+    }
+    found->rows.push_back(row);
+  }
+  return out;
+}
+
+/// The orders that a method declares over its errors: "1", "1, 2".
+std::string declared_text(const AxisRows& rows, const Method& method) {
+  std::vector<std::string> said;
+  for (const size_t row : method.rows)
+    if (const auto declared = rows.number(row, "declared")) {
+      std::string text = number_text(*declared, 3);
+      if (std::find(said.begin(), said.end(), text) == said.end()) said.push_back(std::move(text));
+    }
+  return said.empty() ? "–" : fmt::format("{}", fmt::join(said, ", "));
+}
+
+/// Methods × errors.
+std::string matrix(const AxisRows& rows, const std::vector<Method>& all) {
+  const std::vector<std::string> errors = rows.values("error");
+  HtmlTable table(
+      "Order p of e ≈ C r<sup>p</sup>, r the step or the length of an element, fitted over the range that behaves so. "
+      "✓ confirms the declared order, ✕ refutes it, ? does not decide; the tooltip has the 95 % interval and the "
+      "reason.",
+      {{"method"}, {"refined"}, {"declared", true}});
+  for (const std::string& error : errors) table.add({error, true});
+  for (const Method& method : all) {
+    table.row(method.label, method.colour).text(method.refined).number(declared_text(rows, method));
+    for (const std::string& error : errors) {
+      const auto found = std::find_if(method.rows.begin(), method.rows.end(),
+                                      [&](size_t row) { return rows.text(row, "error") == error; });
+      if (found == method.rows.end())
+        table.absent();
+      else
+        order_cell(table, rows, *found);
+    }
+  }
+  return table.html();
+}
+
+/// Every order with its interval and reason, what is not confirmed first.
+std::string details(const AxisRows& rows, const std::vector<Method>& all) {
+  HtmlTable table("",
+                  {{"method"}, {"refined"}, {"error"}, {"order", true}, {"declared", true}, {"verdict"}, {"reason"}});
+  for (const char* wanted : {"refuted", "undecided", "confirmed"})
+    for (const Method& method : all)
+      for (const size_t row : method.rows) {
+        const std::string verdict = rows.text(row, "verdict");
+        if (verdict != wanted) continue;
+        const auto order = rows.number(row, "order"), declared = rows.number(row, "declared");
+        table.row(method.label, method.colour).text(method.refined).text(rows.text(row, "error"), "text");
+        const std::string floor = rows.text(row, "saturates_at");
+        table.number(floor.empty() ? (order ? order_number(*order) : "–") + " " + interval_text(rows, row)
+                                   : "floor: " + floor);
+        table.number(declared ? number_text(*declared, 3) : "–");
+        table.text(verdict, verdict_class(verdict)).text(rows.text(row, "reason"), "reason");
+      }
+  return "<details><summary>Every order with its interval, verdict and reason</summary>\n" + table.html() +
+         "</details>\n";
+}
+
+/// "24 orders against what the methods declare: 18 confirmed, 2 refuted, 4 undecided."
+std::string counts(const StudyResults& results) {
+  const Table* verdicts = find_table(results.derived, "order_verdicts");
+  if (!verdicts || verdicts->rows.empty()) return "";
+  const TableReader rows(*verdicts);
+  const auto count = [&](const char* column) { return static_cast<size_t>(rows.number(0, column).value_or(0)); };
+  std::string out;
+  for (const char* verdict : {"confirmed", "refuted", "undecided"})
+    if (count(verdict) > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count(verdict), verdict);
+  if (count("declared") == 0)
+    return fmt::format("<p class=\"lead\">{}, none with a declared order to compare with.</p>\n",
+                       count_text(count("orders"), "order", "orders"));
+  return fmt::format("<p class=\"lead\">{} against what the methods declare: {}.</p>\n",
+                     count_text(count("declared"), "order", "orders"), out);
+}
+
+}  // namespace
+
+std::string orders_html(const CaseView& view) {
+  const AxisRows rows(view.results(), "orders");
+  if (rows.empty()) return "";
+  const std::vector<Method> all = methods(view, rows);
+  return counts(view.results()) + matrix(rows, all) + details(rows, all);
 }
 
 }  // namespace ricochet::report

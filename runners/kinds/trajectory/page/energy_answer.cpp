@@ -6,7 +6,6 @@
 
 #include "runners/kinds/trajectory/page/page.hpp"
 #include "runners/report/html.hpp"
-#include "runners/report/html_table.hpp"
 
 namespace ricochet::report {
 namespace {

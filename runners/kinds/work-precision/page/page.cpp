@@ -1,6 +1,16 @@
 #include "runners/kinds/work-precision/page/page.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/page/page.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
@@ -12,6 +22,184 @@ KindPage work_precision_page() {
   page.derived.push_back(work_points);
   page.answer = [](const CaseView& view) { return work_precision_html(view) + orders_html(view); };
   return page;
+}
+
+WorkPrecision::WorkPrecision(const CaseView& view)
+    : rows_(view.results(), "work_precision", {"error"}), errors_(view.results(), "errors", {"error"}) {}
+
+std::vector<std::string> scene_columns(const CaseView& view) {
+  std::vector<std::string> scene;
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(scene), is_scene);
+  return scene;
+}
+
+std::optional<WorkPoint> WorkPrecision::point(const CaseRecord& record, const std::string& error) const {
+  const auto row = rows_.find(record, {error});
+  if (!row || record.status != "done") return std::nullopt;
+  const auto value = rows_.number(*row, "value"), seconds = rows_.number(*row, "run_seconds");
+  if (!value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
+  WorkPoint out{&record, *value, *seconds, *seconds, *seconds, 0, 0};
+  out.low = rows_.number(*row, "low").value_or(out.low);
+  out.high = rows_.number(*row, "high").value_or(out.high);
+  out.steps = rows_.number(*row, "steps").value_or(0);
+  if (const auto known = errors_.find(record, {error})) out.floor = errors_.number(*known, "floor").value_or(0);
+  return out;
+}
+
+std::string WorkPrecision::why_none(const CaseRecord& record, const std::string& error) const {
+  const auto row = rows_.find(record, {error});
+  const auto value = row ? rows_.number(*row, "value") : std::nullopt;
+  const auto seconds = row ? rows_.number(*row, "run_seconds") : std::nullopt;
+  return !value ? "no such error" : !(*value > 0) ? "error exactly 0" : !seconds || !(*seconds > 0) ? "not timed" : "";
+}
+
+std::vector<WorkPoint> WorkPrecision::points(const Cases& cases, const std::string& error) const {
+  std::vector<WorkPoint> out;
+  for (const CaseRecord* record : cases)
+    if (const auto one = point(*record, error)) out.push_back(*one);
+  return out;
+}
+
+std::vector<size_t> pareto_front(const std::vector<WorkPoint>& points, double (*work)(const WorkPoint&)) {
+  std::vector<size_t> order(points.size()), out;
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return std::pair(points[a].known(), work(points[a])) < std::pair(points[b].known(), work(points[b]));
+  });
+  for (const size_t k : order) {
+    const bool beaten =
+        !out.empty() && work(points[out.back()]) <= work(points[k]) &&
+        !(points[out.back()].known() == points[k].known() && work(points[out.back()]) == work(points[k]));
+    if (!beaten) out.push_back(k);
+  }
+  return out;
+}
+
+bool told_from_front(const WorkPoint& point, const std::vector<WorkPoint>& points) {
+  return std::any_of(points.begin(), points.end(),
+                     [&](const WorkPoint& other) { return other.known() <= point.known() && other.high < point.low; });
+}
+
+namespace {
+
+/// The method of a row under a prefix ("", "other_"), its step, and its time.
+void case_cells(HtmlTable& table, const CaseView& view, const TableReader& targets, size_t row,
+                std::string_view prefix) {
+  const auto column = [&](const char* name) { return std::string(prefix) + name; };
+  const CaseRecord* record = view.find(targets.text(row, column("case")));
+  if (!record) {
+    table.absent(false, "no other").absent(false).absent();
+    return;
+  }
+  std::vector<std::string> methods;
+  std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(methods), is_method);
+  std::string how = exact_text(CaseView::number(*record, "step").value_or(0)) + " s";
+  if (view.varies("elements")) how += ", " + CaseView::text(*record, "elements") + " elements";
+  const auto seconds = [&](const char* name, int digits) {
+    return number_text(targets.number(row, column(name)).value_or(0), digits);
+  };
+  table.text(view.name(*record, methods)).text(how);
+  table.number(seconds("seconds", 3), seconds("low", 4) + " to " + seconds("high", 4) + " s");
+}
+
+}  // namespace
+
+std::string work_precision_html(const CaseView& view) {
+  const Table* found = find_table(view.results().derived, "precision_targets");
+  if (!found) return "";
+  const TableReader targets(*found);
+  const std::vector<std::string> scene = scene_columns(view);
+  std::vector<HtmlTable::Head> heads = {
+      {"error"},     {"at most", true}, {"cheapest"},           {"with step"},      {"run time (s)", true},
+      {"runner-up"}, {"with step"},     {"run time (s)", true}, {"speed-up", true}, {"spreads"}};
+  if (!scene.empty()) heads.insert(heads.begin() + 1, {"scene"});
+  HtmlTable table(
+      "The cheapest method for a relative error of at most 10<sup>−k</sup>, 1 being a motion at rest: of the steps "
+      "that were run, the one that takes the "
+      "least time. Spread: fastest to slowest repeat (in the time's tooltip); where the spreads overlap, the two are "
+      "not told apart.",
+      std::move(heads));
+  for (size_t row = 0; row < targets.size(); ++row) {
+    Quantity quantity = error_quantity(targets.text(row, "error"));
+    quantity.name = targets.text(row, "error");
+    table.row().text(with_unit(quantity), "text");
+    const CaseRecord* record = view.find(targets.text(row, "case"));
+    if (!scene.empty()) table.text(record ? view.label(*record, scene) : "");
+    const auto share = targets.number(row, targets.column_if_any("share"));
+    table.number(power_text(share ? *share : targets.number(row, "at_most").value_or(0)),
+                 share ? exact_text(targets.number(row, "at_most").value_or(0)) : "");
+    case_cells(table, view, targets, row, "");
+    case_cells(table, view, targets, row, "other_");
+    if (const auto speed_up = targets.number(row, "speed_up"))
+      table.number(number_text(*speed_up, 3) + " ×").text(targets.truth(row, "overlap") == true ? "overlap" : "apart");
+    else
+      table.absent().absent(false);
+  }
+  return table.size() == 0 ? "<p>No case has both an error and a run time.</p>\n" : table.html();
+}
+
+namespace {
+
+double seconds_at(const WorkPoint& p) {
+  return p.seconds;
+}
+double steps_at(const WorkPoint& p) {
+  return p.steps;
+}
+
+/// What a scene's points say of each of its cases.
+struct SceneFronts {
+  std::vector<WorkPoint> points;
+  std::vector<size_t> of_time, of_steps;
+  bool on(const std::vector<size_t>& front, const CaseRecord& record) const {
+    return std::any_of(front.begin(), front.end(), [&](size_t k) { return points[k].record == &record; });
+  }
+};
+
+}  // namespace
+
+Table work_points(const CaseView& view) {
+  Table out{
+      "work_points",
+      "One row per case and error: a point of work against precision.",
+      {{"case", "", "Identity of the case: its row in cases.csv."},
+       {"error", "", "Name of the error."},
+       {"value", "that of the error", "The error; nothing where the case has none."},
+       {"floor", "that of the error", "Errors below it are not told apart: what the reference itself is uncertain by."},
+       {"seconds", "s", "Processor time of marching, the median over the repeats."},
+       {"low", "s", "The fastest repeat."},
+       {"high", "s", "The slowest repeat."},
+       {"steps", "1", "Time steps marched."},
+       {"microseconds", "µs", "Processor time per step."},
+       {"on_front", "", "Whether no case of the scene is both faster and more precise."},
+       {"near_front", "", "Whether its spread reaches the front."},
+       {"on_front_of_steps", "", "Whether no case of the scene has fewer steps and a smaller error."},
+       {"none", "", "Why there is no point."}},
+      {}};
+  const WorkPrecision work(view);
+  if (work.empty()) return out;
+  const auto scenes = view.group(view.all(), scene_columns(view));
+  for (const std::string& error : work.errors())
+    for (const CaseGroup& scene : scenes) {
+      SceneFronts fronts;
+      fronts.points = work.points(scene.cases, error);
+      fronts.of_time = pareto_front(fronts.points, seconds_at);
+      fronts.of_steps = pareto_front(fronts.points, steps_at);
+      for (const CaseRecord* record : scene.cases) {
+        const auto p = work.point(*record, error);
+        if (!p) {
+          const Cell none;
+          const std::string why = record->status == "done" ? work.why_none(*record, error) : record->status;
+          out.rows.push_back({record->id, error, none, none, none, none, none, none, none, false, false, false, why});
+          continue;
+        }
+        const double each = p->steps > 0 ? 1e6 * p->seconds / p->steps : 0;
+        out.rows.push_back({record->id, error, p->error, p->floor, p->seconds, p->low, p->high, p->steps, each,
+                            fronts.on(fronts.of_time, *record), !told_from_front(*p, fronts.points),
+                            fronts.on(fronts.of_steps, *record), ""});
+      }
+    }
+  return out;
 }
 
 }  // namespace ricochet::report

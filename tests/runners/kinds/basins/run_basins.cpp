@@ -9,8 +9,8 @@
 
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 #include "tests/runners/kinds/sweep/block_threads.hpp"
 
 using namespace ricochet;

@@ -1,4 +1,6 @@
 // Kinds convergence and work-precision end to end: references, errors, orders, timing, and what is refused.
+#include "runners/kinds/comparison/comparison.hpp"
+
 #include <SQLiteCpp/Database.h>
 
 #include <algorithm>
@@ -7,11 +9,10 @@
 #include <map>
 #include <set>
 
-#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/references.hpp"
-#include "runners/kinds/trajectory/minimal_study.hpp"
+#include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/march/prepare_case.hpp"
-#include "runners/run/derive.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/run/run_study.hpp"
 #include "runners/store/store.hpp"
 #include "runners/study/load_study.hpp"

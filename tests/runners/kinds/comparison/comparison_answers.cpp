@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "runners/kinds/comparison/comparison_keys.hpp"
-#include "runners/kinds/comparison/precision_targets.hpp"
+#include "runners/kinds/comparison/comparison.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"

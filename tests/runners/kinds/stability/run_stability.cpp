@@ -7,8 +7,8 @@
 #include <set>
 
 #include "runners/study/load_study.hpp"
-#include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 
 using namespace ricochet;
 using Catch::Matchers::Contains;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runners/kinds/sweep/block_orders.hpp"
-#include "runners/march/case_plan.hpp"
+#include "runners/march/prepare_case.hpp"
 
 namespace ricochet::testing {
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "runners/kinds/sweep/sweep_tables.hpp"
-#include "runners/run/derive.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/table/table_reader.hpp"
 
 using namespace ricochet;

@@ -5,7 +5,7 @@
 #include <ricochet/loader/catalogue.hpp>
 
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
-#include "runners/kinds/sweep/orbit_entries.hpp"
+#include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/study/load_study.hpp"
 
 using namespace ricochet;

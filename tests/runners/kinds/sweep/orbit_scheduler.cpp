@@ -1,7 +1,7 @@
 // Marching of sets of orbits: what they are does not depend on how they were marched.
 #include "runners/kinds/sweep/orbit_scheduler.hpp"
 
-#include "runners/kinds/sweep/orbit_bytes.hpp"
+#include "runners/kinds/sweep/orbit_checkpoints.hpp"
 #include "runners/kinds/sweep/orbit_rows.hpp"
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"

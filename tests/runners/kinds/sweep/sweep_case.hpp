@@ -7,8 +7,8 @@
 
 #include "runners/kinds/bifurcation/run_bifurcation.hpp"
 #include "runners/study/load_study.hpp"
-#include "runners/table/csv_text.hpp"
 #include "runners/table/table_reader.hpp"
+#include "runners/table/text.hpp"
 #include "tests/runners/kinds/sweep/block_threads.hpp"
 
 /// \file

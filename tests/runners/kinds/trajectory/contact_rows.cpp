@@ -10,7 +10,6 @@
 
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/trajectory/run_case.hpp"
-#include "runners/store/record_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/load_study.hpp"
 #include "runners/table/table_reader.hpp"

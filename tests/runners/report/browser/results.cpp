@@ -7,7 +7,7 @@
 
 #include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
-#include "runners/run/derive.hpp"
+#include "runners/run/finish_run.hpp"
 #include "runners/store/store.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"

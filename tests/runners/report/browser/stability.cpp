@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "runners/run/derive.hpp"
+#include "runners/run/finish_run.hpp"
 #include "tests/runners/report/browser/browser.hpp"
 #include "tests/runners/report/browser/driven.hpp"
 #include "tests/runners/report/synthetic_stability.hpp"

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/checks.hpp>
+#include <ricochet/scene/scene.hpp>
+#include <ricochet/scene/semi_discrete.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Second moment of area I (m⁴) and area S (m²).
+struct Moments {
+  double inertia = 0, area = 0;
+};
+
+Moments disc(double diameter) {
+  const double square = diameter * diameter;
+  return {pi * square * square / 64, pi * square / 4};
+}
+
+Moments tube(const Section& section) {
+  require_positive(section.outer_diameter, "section/outer_diameter", "the outer diameter", "m");
+  require_positive(section.wall, "section/wall", "the wall", "m");
+  if (section.wall > section.outer_diameter / 2)
+    throw InputError(
+        "/scene/structure/section/wall",
+        fmt::format("the wall, {:.6g} m, is thicker than the radius, {:.6g} m; expected at most the radius",
+                    section.wall, section.outer_diameter / 2));
+  const Moments outer = disc(section.outer_diameter), inner = disc(section.outer_diameter - 2 * section.wall);
+  return {outer.inertia - inner.inertia, outer.area - inner.area};
+}
+
+Moments circle(const Section& section) {
+  require_positive(section.diameter, "section/diameter", "the diameter", "m");
+  return disc(section.diameter);
+}
+
+Moments rectangle(const Section& section) {
+  require_positive(section.width, "section/width", "the width", "m");
+  require_positive(section.height, "section/height", "the height", "m");
+  return {section.width * std::pow(section.height, 3) / 12, section.width * section.height};
+}
+
+}  // namespace
+
+SectionProperties section_properties(const Section& section, double young, double density) {
+  if (section.type == Section::Type::given) {
+    require_positive(section.EI, "section/EI", "the bending stiffness EI", "N m²");
+    require_positive(section.rhoS, "section/rhoS", "the line density ρS", "kg/m");
+    return {section.EI, section.rhoS};
+  }
+  require_positive(young, "young", "Young's modulus", "Pa");
+  require_positive(density, "density", "the density", "kg/m³");
+  const Moments moments = section.type == Section::Type::tube     ? tube(section)
+                          : section.type == Section::Type::circle ? circle(section)
+                                                                  : rectangle(section);
+  return {young * moments.inertia, density * moments.area};
+}
+
+namespace {
+
+bool is_zero(const LoadTerm& term) {
+  return term.history.is_zero() || (!term.force && term.shape.is_zero());
+}
+
+}  // namespace
+
+bool LoadSpec::is_zero() const {
+  return formula.is_zero() &&
+         std::all_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return ricochet::is_zero(term); });
+}
+
+bool LoadSpec::uses_t() const {
+  return formula.uses_t() || std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) {
+           return !ricochet::is_zero(term) && term.history.uses_t();
+         });
+}
+
+bool LoadSpec::has_point_forces() const {
+  return std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.at.has_value(); });
+}
+
+double LoadSpec::spread(double x, double t) const {
+  double sum = formula(x, t);
+  for (const LoadTerm& term : terms) sum += (term.force ? 1.0 : term.shape(x)) * term.history(0, t);
+  return sum;
+}
+
+std::string LoadSpec::text() const {
+  std::string text = formula.is_zero() && !terms.empty() ? "" : formula.text();
+  for (const LoadTerm& term : terms) {
+    if (!text.empty()) text += " + ";
+    if (term.force)
+      text += term.at ? fmt::format("({}) at x = {:g} m", term.history.text(), *term.at) : term.history.text();
+    else
+      text += fmt::format("({})*({})", term.shape.text(), term.history.text());
+  }
+  return text;
+}
+
+DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space)
+    : formula_(load.formula), size_(space.dofs) {
+  if (load.is_zero()) return;
+  const auto& gauss = gauss_points();
+  for (const auto& element : space.elements) {
+    dofs_.push_back(element.dof);
+    auto& weights = weights_.emplace_back();
+    for (std::size_t g = 0; g < gauss.size(); ++g) {
+      points_.push_back(element.left + gauss[g].xi * element.length);
+      const auto phi = shape_values(space.basis, element.length, gauss[g].xi);
+      for (std::size_t a = 0; a < 4; ++a) weights[4 * g + a] = gauss[g].weight * element.length * phi[a];
+    }
+  }
+  if (space.elements.empty()) points_.push_back(0);
+  values_.resize(points_.size());
+  for (const LoadTerm& term : load.terms) {
+    if (is_zero(term)) continue;
+    Term& one = terms_.emplace_back();
+    one.shape = Eigen::VectorXd::Zero(size_);
+    one.history = term.history;
+    terms_vary_ = terms_vary_ || term.history.uses_t();
+    if (term.force)
+      for (const auto& [dof, value] : displacement_row(space, term.at.value_or(0))) one.shape[dof] = value;
+    else
+      integrate(term.shape, 0, one.shape.data());
+  }
+}
+
+void DistributedLoad::integrate(const Formula& load, double t, double* out) const {
+  load.evaluate(points_, t, values_);
+  if (dofs_.empty()) out[0] = values_[0];
+  for (std::size_t e = 0; e < dofs_.size(); ++e) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const int dof = dofs_[e][a];
+      if (dof < 0) continue;
+      for (std::size_t g = 0; g < 4; ++g) out[dof] += weights_[e][4 * g + a] * values_[4 * e + g];
+    }
+  }
+}
+
+void DistributedLoad::assemble_formula(double t, double* out) const {
+  std::fill(out, out + size_, 0.0);
+  if (has_formula()) integrate(formula_, t, out);
+}
+
+void DistributedLoad::assemble(double t, double* out) const {
+  assemble_formula(t, out);
+  for (int k = 0; k < terms(); ++k) Eigen::Map<Eigen::VectorXd>(out, size_) += scale(k, t) * shape(k);
+}
+
+}  // namespace ricochet

@@ -1,9 +1,0 @@
-#pragma once
-#include "runners/kinds/kind.hpp"
-
-namespace ricochet {
-
-/// Marches the orbit of one cell again, from the scene's initial state: --cell X,Y as in cells.csv.
-int march_cell_again(const StudyResults& results, const PointRequest& asked, std::ostream& out);
-
-}  // namespace ricochet

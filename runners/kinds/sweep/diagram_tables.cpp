@@ -1,0 +1,216 @@
+#include "runners/kinds/sweep/diagram_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/measure/attractors/diagram_attractors.hpp>
+
+#include "runners/kinds/sweep/sweep_summaries.hpp"
+#include "runners/store/record_values.hpp"
+
+namespace ricochet {
+namespace {
+
+using namespace dynamics;
+
+Table values_table(const StudyDiagram& study) {
+  const StudyResults& results = *study.results;
+  const Table head = values_head(0, study.swept);
+  Table table = table_of_cases(results, head.name, head.text, {});
+  for (std::size_t c = 0; c < study.sources.size(); ++c) {
+    const DiagramSource& source = study.sources[c];
+    const std::size_t first = table.rows.size();
+    append_rows(results, *source.record, *source.table, table);
+    const auto column = find_column(table.columns, "attractor");
+    if (!column) continue;
+    const std::vector<DiagramRun>& runs = study.diagram.cases[c].runs;
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      if (runs[k].attractor > 0) table.rows[first + source.rows[k]][*column] = runs[k].attractor;
+  }
+  return table;
+}
+
+Table bifurcations_table(const StudyDiagram& study) {
+  const Table head = bifurcations_head(study.swept);
+  Table table = table_of_cases(*study.results, head.name, head.text, {});
+  for (const DiagramSource& source : study.sources)
+    if (const Table* own = find_table(source.record->tables, head.name))
+      append_rows(*study.results, *source.record, *own, table);
+  return table;
+}
+
+}  // namespace
+
+bool derived_as_dynamics(const std::string& table) {
+  return table == "values" || table == "bifurcations" || table == "cells";
+}
+
+void derive_dynamics(StudyResults& results) {
+  StudyDiagram study = read_diagram(results);
+  if (study.sources.empty()) return;
+  Table distances = find_attractors(study);
+  std::vector<Table> tables = {values_table(study),  bifurcations_table(study), attractors_table(study),
+                               std::move(distances), verdicts_table(study),     agreement_table(study),
+                               shifts_table(study)};
+  tables.push_back(verdict_shares_table(*find_table(tables, "verdicts"), study.swept));
+  for (Table table :
+       {class_counts_table(results), grazing_ranges_table(results, study.swept), numerical_viscosity_table(results)})
+    tables.push_back(std::move(table));
+  for (Table& table : tables) results.derived.push_back(std::move(table));
+}
+
+}  // namespace ricochet
+
+namespace ricochet::dynamics {
+namespace {
+
+/// A change moves by less than this share of the values' range; further away there is another one.
+constexpr double kReach = 0.1;
+
+/// Whether a class is none: what comes before or after it is no change of the motion.
+bool open(const std::string& regime) {
+  return regime == text(Regime::undecided) || regime == text(Regime::failed);
+}
+
+// Those between classes that are known.
+std::vector<DiagramChange> known_changes(const CaseRecord& record) {
+  std::vector<DiagramChange> out;
+  for (DiagramChange change : changes_of(record)) {
+    if (std::isnan(change.value) || open(change.from) || open(change.to)) continue;
+    if (std::isnan(change.low)) change.low = change.value;
+    if (std::isnan(change.high)) change.high = change.value;
+    out.push_back(std::move(change));
+  }
+  return out;
+}
+
+}  // namespace
+
+Table agreement_table(const StudyDiagram& study) {
+  Table table = agreement_head();
+  const std::vector<DiagramCase>& cases = study.diagram.cases;
+  if (cases.size() < 2) return table;
+  for (std::size_t a = 0; a < cases.size(); ++a)
+    for (std::size_t b = 0; b < cases.size(); ++b) {
+      const auto [compared, same_class, same_attractor] = agreement(cases[a], cases[b]);
+      const auto share = [all = compared](int count) {
+        return all > 0 ? Cell(static_cast<double>(count) / all) : Cell();
+      };
+      table.rows.push_back({study.record(a).id, study.record(b).id, compared, same_class, share(same_class),
+                            same_attractor, share(same_attractor)});
+    }
+  return table;
+}
+
+Table shifts_table(const StudyDiagram& study) {
+  const Diagram& diagram = study.diagram;
+  Table table = table_of_cases(*study.results, shifts_head(study.swept));
+  const auto reference = reference_case(diagram);
+  if (!reference) return table;
+  const CaseRecord& standard = study.record(*reference);
+  const std::vector<DiagramChange> expected = known_changes(standard);
+  const double reach = kReach * (diagram.values.back() - diagram.values.front());
+  for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
+    if (c == *reference || !diagram.cases[c].any_decided()) continue;
+    const std::vector<DiagramChange> here = known_changes(study.record(c));
+    const std::vector<int> match = match_changes(expected, here, reach);
+    std::vector<char> used(here.size(), 0);
+    const auto add = [&](const DiagramChange& change, const DiagramChange* standing, const DiagramChange* found) {
+      const bool both = standing && found;
+      add_row(
+          table, place_of(*study.results, study.record(c)),
+          {standard.id, change.start, change.from, change.to, change.kind, standing ? Cell(standing->value) : Cell(),
+           found ? Cell(found->value) : Cell(), both ? Cell(found->value - standing->value) : Cell(),
+           both ? Cell(found->low - standing->high) : Cell(), both ? Cell(found->high - standing->low) : Cell(), both});
+    };
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      if (match[k] >= 0) used[static_cast<std::size_t>(match[k])] = 1;
+      add(expected[k], &expected[k], match[k] < 0 ? nullptr : &here[static_cast<std::size_t>(match[k])]);
+    }
+    for (std::size_t k = 0; k < here.size(); ++k)
+      if (!used[k]) add(here[k], nullptr, &here[k]);
+  }
+  return table;
+}
+
+namespace {
+
+constexpr double kNothing = 1e-12;
+
+void add_distances(const StudyDiagram& study, const ValueSections& sections, int value, std::size_t reference,
+                   Table& table) {
+  const Diagram& diagram = study.diagram;
+  for (int s = 0; s < diagram.start_count(); ++s) {
+    const DiagramRun* one = diagram.run(reference, value, s);
+    if (!one) continue;
+    const auto of_reference = sections.find({reference, s});
+    HalvesNull null;
+    if (of_reference != sections.end()) null = null_of(study, reference, *one);
+    for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
+      const DiagramRun* other = diagram.run(c, value, s);
+      if (c == reference || !other) continue;
+      Row row = {study.record(reference).id, one->parameter, diagram.starts[static_cast<std::size_t>(s)].name};
+      const auto of_other = sections.find({c, s});
+      const Cell same = one->decided() && other->decided() ? Cell(one->motion == other->motion) : Cell();
+      if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
+          of_other->second.cloud.empty()) {
+        row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr, nullptr, same, ""});
+      } else {
+        const SectionCloud &a = of_reference->second.cloud, &b = of_other->second.cloud;
+        const double distance = cloud_distance(a, b);
+        const bool noisy = null.wasserstein > kNothing;
+        row.insert(row.end(), {distance, cloud_hausdorff(a, b), null.wasserstein, null.hausdorff,
+                               noisy ? Cell(distance / null.wasserstein) : Cell(), same,
+                               compared_exactly(a, b) ? "exact" : "sliced"});
+      }
+      add_row(table, place_of(*study.results, study.record(c)), row);
+    }
+  }
+}
+
+std::optional<bool> symmetric(const AttractorExtent& extent) {
+  if (extent.symmetric > 0 && extent.asymmetric == 0) return true;
+  if (extent.asymmetric > 0 && extent.symmetric == 0) return false;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Table find_attractors(StudyDiagram& study) {
+  Table distances = table_of_cases(*study.results, distances_head(study.swept));
+  const auto reference = reference_case(study.diagram);
+  ricochet::find_attractors(
+      study.diagram, [&](std::size_t c, const DiagramRun& run) { return settled_section(study, c, run); },
+      [&](int value, const ValueSections& sections) {
+        if (reference) add_distances(study, sections, value, *reference, distances);
+      });
+  return distances;
+}
+
+Table attractors_table(const StudyDiagram& study) {
+  const Diagram& diagram = study.diagram;
+  Table table = attractors_head(study.swept);
+  const std::vector<AttractorExtent> extents = extents_of(diagram);
+  for (std::size_t k = 0; k < extents.size(); ++k) {
+    const AttractorExtent& extent = extents[k];
+    if (extent.first < 0) continue;
+    const int attractor = static_cast<int>(k) + 1;
+    const bool periodic = extent.motion.period > 0;
+    const double from = diagram.values[static_cast<std::size_t>(extent.first)],
+                 to = diagram.values[static_cast<std::size_t>(extent.last)];
+    const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), study.axes);
+    const Proportion fraction = fraction_of(diagram, extent, attractor);
+    const std::string range = extent.first == extent.last
+                                  ? "at " + short_number(from)
+                                  : fmt::format("{} to {}, {}", short_number(from), short_number(to),
+                                                count_of(extent.values.size(), "value"));
+    table.rows.push_back(
+        {attractor, label.label, extent.cases.size(), from, to, text(extent.motion.regime),
+         periodic ? Cell(extent.motion.period) : Cell(), symmetric(extent), fraction.value, fraction.low, fraction.high,
+         label.presence,
+         fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
+  }
+  return table;
+}
+
+}  // namespace ricochet::dynamics

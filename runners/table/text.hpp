@@ -1,0 +1,58 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runners/table/table.hpp"
+
+/// \file
+/// Tables as CSV after RFC 4180, numbers in the shortest digits that read back as the same double.
+namespace ricochet {
+
+/// The shortest decimal text that reads back as the same double; "" when not finite (no NaN reaches a row).
+std::string csv_number(double value);
+
+/// The same, behind what `text` holds.
+void append_csv_number(double value, std::string& text);
+
+/// A field: in double quotes, with inner quotes doubled, when it holds a comma, a quote or a line break.
+std::string csv_field(std::string_view text);
+
+/// A cell as a field, quoted where it must be.
+std::string csv_cell(const Cell& cell);
+
+/// One line of fields already quoted, ending in '\n'.
+std::string csv_line(const std::vector<std::string>& fields);
+
+/// The names of the columns, quoted where they must be.
+std::vector<std::string> csv_head(const std::vector<Column>& columns);
+
+/// The whole table: its columns, then one line per row; empty fields for nothing.
+std::string table_csv(const Table& table);
+
+// What a terminal shows: tables and spans of time as plain text.
+
+/// Characters shown, for UTF-8 text without combining marks.
+std::size_t shown_width(const std::string& text);
+
+/// Plain text in aligned columns; the last column is not padded, and empty columns are left out.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> header) : rows_{std::move(header)} {}
+  /// One cell per column of the header.
+  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// Each line starts with `indent` blanks.
+  std::string text(std::size_t indent = 0) const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// A span of time in two digits or in whole seconds, never in scientific notation: "2.4 ms", "8.4 s", "42 s", "3 min 05
+/// s", "2 h 10 min".
+std::string duration_text(double seconds);
+
+/// A number of bytes in two digits: "950 B", "25 kB", "1.2 GB".
+std::string size_text(double bytes);
+
+}  // namespace ricochet
