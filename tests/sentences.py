@@ -16,7 +16,7 @@ import sys
 limits = {"core/README.md": (120, 18), "core/glossary.md": (80, 18), "runners/README.md": (240, 18),
           "runners/operations.md": (120, 18), ".github/CONTRIBUTING.md": (60, 18)}
 limit_of_numerics = (80, 18)
-avoided = re.compile(r"\b(seats?|crews?|pioneers?|rooms?|houses?|guests?|strangers?|packets?|company|a march|marches)\b", re.I)
+avoided = re.compile(r"\b(seats?|crews?|pioneers?|rooms?|houses?|guests?|strangers?|parcels?|company|a march|marches)\b", re.I)
 starts_item = re.compile(r"\s*([*-]|\d+\.) ")
 ends = re.compile(r"(?<=[.!?])[*)”\"]*\s+(?=[^a-z]|[a-z]\b)")
 

@@ -17,11 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The study of a trajectory as the command reports it when something is different in it.
-Page reported(const std::string& name, const Json& change) {
+Page reported(const std::string& name, const browser::Json& change) {
   const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "doors" / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
-  Json study = Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
+  browser::Json study = browser::Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
   study.merge_patch(change);
   write_text(folder / "study.json", study.dump(1));
   const std::string command = RICOCHET_COMMAND " run '" + (folder / "study.json").string() + "' --out '" +
@@ -32,10 +32,10 @@ Page reported(const std::string& name, const Json& change) {
   return {name, read_text(folder / "there" / "report.html")};
 }
 
-void check_film(const Json& page) {
-  const Json& film = page.at("film");
+void check_film(const browser::Json& page) {
+  const browser::Json& film = page.at("film");
   INFO(film);
-  for (const Json& state : film.at("states")) {
+  for (const browser::Json& state : film.at("states")) {
     // Half a count of the snapshot, and that the page's times and numbers are single ones.
     if (!state.at("curve").is_null())
       CHECK(state.at("tip").get<double>() ==
@@ -49,7 +49,7 @@ void check_film(const Json& page) {
   CHECK(film.at("moved") > 0);
   CHECK(film.at("stage") > 100);
   CHECK(film.at("maps").size() == 2);
-  for (const Json& map : film.at("maps")) {
+  for (const browser::Json& map : film.at("maps")) {
     CHECK(map.at("coloured") > 1000);
     CHECK((map.at("marks") > 0) == (map.at("impacts") > 0));
   }
@@ -59,14 +59,14 @@ void check_film(const Json& page) {
 
 namespace ricochet::browser {
 
-void require_doors(const Json& page, const std::string& kind) {
+void require_doors(const browser::Json& page, const std::string& kind) {
   INFO(kind);
   // A click on a diagram or on basins opens an orbit or a cell, which have tests of their own.
   const bool swept = kind == "bifurcation" || kind == "basins";
   size_t doors = 0;
-  for (const Json& one : page.at("figures")) {
+  for (const browser::Json& one : page.at("figures")) {
     if (swept || !one.contains("door") || one.at("door").is_null()) continue;
-    const Json& door = one.at("door");
+    const browser::Json& door = one.at("door");
     INFO(one.at("id") << ": " << door);
     ++doors;
     for (const char* what : {"opened", "one_of", "says_id"}) CHECK(door.at(what) == true);
@@ -85,7 +85,7 @@ void require_doors(const Json& page, const std::string& kind) {
 TEST_CASE("the film shows the state of the slider's instant, and its map where points are pushed",
           "[report][browser]") {
   if (left_out()) return;
-  const Json said = read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}),
+  const browser::Json said = read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}),
                                        {"beam", read_text(report_of("studies", "film"))}});
   check_film(said.at("mass"));
   check_film(said.at("beam"));
