@@ -17,63 +17,63 @@ using report::regime_groups;
 namespace {
 
 /// Sources of marks drawn by hand in a chart.
-std::vector<Json> sources(const Json& chart, const std::string& what) {
-  std::vector<Json> out;
-  for (const Json& source : chart.at("views").at(0).at("sources"))
+std::vector<browser::Json> sources(const browser::Json& chart, const std::string& what) {
+  std::vector<browser::Json> out;
+  for (const browser::Json& source : chart.at("views").at(0).at("sources"))
     if (source.at("what") == what && source.at("count") > 0) out.push_back(source);
   return out;
 }
-size_t count_of(const std::vector<Json>& list) {
+size_t count_of(const std::vector<browser::Json>& list) {
   size_t out = 0;
-  for (const Json& one : list) out += one.at("count").get<size_t>();
+  for (const browser::Json& one : list) out += one.at("count").get<size_t>();
   return out;
 }
 
 /// Located changes stand at their values of the parameter.
-void check_changes(const Table& table, const Json& series) {
+void check_changes(const Table& table, const browser::Json& series) {
   const auto value = find_column(table.columns, "value").value();
   std::multiset<double> drawn, stored;
-  for (const Json& item : series.at("data")) drawn.insert(item.at("value")[0].get<double>());
+  for (const browser::Json& item : series.at("data")) drawn.insert(item.at("value")[0].get<double>());
   for (const auto& row : table.rows) stored.insert(row[value].number().value());
   CHECK(drawn == stored);
 }
 
 /// The portrait of the chosen orbit, its motion in time, and the section point that was clicked.
-void check_orbit(const Json& panel) {
+void check_orbit(const browser::Json& panel) {
   REQUIRE(panel.at("charts").size() == 2);
-  const Json &portrait = panel["charts"][0], &in_time = panel["charts"][1];
+  const browser::Json &portrait = panel["charts"][0], &in_time = panel["charts"][1];
   REQUIRE(portrait.size() == 2);
   CHECK(portrait[0].at("type") == "line");
   CHECK(std::any_of(portrait[1].at("data").begin(), portrait[1].at("data").end(),
-                    [&](const Json& dot) { return dot.at("value")[0] == panel.at("point")[1]; }));
+                    [&](const browser::Json& dot) { return dot.at("value")[0] == panel.at("point")[1]; }));
   REQUIRE(in_time[0].at("count") == portrait[0].at("count"));
   for (size_t i = 0; i < portrait[0].at("data").size(); ++i)
     CHECK(in_time[0]["data"][i]["value"][1] == portrait[0]["data"][i]["value"][0]);
 }
 
 /// One horizontal axis for the diagram, its exponents, regimes and verdicts.
-void check_diagram(const StudyResults& results, const Json& page) {
-  const Json& diagram = figure(page, "diagram");
+void check_diagram(const StudyResults& results, const browser::Json& page) {
+  const browser::Json& diagram = figure(page, "diagram");
   CHECK(diagram.at("linked_along") == true);
-  CHECK(diagram.at("views") == Json({"side by side", "overlaid", "by start"}));
-  const Json& charts = diagram.at("charts");
+  CHECK(diagram.at("views") == browser::Json({"side by side", "overlaid", "by start"}));
+  const browser::Json& charts = diagram.at("charts");
   REQUIRE(charts.size() == 2 + 1 + 6);
-  for (const Json& chart : charts) {
+  for (const browser::Json& chart : charts) {
     REQUIRE(chart.at("views").size() == 1);
-    const Json& view = chart.at("views")[0];
+    const browser::Json& view = chart.at("views")[0];
     REQUIRE(view.at("xAxis").size() == 4);
-    for (const Json& axis : view["xAxis"]) {
+    for (const browser::Json& axis : view["xAxis"]) {
       CHECK(axis["min"] == view["xAxis"][0]["min"]);
       CHECK(axis["max"] == view["xAxis"][0]["max"]);
     }
-    CHECK(view["dataZoom"][0]["xAxisIndex"] == Json({0, 1, 2, 3}));
-    for (const Json& grid : view["grid"]) CHECK(grid["left"] == view["grid"][0]["left"]);
+    CHECK(view["dataZoom"][0]["xAxisIndex"] == browser::Json({0, 1, 2, 3}));
+    for (const browser::Json& grid : view["grid"]) CHECK(grid["left"] == view["grid"][0]["left"]);
   }
   // Side by side: colour is the regime; overlaid: the case.
-  for (const Json& source : sources(charts[0], "points"))
+  for (const browser::Json& source : sources(charts[0], "points"))
     CHECK(source["colour"] == regime_groups[source["group"].get<size_t>()].colour);
   std::set<std::string> colours;
-  for (const Json& source : sources(charts[2], "points")) colours.insert(source["colour"].get<std::string>());
+  for (const browser::Json& source : sources(charts[2], "points")) colours.insert(source["colour"].get<std::string>());
   CHECK(colours.size() == 2);
   // As many points overlaid, and by start, as side by side.
   const size_t points = count_of(sources(charts[0], "points")) + count_of(sources(charts[1], "points"));
@@ -84,12 +84,13 @@ void check_diagram(const StudyResults& results, const Json& page) {
   // An exponent and its interval per orbit that has one; a cell of the band per orbit.
   for (size_t c = 0; c < 2; ++c) {
     const auto orbits = orbits_of(results.cases[c]);
-    const auto with = std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return o.largest_exponent().has_value(); });
+    const auto with =
+        std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return o.largest_exponent().has_value(); });
     CHECK(count_of(sources(charts[c], "exponents")) == static_cast<size_t>(with));
     CHECK(count_of(sources(charts[c], "whiskers")) == static_cast<size_t>(with));
     CHECK(count_of(sources(charts[c], "twins")) == static_cast<size_t>(with));
     size_t cells = 0, failed = 0, changes = 0;
-    for (const Json& series : charts[c].at("views")[0].at("series")) {
+    for (const browser::Json& series : charts[c].at("views")[0].at("series")) {
       const std::string name = series.at("name");
       if (name.rfind("regime ", 0) == 0) cells += series.at("count").get<size_t>();
       if (name == "not finished") failed += series.at("count").get<size_t>();
@@ -101,21 +102,22 @@ void check_diagram(const StudyResults& results, const Json& page) {
           static_cast<size_t>(std::count_if(orbits.begin(), orbits.end(), [](const auto& o) { return !o.done(); })));
     CHECK(changes == results.cases[c].tables[1].rows.size());
   }
-  const Json& notes = charts[0].at("views")[0].at("notes");
+  const browser::Json& notes = charts[0].at("views")[0].at("notes");
   CHECK(says(notes, "refused"));
   CHECK(says(notes, "the support passes the <stop>"));
   CHECK_THAT(diagram.at("caption").get<std::string>(),
              Contains("by tangent+jump") && Contains("marginal root") && Contains("All are in points.csv"));
   // Every regime and start that is drawn can be found in the legend.
   std::set<std::string> legend;
-  for (const Json& name : diagram.at("legend")) legend.insert(name.get<std::string>());
-  for (const Json& chart : charts) {
-    for (const Json& series : chart.at("views")[0].at("series"))
-      for (const Json& tag : series.value("tags", Json::array())) CHECK(legend.count(tag.get<std::string>()) == 1);
-    for (const Json& source : chart.at("views")[0].at("sources"))
-      for (const Json& tag : source.at("tags")) CHECK(legend.count(tag.get<std::string>()) == 1);
+  for (const browser::Json& name : diagram.at("legend")) legend.insert(name.get<std::string>());
+  for (const browser::Json& chart : charts) {
+    for (const browser::Json& series : chart.at("views")[0].at("series"))
+      for (const browser::Json& tag : series.value("tags", browser::Json::array()))
+        CHECK(legend.count(tag.get<std::string>()) == 1);
+    for (const browser::Json& source : chart.at("views")[0].at("sources"))
+      for (const browser::Json& tag : source.at("tags")) CHECK(legend.count(tag.get<std::string>()) == 1);
   }
-  const Json& panel = diagram.at("panel");
+  const browser::Json& panel = diagram.at("panel");
   for (const char* what : {"opened", "orbit", "closed"}) CHECK(panel.at(what) == true);
   CHECK(panel.at("facts") > 8);
   CHECK(panel.at("canvases") > 0);
@@ -124,20 +126,21 @@ void check_diagram(const StudyResults& results, const Json& page) {
                                                          Contains(" thr50 --parameter 0.0") && Contains(" --start "));
 }
 
-std::vector<std::pair<std::string, std::string>> regimes_and_starts(const Json& page) {
+std::vector<std::pair<std::string, std::string>> regimes_and_starts(const browser::Json& page) {
   std::vector<std::pair<std::string, std::string>> out;
-  for (const Json& entry : figure(page, "diagram").at("entries"))
+  for (const browser::Json& entry : figure(page, "diagram").at("entries"))
     if (entry.value("heading", "") == "Regime" || entry.value("heading", "") == "Start")
       out.emplace_back(entry.at("name"), entry.at("colour"));
   return out;
 }
 
 /// Medians of the table, with the null level behind them.
-void check_distances(const Json& page) {
-  const Json& against = figure(page, "distance-time-beta");
+void check_distances(const browser::Json& page) {
+  const browser::Json& against = figure(page, "distance-time-beta");
   REQUIRE(against.at("charts").size() == 1);
   std::vector<double> medians;
-  for (const Json& item : items_of(against, 0, [](const Json& s) { return s.value("symbolSize", Json()) == 7; }))
+  for (const browser::Json& item :
+       items_of(against, 0, [](const browser::Json& s) { return s.value("symbolSize", browser::Json()) == 7; }))
     medians.push_back(item.at("value")[1]);
   // The cases' distances are as 1 : 2 : 3, in the order 0.25, 0.3, 0.4; so are their medians.
   REQUIRE(medians.size() == 3);
@@ -145,12 +148,13 @@ void check_distances(const Json& page) {
   CHECK(medians[2] == Approx(3 * medians[0]));
   CHECK(says(against.at("charts")[0].at("views")[0].at("notes"), "Null level: median 0.01"));
   CHECK(figure(page, "distance").at("linked_along") == true);
-  for (const Json& series :
-       series_of(figure(page, "distance"), 0, [](const Json& s) { return s.value("symbolSize", Json()) == 4; }))
+  for (const browser::Json& series : series_of(figure(page, "distance"), 0, [](const browser::Json& s) {
+         return s.value("symbolSize", browser::Json()) == 4;
+       }))
     CHECK(series.at("count") > 50);
   const auto level = series_of(figure(page, "distance"), 0, named("null level"));
   REQUIRE(level.size() == 1);
-  for (const Json& item : level[0].at("data")) CHECK(item.at("value")[1] == 0.01);
+  for (const browser::Json& item : level[0].at("data")) CHECK(item.at("value")[1] == 0.01);
 }
 
 }  // namespace
@@ -184,7 +188,7 @@ TEST_CASE("a diagram draws every orbit, and a click on a point opens its own", "
                              page_of("pointless", pointless),
                              page_of("partial", partial)};
   for (size_t k = 2; k < pages.size(); ++k) pages[k].controls = false;
-  const Json said = read_back("dynamics", pages);
+  const browser::Json said = read_back("dynamics", pages);
 
   require_works(said.at("diagram"), results.cases.size());
   check_diagram(results, said.at("diagram"));
@@ -195,8 +199,8 @@ TEST_CASE("a diagram draws every orbit, and a click on a point opens its own", "
         regimes_and_starts(said.at("diagram")));  // whatever the order of values or cases
 
   // Without exponents, verdicts or a second case their panels and views are absent.
-  const Json& alone = figure(said.at("bare"), "diagram");
-  CHECK(alone.at("views") == Json({"diagram"}));
+  const browser::Json& alone = figure(said.at("bare"), "diagram");
+  CHECK(alone.at("views") == browser::Json({"diagram"}));
   REQUIRE(alone.at("charts").size() == 1);
   CHECK(alone.at("charts")[0].at("views")[0].at("xAxis").size() == 2);
   CHECK(alone.at("charts")[0].at("views")[0].at("notes").empty());
@@ -216,16 +220,16 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
   for (size_t row = 0; row < filled.derived[0].rows.size(); ++row) filled.derived[0].rows[row].push_back(row % 4 == 0);
   std::vector<Page> pages = {page_of("basins", results), page_of("filled", filled)};
   pages[1].controls = false;
-  const Json said = read_back("basins", pages);
+  const browser::Json said = read_back("basins", pages);
 
   require_works(said.at("basins"), results.cases.size());
-  const Json& basins = figure(said.at("basins"), "basins");
+  const browser::Json& basins = figure(said.at("basins"), "basins");
   REQUIRE(basins.at("charts").size() == 2);
-  CHECK(basins.at("views") == Json({"basins", "difference"}));
+  CHECK(basins.at("views") == browser::Json({"basins", "difference"}));
   // One series per end that a case has, in the colour of the legend.
   const report::Basins grids = report::basins_of(results);
   for (size_t c = 0; c < 2; ++c) {
-    const Json& series = basins.at("charts")[c].at("views")[0].at("series");
+    const browser::Json& series = basins.at("charts")[c].at("views")[0].at("series");
     size_t drawn = 0;
     for (size_t k = 0; k < grids.labels.size(); ++k) {
       if (std::find(grids.grids[c].cells.begin(), grids.grids[c].cells.end(), k) == grids.grids[c].cells.end())
@@ -241,7 +245,7 @@ TEST_CASE("images of basins draw every cell and their differences, and a click o
              counts[4].text() + " of " + counts[7].text() + " cells that both decide differ"));
   CHECK(says(basins.at("charts")[0].at("views")[0].at("notes"), "the support passes the <stop>"));
   CHECK(basins.at("charts")[0].at("views")[0].at("xAxis")[0].at("name") == "factor of initial.displacement");
-  const Json& cell = basins.at("cell");
+  const browser::Json& cell = basins.at("cell");
   CHECK(cell.at("opened") == true);
   CHECK(cell.at("cell") == true);
   CHECK(cell.at("lines") == 2);  // one per case

@@ -18,14 +18,14 @@ namespace {
 const Table& derived_table(const StudyResults& results, const std::string& name) {
   return *std::find_if(results.derived.begin(), results.derived.end(), [&](const auto& t) { return t.name == name; });
 }
-bool text_contains(const Json& text, const std::string& part) {
+bool text_contains(const browser::Json& text, const std::string& part) {
   return text.get<std::string>().find(part) != std::string::npos;
 }
 
 /// Every error is a point, every case without one a mark.
-void check_errors(const StudyResults& results, const Json& page) {
-  const Json& steps = figure(page, "error-step");
-  REQUIRE(steps.at("views") == Json({"tip-linf", "energy", "impact-times"}));
+void check_errors(const StudyResults& results, const browser::Json& page) {
+  const browser::Json& steps = figure(page, "error-step");
+  REQUIRE(steps.at("views") == browser::Json({"tip-linf", "energy", "impact-times"}));
   CHECK_FALSE(has_figure(page, "error-elements"));  // one mesh: nothing to draw against elements
   const auto unfinished =
       std::count_if(results.cases.begin(), results.cases.end(), [](const auto& r) { return r.status != "done"; });
@@ -35,7 +35,7 @@ void check_errors(const StudyResults& results, const Json& page) {
     CHECK(items_of(steps, v, is_mark).size() == static_cast<size_t>(unfinished));
   }
   CHECK(drawn == derived_table(results, "errors").rows.size());
-  for (const Json& item : items_of(steps, 0, is_curve)) {
+  for (const browser::Json& item : items_of(steps, 0, is_curve)) {
     // Grey exactly where the error is at or below its floor, and the tooltip says so.
     const bool below = item.at("value")[1].get<double>() <= 3e-5;
     CHECK(item.contains("itemStyle") == below);
@@ -49,19 +49,19 @@ void check_errors(const StudyResults& results, const Json& page) {
 }
 
 /// Slope lines have the fitted order and end on points.
-void check_slopes(const Json& page) {
+void check_slopes(const browser::Json& page) {
   size_t lines = 0;
-  for (const Json& one : page.at("figures"))
-    for (const Json& chart : one.at("charts"))
-      for (const Json& view : chart.at("views")) {
+  for (const browser::Json& one : page.at("figures"))
+    for (const browser::Json& chart : one.at("charts"))
+      for (const browser::Json& view : chart.at("views")) {
         std::set<double> sizes;
-        for (const Json& series : view.at("series"))
+        for (const browser::Json& series : view.at("series"))
           if (is_curve(series))
-            for (const Json& item : series.at("data")) sizes.insert(item.at("value")[0].get<double>());
-        for (const Json& series : view.at("series")) {
+            for (const browser::Json& item : series.at("data")) sizes.insert(item.at("value")[0].get<double>());
+        for (const browser::Json& series : view.at("series")) {
           if (!series.contains("lineStyle") || series.at("lineStyle").value("width", 0) != 7) continue;
           ++lines;
-          const Json &from = series.at("data")[0].at("value"), &to = series.at("data")[1].at("value");
+          const browser::Json &from = series.at("data")[0].at("value"), &to = series.at("data")[1].at("value");
           const double slope = std::log(to[1].get<double>() / from[1].get<double>()) /
                                std::log(to[0].get<double>() / from[0].get<double>());
           // The label has three digits; lines that end together share one.
@@ -78,9 +78,9 @@ void check_slopes(const Json& page) {
 }
 
 /// Points, spreads, gutter, fronts.
-void check_work(const StudyResults& results, const Json& page) {
+void check_work(const StudyResults& results, const browser::Json& page) {
   for (const char* id : {"work-precision", "steps-precision", "step-cost"}) CHECK(has_figure(page, id));
-  const Json& work = figure(page, "work-precision");
+  const browser::Json& work = figure(page, "work-precision");
   size_t rows = 0, drawn = 0, marks = 0;
   for (const auto& row : derived_table(results, "work_precision").rows) rows += !row[8].is_nothing();
   for (size_t v = 0; v < work.at("views").size(); ++v) {
@@ -89,29 +89,30 @@ void check_work(const StudyResults& results, const Json& page) {
   }
   CHECK(drawn == rows);
   CHECK(drawn + marks == derived_table(results, "work_precision").rows.size());  // nothing vanishes
-  for (const Json& item : items_of(work, 0, is_mark)) {
+  for (const browser::Json& item : items_of(work, 0, is_mark)) {
     CHECK(item.at("value")[0].is_string());  // a slot of the gutter, no error that could be read off
     CHECK(text_contains(item.at("text"), ": "));
   }
   // Finished, but without this error: said in the gutter and below.
   size_t no_such = 0;
-  for (const Json& item : items_of(work, 2, is_mark)) no_such += text_contains(item.at("text"), "no such error");
+  for (const browser::Json& item : items_of(work, 2, is_mark))
+    no_such += text_contains(item.at("text"), "no such error");
   CHECK(no_such == 4);
-  for (const Json& chart : work.at("charts")) {
-    const Json& notes = chart.at("views")[2].at("notes");
+  for (const browser::Json& chart : work.at("charts")) {
+    const browser::Json& notes = chart.at("views")[2].at("notes");
     CHECK(says(notes, "4 finished cases: no such"));
     CHECK(says(notes, "⊘ refused"));
     CHECK(says(notes, "✕ diverged"));
   }
   // Bars from the fastest to the slowest repeat: two ends and a gap per point.
-  const auto bars = items_of(work, 0, [](const Json& s) {
+  const auto bars = items_of(work, 0, [](const browser::Json& s) {
     return s.at("type") == "line" && s.at("symbol") == "rect" && s.at("symbolSize").is_array();
   });
   CHECK(bars.size() == 3 * items_of(work, 0, is_curve).size());
   // The front is what no other point beats, and its points are the larger ones.
   std::vector<std::pair<double, double>> all;
   std::set<std::pair<double, double>> front, large;
-  for (const Json& item : items_of(work, 0, is_curve)) {
+  for (const browser::Json& item : items_of(work, 0, is_curve)) {
     // The floor of this error is 3e-5: below it errors are not told apart.
     all.emplace_back(std::max(item.at("value")[0].get<double>(), 3e-5), item.at("value")[1].get<double>());
     if (item.contains("symbolSize")) large.insert(all.back());
@@ -123,25 +124,25 @@ void check_work(const StudyResults& results, const Json& page) {
       front.insert(p);
   CHECK(large == front);
   std::set<std::pair<double, double>> line;
-  for (const Json& item : items_of(work, 0, named("Pareto front")))
+  for (const browser::Json& item : items_of(work, 0, named("Pareto front")))
     line.emplace(item.at("value")[0], item.at("value")[1]);
   CHECK(line == front);
-  for (const Json& one : page.at("figures"))
-    for (const Json& chart : one.at("charts")) CHECK(chart.at("views").size() == one.at("views").size());
-  for (const Json& series : series_of(work, 0, [](const Json& s) { return s.contains("markArea"); }))
+  for (const browser::Json& one : page.at("figures"))
+    for (const browser::Json& chart : one.at("charts")) CHECK(chart.at("views").size() == one.at("views").size());
+  for (const browser::Json& series : series_of(work, 0, [](const browser::Json& s) { return s.contains("markArea"); }))
     CHECK(series.at("markArea")[0][0].at("name") == "no error");
 }
 
 /// Shares are bars that add up, with the table's sentence below.
-void check_effects(const StudyResults& results, const Json& page) {
-  const Json& effects = figure(page, "effects");
+void check_effects(const StudyResults& results, const browser::Json& page) {
+  const browser::Json& effects = figure(page, "effects");
   REQUIRE(effects.at("charts").size() == 2);
-  for (const Json& chart : effects.at("charts")) {
+  for (const browser::Json& chart : effects.at("charts")) {
     double sum = 0;
     size_t bars = 0;
-    for (const Json& series : chart.at("views")[0].at("series"))
+    for (const browser::Json& series : chart.at("views")[0].at("series"))
       if (series.at("type") == "bar")
-        for (const Json& item : series.at("data")) {
+        for (const browser::Json& item : series.at("data")) {
           sum += item.at("value")[0].get<double>();
           CHECK(says(chart.at("views")[0].at("yAxis")[0].at("data"), item.at("value")[1]));
           ++bars;
@@ -169,7 +170,7 @@ TEST_CASE("figures of evidence draw the derived tables", "[report][browser]") {
   std::vector<Page> pages = {page_of("one", one), page_of("fine", fine), page_of("coarse", coarse),
                              page_of("many", many), page_of("silent", silent)};
   for (size_t k = 1; k < pages.size(); ++k) pages[k].controls = false;
-  const Json said = read_back("evidence", pages);
+  const browser::Json said = read_back("evidence", pages);
 
   require_works(said.at("one"), one.cases.size());
   check_errors(one, said.at("one"));
@@ -180,7 +181,7 @@ TEST_CASE("figures of evidence draw the derived tables", "[report][browser]") {
 
   // Errors against elements are those of the smallest step.
   std::multiset<double> drawn, expected;
-  for (const Json& item : items_of(figure(said.at("coarse"), "error-elements"), 0, is_curve))
+  for (const browser::Json& item : items_of(figure(said.at("coarse"), "error-elements"), 0, is_curve))
     drawn.insert(item.at("value")[1].get<double>());
   for (const CaseRecord& record : coarse.cases)
     if (CaseView::number(record, "step") == 1e-4)
@@ -189,9 +190,9 @@ TEST_CASE("figures of evidence draw the derived tables", "[report][browser]") {
 
   // Charts hold at most eight methods.
   for (const char* id : {"error-step", "work-precision"})
-    for (const Json& chart : figure(said.at("many"), id).at("charts")) {
+    for (const browser::Json& chart : figure(said.at("many"), id).at("charts")) {
       std::set<std::string> names;
-      for (const Json& series : chart.at("views")[0].at("series")) names.insert(series.at("name"));
+      for (const browser::Json& series : chart.at("views")[0].at("series")) names.insert(series.at("name"));
       names.erase("error floor");
       names.erase("Pareto front");
       CHECK(names.size() <= 8);

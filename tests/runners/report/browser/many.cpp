@@ -27,14 +27,14 @@ TEST_CASE("a study of a thousand cases has a page of a few screens", "[report][b
   REQUIRE(results.cases.size() == 972);
   const Page page = page_of("many", results);
   CHECK(page.html.size() < 3'000'000);  // of which the chart library is 1.1 MB
-  const Json said = read_back("many", {page}).at("many");
+  const browser::Json said = read_back("many", {page}).at("many");
   CHECK(said.at("height") < 12 * 900);
   // Nearly all of it is laid out when it is come near, and takes the room that it was given.
   CHECK(said.at("opened").at("nodes") < 4'000);
   CHECK(said.at("opened").at("height").get<double>() == Approx(said.at("height").get<double>()).epsilon(0.1));
   CHECK(said.at("nodes") < 45'000);  // 972 rows of the table of cases, and a cell of each map for each
   std::size_t maps = 0;
-  for (const Json& one : said.at("figures")) {
+  for (const browser::Json& one : said.at("figures")) {
     INFO(one.at("id"));
     CHECK(one.at("charts").size() <= 24);
     if (!one.contains("map")) continue;
@@ -42,7 +42,7 @@ TEST_CASE("a study of a thousand cases has a page of a few screens", "[report][b
     CHECK(one.at("map").at("cells") == results.cases.size());
     CHECK(one.at("map").at("rows") <= 60);
     CHECK(one.at("map").at("marks") > 0);  // what has no result says so without colour
-    for (const Json& charts : one.at("map").at("charts")) CHECK((charts > 0 && charts <= 24));
+    for (const browser::Json& charts : one.at("map").at("charts")) CHECK((charts > 0 && charts <= 24));
   }
   // The energy at the end and over time share a map; tip, force, penetration and impacts have their own.
   CHECK(maps == 5);
@@ -70,7 +70,7 @@ TEST_CASE(
   const std::string to_table = come_near("#all-cases", "document.getElementById('cases')");
   const std::string to_map = come_near("#figure-tip", "document.querySelector('#figure-tip .map')");
   const std::string pdf = (folder / "many.pdf").string();
-  const auto step = [&](const std::string& name, Json more) {
+  const auto step = [&](const std::string& name, browser::Json more) {
     more.update({{"name", name}, {"page", page.string()}});
     return more;
   };
@@ -78,7 +78,7 @@ TEST_CASE(
       "(() => { const box = document.getElementById('filter'); box.value = 'status = refused'; box.dispatchEvent(new "
       "Event('input')); const shown = Array.from(document.querySelectorAll('#cases tbody tr')).filter((row) => "
       "!row.hidden).length; box.value = ''; box.dispatchEvent(new Event('input')); return shown; })()";
-  const Json said =
+  const browser::Json said =
       driven("many-read",
              {step("read",
                    {{"before",
@@ -98,8 +98,8 @@ TEST_CASE(
                                "requestAnimationFrame(look); })(); })"}}}),
               step("bare", {{"bare", true}, {"evaluate", {"document.querySelectorAll('#cases tbody tr').length"}}}),
               step("printed", {{"evaluate", {here}}, {"pdf", pdf}})});
-  const Json& read = said.at("read").at("before");
-  const Json &opened = read.at(0), &by_map = read.at(2);
+  const browser::Json& read = said.at("read").at("before");
+  const browser::Json &opened = read.at(0), &by_map = read.at(2);
   CHECK(opened.at(0).get<int>() >= 5);  // four maps and the table: what stands beside the answer is in sight
   CHECK(opened.at(2) == 0);
   CHECK(by_map.at(1) > opened.at(1));
@@ -109,8 +109,8 @@ TEST_CASE(
                                      [](const CaseRecord& record) { return record.status == "refused"; });
   CHECK(read.at(5) == refused);
   CHECK(said.at("read").at("values").at(0) == results.cases.front().id);
-  CHECK(said.at("looked for").at("values").at(0) == Json({0, 5, results.cases.size()}));
-  const Json phone = said.at("phone").at("values").at(0);
+  CHECK(said.at("looked for").at("values").at(0) == browser::Json({0, 5, results.cases.size()}));
+  const browser::Json phone = said.at("phone").at("values").at(0);
   CHECK(phone.at(0) == "more");
   CHECK(phone.at(1) < 60);  // words of a header are not broken letter by letter
   CHECK(phone.at(2) == true);

@@ -40,7 +40,7 @@ std::string file_of(const std::string& name) {
 TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart scrolls the page",
           "[report][browser]") {
   if (left_out()) return;
-  Json steps = Json::array();
+  browser::Json steps = browser::Json::array();
   for (const std::string kind : kinds) {
     steps.push_back({{"name", kind},
                      {"page", report_of("studies", kind)},
@@ -51,14 +51,14 @@ TEST_CASE("on a phone nothing is wider than the screen, and a swipe over a chart
                      {"swipe", {{"x", 210}, {"from", 520}, {"to", 380}}},
                      {"evaluate", {page_width, "scrollY", beyond_edge}}});
   }
-  const Json said = driven("reading-phone", steps);
+  const browser::Json said = driven("reading-phone", steps);
   for (const std::string kind : kinds) {
     INFO(kind);
-    const Json& values = said.at(kind).at("values");
+    const browser::Json& values = said.at(kind).at("values");
     CHECK(values.at(0) == 420);
     const double before = said.at(kind).at("before").at(0), after = values.at(1);
     CHECK(after > before + 60);  // a swipe of 140 pixels, less what a browser takes to see that it is one
-    CHECK(values.at(2) == Json::array());
+    CHECK(values.at(2) == browser::Json::array());
   }
 }
 
@@ -71,14 +71,14 @@ TEST_CASE("a wide table keeps its first column and says that it goes on", "[repo
       "getComputedStyle(box, '::before').content; box.scrollLeft = 300; return [wide, hint, first, at(), "
       "box.tabIndex]; "
       "})()";
-  const Json values = driven("reading-table", {{{"name", "table"},
-                                                {"page", report_of("studies", "trajectory")},
-                                                {"width", 420},
-                                                {"height", 900},
-                                                {"evaluate", {scrolled}}}})
-                          .at("table")
-                          .at("values")
-                          .at(0);
+  const browser::Json values = driven("reading-table", {{{"name", "table"},
+                                                         {"page", report_of("studies", "trajectory")},
+                                                         {"width", 420},
+                                                         {"height", 900},
+                                                         {"evaluate", {scrolled}}}})
+                                   .at("table")
+                                   .at("values")
+                                   .at(0);
   CHECK(values.at(0) == "more");
   CHECK_THAT(values.at(1).get<std::string>(), Contains("columns go on"));
   CHECK(values.at(2) == values.at(3));
@@ -94,7 +94,7 @@ TEST_CASE("the table of cases takes words and conditions, and gives what it show
   };
   const std::string heads =
       "Array.from(document.querySelectorAll('#cases thead th')).slice(0, 3).map((head) => head.dataset.column)";
-  const Json values =
+  const browser::Json values =
       driven("reading-cases",
              {{{"name", "cases"},
                {"page", report_of("studies", "trajectory")},
@@ -105,7 +105,7 @@ TEST_CASE("the table of cases takes words and conditions, and gives what it show
                  filtered("energy left <= 0")}}}})
           .at("cases")
           .at("values");
-  CHECK(values.at(0) == Json({"case", "status", "contact"}));
+  CHECK(values.at(0) == browser::Json({"case", "status", "contact"}));
   const int all = values.at(1).at(0);
   CHECK(all > 2);
   const int done = values.at(2).at(0), others = values.at(3).at(0);
@@ -148,7 +148,7 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
     const option = first.chart.getOption(), { contrast, channels } = ricochet.theme, ground = channels(option.backgroundColor), colours = option.series.map((s) => s.color).filter((c) => typeof c === "string" && channels(c));
     return [ground, contrast(channels(option.xAxis[0].axisLabel.color), ground), Math.min(99, ...colours.map((c) => contrast(channels(c), ground)))];
   })())js";
-  Json steps = Json::array();
+  browser::Json steps = browser::Json::array();
   // The screen turns light while the page is read, which carries what is drawn along.
   for (const std::string kind : kinds)
     steps.push_back({{"name", kind},
@@ -156,10 +156,10 @@ TEST_CASE("a dark screen is dark, and its words and charts stand out", "[report]
                      {"dark", true},
                      {"evaluate", {least_contrast, paper, chart}},
                      {"turn", {least_contrast, paper, chart}}});
-  const Json said = driven("reading-dark", steps);
+  const browser::Json said = driven("reading-dark", steps);
   for (const std::string kind : kinds)
     for (const bool dark : {true, false}) {
-      const Json& values = said.at(kind).at(dark ? "values" : "turned");
+      const browser::Json& values = said.at(kind).at(dark ? "values" : "turned");
       INFO(kind << " " << dark << " " << values);
       CHECK(values.at(0).at(0) >= 4.5);
       CHECK((values.at(1).at(0) < 60) == dark);
@@ -182,16 +182,17 @@ TEST_CASE("a film and the patches of legends stand out on a dark screen, and hav
   })())js";
   const std::string printed = "(() => { dispatchEvent(new Event('beforeprint')); const out = " + seen +
                               "; dispatchEvent(new Event('afterprint')); return out; })()";
-  const Json said = driven("reading-film", {{{"name", "film"},
-                                             {"page", report_of("studies", "film")},
-                                             {"dark", true},
-                                             {"evaluate", {seen, printed, seen}},
-                                             {"turn", {seen}}}})
-                        .at("film");
-  const Json &dark = said.at("values").at(0), &paper = said.at("values").at(1), &light = said.at("turned").at(0);
+  const browser::Json said = driven("reading-film", {{{"name", "film"},
+                                                      {"page", report_of("studies", "film")},
+                                                      {"dark", true},
+                                                      {"evaluate", {seen, printed, seen}},
+                                                      {"turn", {seen}}}})
+                                 .at("film");
+  const browser::Json &dark = said.at("values").at(0), &paper = said.at("values").at(1),
+                      &light = said.at("turned").at(0);
   CHECK(dark.at(0) >= 4.5);
   CHECK(light.at(0) >= 3.8);  // Okabe and Ito's orange on white
-  CHECK(paper.at(1) == Json({"#0072B2", "#D55E00"}));
+  CHECK(paper.at(1) == browser::Json({"#0072B2", "#D55E00"}));
   CHECK(paper.at(1) == light.at(1));
   CHECK(paper.at(2) == "#222222");
   CHECK(paper.at(3) == light.at(3));
@@ -211,13 +212,13 @@ TEST_CASE("a list of studies is read on a phone, one after the other", "[report]
       "[...document.querySelectorAll('.studies tbody :is(th, td)')].map((cell) => "
       "cell.getBoundingClientRect()).map((box) "
       "=> box.width > 200 && box.right <= innerWidth)";
-  const Json said =
+  const browser::Json said =
       driven("reading-index",
              {{{"name", "index"}, {"page", file}, {"width", 420}, {"height", 900}, {"evaluate", {page_width, cells}}}})
           .at("index")
           .at("values");
   CHECK(said.at(0) == 420);
-  CHECK(said.at(1) == Json(std::vector<bool>(10, true)));
+  CHECK(said.at(1) == browser::Json(std::vector<bool>(10, true)));
 }
 
 TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
@@ -229,7 +230,7 @@ TEST_CASE("paper stays white, whatever the screen", "[report][browser]") {
     ricochet.paper.finish();
     return [ground, width, document.querySelectorAll(".on-paper").length];
   })())js";
-  const Json values =
+  const browser::Json values =
       driven("reading-paper",
              {{{"name", "paper"}, {"page", report_of("studies", "trajectory")}, {"dark", true}, {"evaluate", {drawn}}}})
           .at("paper")
@@ -248,20 +249,20 @@ TEST_CASE("a summary that is asked for stands alone, with its figure", "[report]
   const std::string follow =
       "new Promise((done) => { addEventListener('hashchange', () => done(0), {once: true}); "
       "document.querySelector('a[href=\"#summary\"]').click(); })";
-  const Json said = driven("reading-summary", {{{"name", "summary"},
-                                                {"page", report_of("studies", "trajectory")},
-                                                {"before", {seen}},
-                                                {"evaluate", {follow, seen}}}})
-                        .at("summary");
-  CHECK(said.at("before").at(0) == Json({true, true, true, false, false}));
-  CHECK(said.at("values").at(1) == Json({false, false, false, true, true}));
+  const browser::Json said = driven("reading-summary", {{{"name", "summary"},
+                                                         {"page", report_of("studies", "trajectory")},
+                                                         {"before", {seen}},
+                                                         {"evaluate", {follow, seen}}}})
+                                 .at("summary");
+  CHECK(said.at("before").at(0) == browser::Json({true, true, true, false, false}));
+  CHECK(said.at("values").at(1) == browser::Json({false, false, false, true, true}));
 }
 
 TEST_CASE("a printed report has a summary on its first page, numbered pages, and nothing beyond the sheet",
           "[report][browser]") {
   if (left_out()) return;
   std::filesystem::create_directories(file_of(""));
-  Json steps = Json::array();
+  browser::Json steps = browser::Json::array();
   for (const std::string kind : kinds)
     steps.push_back({{"name", kind},
                      {"page", report_of("studies", kind)},
@@ -272,11 +273,11 @@ TEST_CASE("a printed report has a summary on its first page, numbered pages, and
                        "/^[0-9a-f]{16} /.test(text)).slice(0, 16)",
                        "document.querySelectorAll('.figure .chart').length"}},
                      {"pdf", file_of(kind + ".pdf")}});
-  const Json answers = driven("reading-print", steps);
+  const browser::Json answers = driven("reading-print", steps);
   const auto flat = [](std::string text) { return std::regex_replace(text, std::regex("[\\s-]+"), ""); };
   for (const std::string kind : kinds) {
     INFO(kind);
-    const Json& values = answers.at(kind).at("values");
+    const browser::Json& values = answers.at(kind).at("values");
     const std::string pdf = "'" + file_of(kind + ".pdf") + "'";
     const std::string info = words_of("pdfinfo " + pdf), first = flat(words_of("pdftotext -l 1 " + pdf + " -"));
     std::smatch pages;
@@ -310,38 +311,39 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
       "document.querySelectorAll('main').length, document.querySelectorAll('nav[aria-label]').length, "
       "document.documentElement.lang, Array.from(document.querySelectorAll('button, input')).filter((one) => "
       "!(one.textContent.trim() || one.getAttribute('aria-label') || one.closest('label') || one.title)).length]; })()";
-  Json steps = {{{"name", "skip"},
-                 {"page", report_of("studies", "trajectory")},
-                 {"keys", {"Tab"}},
-                 {"evaluate", {focused, outline}}},
-                {{"name", "skipped"},
-                 {"page", report_of("studies", "trajectory")},
-                 {"keys", {"Tab", "Enter"}},
-                 {"evaluate", {"location.hash"}}},
-                {{"name", "data"},
-                 {"page", report_of("studies", "trajectory")},
-                 {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
-                 {"keys", {"Enter"}},
-                 {"evaluate",
-                  {"document.querySelectorAll('.chart-data tbody tr').length",
-                   "document.querySelector('.chart-data thead').textContent",
-                   "document.querySelector('#figure-final-energy-step [data-points]').getAttribute('aria-expanded')",
-                   "document.querySelector('#figure-final-energy-step .chart').getAttribute('aria-label')",
-                   "ricochet.figures.find((one) => one.description.id === "
-                   "'final-energy-step').slots[0].chart.getModel().getSeries().reduce((sum, one) => sum + "
-                   "one.getRawData().count(), 0)"}}},
-                {{"name", "again"},
-                 {"page", report_of("studies", "trajectory")},
-                 {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
-                 {"keys", {"Enter", "Enter"}},
-                 {"evaluate", {"document.querySelectorAll('.chart-data').length"}}}};
+  browser::Json steps = {
+      {{"name", "skip"},
+       {"page", report_of("studies", "trajectory")},
+       {"keys", {"Tab"}},
+       {"evaluate", {focused, outline}}},
+      {{"name", "skipped"},
+       {"page", report_of("studies", "trajectory")},
+       {"keys", {"Tab", "Enter"}},
+       {"evaluate", {"location.hash"}}},
+      {{"name", "data"},
+       {"page", report_of("studies", "trajectory")},
+       {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
+       {"keys", {"Enter"}},
+       {"evaluate",
+        {"document.querySelectorAll('.chart-data tbody tr').length",
+         "document.querySelector('.chart-data thead').textContent",
+         "document.querySelector('#figure-final-energy-step [data-points]').getAttribute('aria-expanded')",
+         "document.querySelector('#figure-final-energy-step .chart').getAttribute('aria-label')",
+         "ricochet.figures.find((one) => one.description.id === "
+         "'final-energy-step').slots[0].chart.getModel().getSeries().reduce((sum, one) => sum + "
+         "one.getRawData().count(), 0)"}}},
+      {{"name", "again"},
+       {"page", report_of("studies", "trajectory")},
+       {"before", {"document.querySelector('#figure-final-energy-step .chart').focus()", show_chart}},
+       {"keys", {"Enter", "Enter"}},
+       {"evaluate", {"document.querySelectorAll('.chart-data').length"}}}};
   for (const std::string kind : kinds)
     steps.push_back({{"name", kind}, {"page", report_of("studies", kind)}, {"evaluate", {until_chart}}});
-  const Json said = driven("reading-keys", steps);
+  const browser::Json said = driven("reading-keys", steps);
   CHECK_THAT(said.at("skip").at("values").at(0).get<std::string>(), Contains("Skip to the answer"));
   CHECK(said.at("skip").at("values").at(1) == "solid");
   CHECK(said.at("skipped").at("values").at(0) == "#answer");
-  const Json& data = said.at("data").at("values");
+  const browser::Json& data = said.at("data").at("values");
   CHECK(data.at(0).get<int>() > 0);
   CHECK((data.at(0) == data.at(4) || data.at(0) == 200));
   CHECK_THAT(data.at(1).get<std::string>(), Contains("step h (s)"));
@@ -354,7 +356,7 @@ TEST_CASE("a report is worked by keys, and says in words what its charts show", 
   CHECK(said.at("again").at("values").at(0) == 0);
   for (const std::string kind : kinds) {
     INFO(kind);
-    const Json& page = said.at(kind).at("values").at(0);
+    const browser::Json& page = said.at(kind).at("values").at(0);
     CHECK(page.at(0).get<int>() > 0);
     CHECK(page.at(0) == page.at(1));
     CHECK(page.at(2) == 1);

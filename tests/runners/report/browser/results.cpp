@@ -48,14 +48,14 @@ std::multiset<double> numbers_in(const Table& from, const std::string& name,
     if (accept(row) && row[*place].number()) out.insert(*row[*place].number());
   return out;
 }
-std::multiset<double> heights(const std::vector<Json>& items) {
+std::multiset<double> heights(const std::vector<browser::Json>& items) {
   std::multiset<double> out;
-  for (const Json& item : items)
+  for (const browser::Json& item : items)
     if (item.at("value")[1].is_number()) out.insert(item.at("value")[1].get<double>());
   return out;
 }
 
-void check_trajectory(const Ran& ran, const Json& page) {
+void check_trajectory(const Ran& ran, const browser::Json& page) {
   std::multiset<double> ratios, changes;
   size_t samples = 0, drawn = 0;
   for (const CaseRecord& record : ran.results.cases) {
@@ -66,20 +66,21 @@ void check_trajectory(const Ran& ran, const Json& page) {
       if (*ratio != 1) changes.insert(std::abs(*ratio - 1));
     }
   }
-  const Json& energy = figure(page, "final-energy-step");
+  const browser::Json& energy = figure(page, "final-energy-step");
   for (size_t v = 0; v < energy.at("views").size(); ++v) {
     if (energy.at("views")[v] == "E(T) / E_in") CHECK(heights(items_of(energy, v, is_curve)) == ratios);
     if (energy.at("views")[v] == "|E(T) / E_in − 1|") CHECK(heights(items_of(energy, v, is_curve)) == changes);
   }
-  for (const Json& series : series_of(figure(page, "tip"), 0,
-                                      [](const Json& s) { return s.at("type") == "line" && s.at("name") != "stops"; }))
+  for (const browser::Json& series : series_of(figure(page, "tip"), 0, [](const browser::Json& s) {
+         return s.at("type") == "line" && s.at("name") != "stops";
+       }))
     drawn += series.at("count").get<size_t>();
   CHECK(drawn == samples);
 }
 
-void check_errors(const Ran& ran, const Json& page) {
+void check_errors(const Ran& ran, const browser::Json& page) {
   const Table& errors = stored_table(ran.results, "errors");
-  const Json& steps = figure(page, "error-step");
+  const browser::Json& steps = figure(page, "error-step");
   const auto kind = find_column(errors.columns, "error").value();
   for (size_t v = 0; v < steps.at("views").size(); ++v) {
     std::multiset<double> values = numbers_in(
@@ -87,18 +88,18 @@ void check_errors(const Ran& ran, const Json& page) {
     values.erase(0.0);  // said below the chart: a logarithmic axis has no place for it
     CHECK(heights(items_of(steps, v, is_curve)) == values);
   }
-  for (const Json& series : series_of(steps, 0, [](const Json& s) { return s.contains("endLabel"); }))
+  for (const browser::Json& series : series_of(steps, 0, [](const browser::Json& s) { return s.contains("endLabel"); }))
     CHECK(series.at("data").size() == 2);
 }
 
-void check_work(const Ran& ran, const Json& page) {
+void check_work(const Ran& ran, const browser::Json& page) {
   const Table &work = stored_table(ran.results, "work_precision"), &points = stored_table(ran.results, "work_points");
-  const Json& times = figure(page, "work-precision");
+  const browser::Json& times = figure(page, "work-precision");
   size_t drawn = 0, marks = 0, on_front = 0;
   for (size_t v = 0; v < times.at("views").size(); ++v) {
     drawn += items_of(times, v, is_curve).size();
     marks += items_of(times, v, is_mark).size();
-    for (const Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
+    for (const browser::Json& item : items_of(times, v, is_curve)) on_front += item.contains("symbolSize");
   }
   // Each figure has its own column of the table on the vertical axis.
   const auto at = [&](const char* name) { return find_column(points.columns, name).value(); };
@@ -112,7 +113,7 @@ void check_work(const Ran& ran, const Json& page) {
   // A kind of error that no case has is no view.
   const std::size_t kind = find_column(work.columns, "error").value();
   CHECK(drawn + marks == static_cast<size_t>(std::count_if(work.rows.begin(), work.rows.end(), [&](const auto& row) {
-          const Json views = times.at("views");
+          const browser::Json views = times.at("views");
           return std::find(views.begin(), views.end(), row[kind].text()) != views.end();
         })));
   CHECK(on_front == static_cast<size_t>(std::count_if(points.rows.begin(), points.rows.end(),
@@ -120,21 +121,21 @@ void check_work(const Ran& ran, const Json& page) {
   CHECK(on_front > 0);
 }
 
-void check_stability(const Ran& ran, const Json& page) {
+void check_stability(const Ran& ran, const browser::Json& page) {
   const Table& cells = stored_table(ran.results, "stability_cells");
-  const Json& radii = figure(page, "spectral-radius");
+  const browser::Json& radii = figure(page, "spectral-radius");
   size_t closed = 0;
-  for (const Json& chart : radii.at("charts"))
+  for (const browser::Json& chart : radii.at("charts"))
     if (chart.at("title").get<std::string>().rfind("closed", 0) == 0)
-      for (const Json& series : chart.at("views")[0].at("series"))
+      for (const browser::Json& series : chart.at("views")[0].at("series"))
         if (series.at("name") != "unit circle" && series.at("type") == "line")
-          for (const Json& item : series.at("data")) closed += item.at("value")[1].is_number();
+          for (const browser::Json& item : series.at("data")) closed += item.at("value")[1].is_number();
   CHECK(closed == numbers_in(cells, "radius", [](const auto& row) { return row[1] == true; }).size());
   CHECK(closed > 0);
-  const Json& map = figure(page, "stability-map-time-beta");
-  for (const Json& chart : map.at("charts")) {
+  const browser::Json& map = figure(page, "stability-map-time-beta");
+  for (const browser::Json& chart : map.at("charts")) {
     size_t areas = 0, marks = 0;
-    for (const Json& series : chart.at("views")[0].at("series")) {
+    for (const browser::Json& series : chart.at("views")[0].at("series")) {
       if (series.contains("markArea")) areas += series.at("markArea").size();
       if (series.at("type") == "scatter") marks += series.at("count").get<size_t>();
     }
@@ -143,16 +144,16 @@ void check_stability(const Ran& ran, const Json& page) {
   }
 }
 
-void check_bifurcation(const Ran& ran, const Json& page) {
-  const Json& diagram = figure(page, "diagram");
+void check_bifurcation(const Ran& ran, const browser::Json& page) {
+  const browser::Json& diagram = figure(page, "diagram");
   for (size_t c = 0; c < ran.results.cases.size(); ++c) {
     const auto orbits = orbits_of(ran.results.cases[c]);
     size_t cells = 0;
     std::multiset<double> drawn, stored;
-    for (const Json& series : diagram.at("charts")[c].at("views")[0].at("series"))
+    for (const browser::Json& series : diagram.at("charts")[c].at("views")[0].at("series"))
       if (series.at("name").get<std::string>().rfind("regime ", 0) == 0) cells += series.at("count").get<size_t>();
     CHECK(cells == orbits.size());
-    for (const Json& source : diagram.at("charts")[c].at("views")[0].at("sources"))
+    for (const browser::Json& source : diagram.at("charts")[c].at("views")[0].at("sources"))
       if (source.at("what") == "exponents")
         for (size_t k = 1; k < source.at("values").size(); k += 2) drawn.insert(source.at("values")[k].get<double>());
     for (const auto& orbit : orbits)
@@ -160,28 +161,30 @@ void check_bifurcation(const Ran& ran, const Json& page) {
     CHECK(drawn == stored);
   }
   const Table& spreads = stored_table(ran.results, "distance_spreads");
-  const Json& against = figure(page, "distance-time-beta");
+  const browser::Json& against = figure(page, "distance-time-beta");
   const std::string reference = spreads.rows[0][2].text();
   auto medians = numbers_in(spreads, "median", [&](const auto& row) {
     return row[1] == "wasserstein" && !row[0].text().empty() && row[0].text() != reference;
   });
   medians.erase(0.0);
-  CHECK(heights(items_of(against, 0, [](const Json& s) { return s.value("symbolSize", Json()) == 7; })) == medians);
+  CHECK(heights(items_of(against, 0, [](const browser::Json& s) {
+          return s.value("symbolSize", browser::Json()) == 7;
+        })) == medians);
 }
 
-void check_basins(const Ran& ran, const Json& page) {
+void check_basins(const Ran& ran, const browser::Json& page) {
   const report::Basins grids = report::basins_of(ran.results);
-  const Json& basins = figure(page, "basins");
+  const browser::Json& basins = figure(page, "basins");
   REQUIRE(basins.at("charts").size() == grids.grids.size());
   for (size_t c = 0; c < grids.grids.size(); ++c) {
     std::set<int> labels(grids.grids[c].cells.begin(), grids.grids[c].cells.end());
     labels.erase(report::BasinGrid::absent);
     CHECK(basins.at("charts")[c].at("views")[0].at("series").size() == labels.size());
     // Each image spans the frame.
-    const Json& view = basins.at("charts")[c].at("views")[0];
-    const Json &x = view.at("xAxis")[0], &y = view.at("yAxis")[0];
-    for (const Json& series : view.at("series"))
-      CHECK(series.at("data")[0].at("value") == Json({x.at("min"), x.at("max"), y.at("min"), y.at("max")}));
+    const browser::Json& view = basins.at("charts")[c].at("views")[0];
+    const browser::Json &x = view.at("xAxis")[0], &y = view.at("yAxis")[0];
+    for (const browser::Json& series : view.at("series"))
+      CHECK(series.at("data")[0].at("value") == browser::Json({x.at("min"), x.at("max"), y.at("min"), y.at("max")}));
   }
   for (const auto& row : stored_table(ran.results, "basin_differences").rows)
     CHECK(says(basins.at("charts")[1].at("views")[1].at("notes"),
@@ -199,7 +202,7 @@ TEST_CASE("reports of studies of every kind draw what their tables hold, and eve
     INFO(kind);
     pages.push_back(ran.emplace(kind, run(kind)).first->second.page);
   }
-  const Json said = read_back("results", pages);
+  const browser::Json said = read_back("results", pages);
   const std::map<std::string, std::string> answers = {{"trajectory", "choice-effects"}, {"convergence", "order-dots"},
                                                       {"work-precision", "work-front"}, {"stability", "limit-dots"},
                                                       {"bifurcation", "diagram"},       {"basins", "basins"}};
@@ -208,8 +211,8 @@ TEST_CASE("reports of studies of every kind draw what their tables hold, and eve
     require_works(said.at(kind), one.results.cases.size());
     require_doors(said.at(kind), kind);
     // One figure that shows the answer stands beside it.
-    CHECK(said.at(kind).at("answer") == Json::array({answers.at(kind)}));
-    if (const Json& word = said.at(kind).at("explained"); !word.is_null()) {
+    CHECK(said.at(kind).at("answer") == browser::Json::array({answers.at(kind)}));
+    if (const browser::Json& word = said.at(kind).at("explained"); !word.is_null()) {
       CHECK(word.at("label").get<std::string>().rfind("What “", 0) == 0);
       CHECK(word.at("text").get<std::string>().size() > 40);
       CHECK(word.at("closed") == true);
@@ -217,7 +220,7 @@ TEST_CASE("reports of studies of every kind draw what their tables hold, and eve
   }
   CHECK(said.at("trajectory").at("explained").is_object());
   // What the page holds of a trajectory: its curves, its portrait, its impacts, its ledger.
-  const Json& door = figure(said.at("trajectory"), "tip").at("door");
+  const browser::Json& door = figure(said.at("trajectory"), "tip").at("door");
   CHECK(door.at("plots") == 4);
   for (const char* part : {"Phase portrait", "Measures", "Impacts", "Where its energy came from and went"})
     CHECK(says(door.at("headings"), part));

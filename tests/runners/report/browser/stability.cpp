@@ -16,33 +16,34 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-const Json& series_in(const Json& chart, const std::string& name, size_t view = 0) {
-  for (const Json& one : chart.at("views")[view].at("series"))
+const browser::Json& series_in(const browser::Json& chart, const std::string& name, size_t view = 0) {
+  for (const browser::Json& one : chart.at("views")[view].at("series"))
     if (one.at("name") == name) return one;
   FAIL("no series " << name);
-  static const Json none;
+  static const browser::Json none;
   return none;
 }
-const Json& titled(const Json& figure, const std::string& part) {
-  for (const Json& chart : figure.at("charts"))
+const browser::Json& titled(const browser::Json& figure, const std::string& part) {
+  for (const browser::Json& chart : figure.at("charts"))
     if (chart.at("title").get<std::string>().find(part) != std::string::npos) return chart;
   FAIL("no chart " << part);
-  static const Json none;
+  static const browser::Json none;
   return none;
 }
 
 /// One chart per contact state, marginal cells hollow.
-void check_radii(const Json& page) {
-  const Json& radii = figure(page, "spectral-radius");
-  CHECK(radii.at("views") == Json({"spectral radius", "growth per step"}));
-  const Json& open = titled(radii, "open");
+void check_radii(const browser::Json& page) {
+  const browser::Json& radii = figure(page, "spectral-radius");
+  CHECK(radii.at("views") == browser::Json({"spectral radius", "growth per step"}));
+  const browser::Json& open = titled(radii, "open");
   // Without contact the stiffness of the stops changes nothing: one curve per mass.
-  const Json& full = series_in(open, "full");
+  const browser::Json& full = series_in(open, "full");
   REQUIRE(full.at("data").size() == 9);
   CHECK(full["data"].back()["value"][1].get<double>() == Approx(5));
   CHECK(full["data"].back()["value"][0].get<double>() == Approx(1e-2));
-  for (const Json& item : series_in(open, "poor").at("data")) CHECK(item.at("itemStyle").at("color") == "#ffffff");
-  for (const Json& item : full.at("data")) CHECK_FALSE(item.contains("itemStyle"));
+  for (const browser::Json& item : series_in(open, "poor").at("data"))
+    CHECK(item.at("itemStyle").at("color") == "#ffffff");
+  for (const browser::Json& item : full.at("data")) CHECK_FALSE(item.contains("itemStyle"));
   // Growth is the radius less one, and absent where nothing grows.
   CHECK(series_in(open, "full", 1)["data"].back()["value"][1].get<double>() == Approx(4));
   CHECK(series_in(open, "full", 1)["data"].front()["value"][1] == "-");
@@ -52,15 +53,15 @@ void check_radii(const Json& page) {
 }
 
 /// A cell per step and value, and both boundaries.
-void check_map(const Json& page) {
-  const Json& map = figure(page, "stability-map-contact-stiffness");
+void check_map(const browser::Json& page) {
+  const browser::Json& map = figure(page, "stability-map-contact-stiffness");
   // Open cells do not depend on the stiffness: closed ones alone, per mass.
   REQUIRE(map.at("charts").size() == 2);
   std::set<std::string> names;
-  for (const Json& chart : map.at("charts")) {
+  for (const browser::Json& chart : map.at("charts")) {
     CHECK_THAT(chart.at("title").get<std::string>(), StartsWith("closed"));
     size_t cells = 0, marks = 0;
-    for (const Json& one : chart.at("views")[0].at("series")) {
+    for (const browser::Json& one : chart.at("views")[0].at("series")) {
       if (one.contains("markArea")) cells += one["markArea"].size();
       if (one.at("type") == "scatter") marks += one["data"].size();
       names.insert(one.at("name"));
@@ -69,12 +70,12 @@ void check_map(const Json& page) {
     CHECK(marks == 36);
     for (const char* axis : {"xAxis", "yAxis"}) CHECK(chart.at("views")[0].at(axis)[0].at("type") == "log");
   }
-  for (const Json& entry : map.at("entries")) CHECK(names.count(entry.at("name")) == 1);
-  const Json &full = titled(map, "full"), &poor = titled(map, "poor");
+  for (const browser::Json& entry : map.at("entries")) CHECK(names.count(entry.at("name")) == 1);
+  const browser::Json &full = titled(map, "full"), &poor = titled(map, "poor");
   CHECK(full.at("views")[0].at("notes").empty());
   // Across each band of stiffness its limit: 1e-2/√κ, and never beyond that of the open structure.
   std::vector<double> limits;
-  for (const Json& item : series_in(full, "predicted limit").at("data")) limits.push_back(item["value"][0]);
+  for (const browser::Json& item : series_in(full, "predicted limit").at("data")) limits.push_back(item["value"][0]);
   REQUIRE(limits.size() == 12);
   CHECK(limits[0] == Approx(1e-3));
   CHECK(limits[3] == Approx(1e-4));
@@ -94,15 +95,15 @@ StudyResults open_first() {
   out.expected_cases = 3;
   return out;
 }
-void check_open_first(const Json& page) {
-  const Json& chart = figure(page, "stability-map-contact-stiffness").at("charts").at(0);
-  const Json& limits = series_in(chart, "predicted limit").at("data");
+void check_open_first(const browser::Json& page) {
+  const browser::Json& chart = figure(page, "stability-map-contact-stiffness").at("charts").at(0);
+  const browser::Json& limits = series_in(chart, "predicted limit").at("data");
   REQUIRE(limits.size() == 9);
   for (size_t i = 0; i < 9; ++i) CHECK(limits[i]["value"][0].get<double>() == Approx(i < 6 ? 2e-3 : 1e-4));
   CHECK(limits[4]["value"][1] == 4.0);
   // Cells between the two limits are predicted unstable by the open structure, and marked where they lie.
   CHECK(series_in(chart, "observed unstable").at("count") > 0);
-  for (const Json& item : series_in(chart, "observed stable").at("data")) {
+  for (const browser::Json& item : series_in(chart, "observed stable").at("data")) {
     const double step = item["value"][0], stiffness = item["value"][1];
     CHECK(step <= 1e-2 / std::sqrt(stiffness));
     CHECK_THAT(item.at("text").get<std::string>(), StartsWith(step > 2e-3 ? "predicted unstable" : "predicted "));
@@ -114,7 +115,7 @@ void check_open_first(const Json& page) {
 TEST_CASE("figures of stability draw cells and limits", "[report][browser]") {
   if (left_out()) return;
   const StudyResults results = with_tables(synthetic::stability());
-  const Json pages =
+  const browser::Json pages =
       read_back("stability", {page_of("stability", results), page_of("open_first", with_tables(open_first()))});
   require_works(pages.at("stability"), results.cases.size());
   check_radii(pages.at("stability"));
@@ -143,7 +144,7 @@ TEST_CASE("charts of one figure have headings of their own, open and closed ones
     };
     return [laid(160, false), laid(160, true)];
   })())js";
-  const Json said =
+  const browser::Json said =
       driven("headings",
              {{{"name", "headings"}, {"page", report_of("studies", "trajectory")}, {"evaluate", {headings, layouts}}}})
           .at("headings")
@@ -152,5 +153,5 @@ TEST_CASE("charts of one figure have headings of their own, open and closed ones
   CHECK(said.at(0).at(1) > 1);
   CHECK(said.at(0).at(2) == said.at(0).at(0));
   CHECK(said.at(0).at(3) == true);
-  CHECK(said.at(1) == Json::parse(R"([["step"], ["time.p", "step"]])"));
+  CHECK(said.at(1) == browser::Json::parse(R"([["step"], ["time.p", "step"]])"));
 }

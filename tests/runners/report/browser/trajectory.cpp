@@ -47,11 +47,11 @@ std::vector<std::pair<double, double>> some_numbers() {
   return out;
 }
 
-void check_facets(const StudyResults& results, const Json& page) {
+void check_facets(const StudyResults& results, const browser::Json& page) {
   const CaseView view(results);
   for (const char* id : {"final-energy-step", "energy", "tip", "force", "penetration-step", "impacts-step"})
     CHECK(has_figure(page, id));
-  const Json& energy = figure(page, "energy");
+  const browser::Json& energy = figure(page, "energy");
   CHECK(energy.at("charts").size() == 12);  // 4 masses × 3 time methods
   CHECK(energy.at("views").size() == 4);    // E, its ratio, its change, and the difference to one of the curves
   CHECK(energy.at("linked_along") == true);
@@ -61,7 +61,7 @@ void check_facets(const StudyResults& results, const Json& page) {
   CHECK(energy.at("overlay").at("anew") == true);
   CHECK(energy.at("overlay").at("back") == true);
   size_t with_curves = 0;
-  for (const Json& chart : energy.at("charts")) {
+  for (const browser::Json& chart : energy.at("charts")) {
     if (chart.at("views").empty()) {
       CHECK(!chart.at("notes").empty());  // an empty place says why
       continue;
@@ -69,13 +69,14 @@ void check_facets(const StudyResults& results, const Json& page) {
     ++with_curves;
     CHECK(chart.at("views").size() == energy.at("views").size());
     size_t lines = 0;
-    for (const Json& series : chart.at("views")[0].at("series")) lines += series.at("type") == "line";
+    for (const browser::Json& series : chart.at("views")[0].at("series")) lines += series.at("type") == "line";
     CHECK(lines == 3);
   }
   CHECK(with_curves == 10);
   // Every curve that the cases have is drawn, sample by sample.
   size_t samples = 0, stored = 0;
-  for (const Json& series : series_of(energy, 0, [](const Json& s) { return s.at("type") == "line"; }))
+  for (const browser::Json& series :
+       series_of(energy, 0, [](const browser::Json& s) { return s.at("type") == "line"; }))
     samples += series.at("count").get<size_t>();
   for (const CaseRecord& record : results.cases)
     if (!record.curve.columns.empty()) stored += record.curve.columns[0].size();
@@ -83,28 +84,29 @@ void check_facets(const StudyResults& results, const Json& page) {
   std::set<std::string> colours, drawn;
   for (const CaseRecord& record : results.cases) colours.insert(view.colour(record));
   CHECK(colours.size() == view.masses().size());
-  for (const Json& series : series_of(figure(page, "final-energy-step"), 0, is_curve)) drawn.insert(series.at("color"));
+  for (const browser::Json& series : series_of(figure(page, "final-energy-step"), 0, is_curve))
+    drawn.insert(series.at("color"));
   CHECK(drawn == colours);
 }
 
-void check_axes(const Json& page) {
-  for (const Json& one : page.at("figures"))
-    for (const Json& chart : one.at("charts"))
-      for (const Json& view : chart.at("views")) {
+void check_axes(const browser::Json& page) {
+  for (const browser::Json& one : page.at("figures"))
+    for (const browser::Json& chart : one.at("charts"))
+      for (const browser::Json& view : chart.at("views")) {
         if (view.at("series").empty()) continue;
-        const Json& axis = view.at("yAxis")[0];
+        const browser::Json& axis = view.at("yAxis")[0];
         INFO(one.at("id") << " " << chart.at("title"));
         const bool from_zero = axis.at("min") <= 0.0 && axis.at("max") >= 0.0;
         if (axis.at("type") == "value")
           CHECK(from_zero == (axis.at("name").get<std::string>().find("not from 0") == std::string::npos));
         CHECK(axis.at("min").get<double>() < axis.at("max").get<double>());
       }
-  const Json& first = figure(page, "energy").at("charts")[0].at("views")[0].at("yAxis")[0];
+  const browser::Json& first = figure(page, "energy").at("charts")[0].at("views")[0].at("yAxis")[0];
   CHECK(first.at("min") == 0.0);
   CHECK(first.at("max") >= 3.612908);
   CHECK(first.at("name") == "energy E (J)");
   // Both stops are lines across the tip's charts.
-  for (const Json& series : series_of(figure(page, "tip"), 0, named("stops"))) {
+  for (const browser::Json& series : series_of(figure(page, "tip"), 0, named("stops"))) {
     REQUIRE(series.at("markLine").size() == 2);
     CHECK(series.at("markLine")[0].at("yAxis") == -0.1);
     CHECK(series.at("markLine")[1].at("yAxis") == 0.1);
@@ -112,14 +114,14 @@ void check_axes(const Json& page) {
 }
 
 /// A curve ends where its case's samples end.
-void check_samples(const StudyResults& results, const Json& page) {
+void check_samples(const StudyResults& results, const browser::Json& page) {
   for (const auto& [id, column] :
        {std::pair("energy", "energy"), {"tip", "tip_displacement"}, {"force", "contact_force_peak"}}) {
     INFO(id);
     size_t ends = 0;
-    for (const Json& series :
-         series_of(figure(page, id), 0, [](const Json& s) { return s.at("type") == "line" && s.at("count") > 0; })) {
-      const Json& last = series.at("data").back().at("value");
+    for (const browser::Json& series : series_of(
+             figure(page, id), 0, [](const browser::Json& s) { return s.at("type") == "line" && s.at("count") > 0; })) {
+      const browser::Json& last = series.at("data").back().at("value");
       ends += std::any_of(results.cases.begin(), results.cases.end(), [&, column = column](const CaseRecord& record) {
         const Curve& curve = record.curve;
         const auto at = std::find(curve.names.begin(), curve.names.end(), column) - curve.names.begin();
@@ -131,36 +133,36 @@ void check_samples(const StudyResults& results, const Json& page) {
   }
 }
 
-void check_zeros(const Json& page) {
-  const Json& chart = figure(page, "penetration-step").at("charts")[0];
+void check_zeros(const browser::Json& page) {
+  const browser::Json& chart = figure(page, "penetration-step").at("charts")[0];
   REQUIRE(chart.at("views").size() == 1);
   const auto count = [&](const std::string& name) {
     size_t n = 0;
-    for (const Json& series : chart.at("views")[0].at("series"))
+    for (const browser::Json& series : chart.at("views")[0].at("series"))
       if (series.at("name") == name && series.at("type") == "line") n += series.at("data").size();
     return n;
   };
   CHECK(count("consistent · beta 0.25") == 3);
   CHECK(count("singular, velocity P1 · beta 0.25") == 0);
-  const auto deepest = items_of(figure(page, "penetration-step"), 0, [](const Json& series) {
+  const auto deepest = items_of(figure(page, "penetration-step"), 0, [](const browser::Json& series) {
     return is_curve(series) && series.at("name") == "consistent · beta 0.25";
   });
   REQUIRE(!deepest.empty());
-  for (const Json& item : deepest)
+  for (const browser::Json& item : deepest)
     CHECK(item.at("value")[1].get<double>() == Approx(0.03 * item.at("value")[0].get<double>()));
   CHECK(says(chart.at("views")[0].at("notes"), "Exactly 0"));
   // Every synthetic case that marched has eight impacts.
   const auto impacts = items_of(figure(page, "impacts-step"), 0, is_curve);
   CHECK(impacts.size() > 20);
-  for (const Json& item : impacts) CHECK(item.at("value")[1] == 8);
+  for (const browser::Json& item : impacts) CHECK(item.at("value")[1] == 8);
 }
 
-void check_unfinished(const StudyResults& results, const Json& page) {
+void check_unfinished(const StudyResults& results, const browser::Json& page) {
   const CaseView view(results);
   size_t marks = 0, gutter = 0;
-  for (const Json& chart : figure(page, "energy").at("charts"))
+  for (const browser::Json& chart : figure(page, "energy").at("charts"))
     if (!chart.at("views").empty())
-      for (const Json& series : chart.at("views")[0].at("series"))
+      for (const browser::Json& series : chart.at("views")[0].at("series"))
         if (is_mark(series)) {
           ++marks;
           CHECK(series.at("data")[0].at("value")[1] <= chart.at("views")[0].at("yAxis")[0].at("max"));
@@ -168,7 +170,7 @@ void check_unfinished(const StudyResults& results, const Json& page) {
                      Catch::Matchers::StartsWith("diverged at t = "));
         }
   CHECK(marks == view.with_status("diverged").size());
-  for (const Json& series : series_of(figure(page, "final-energy-step"), 0, is_mark)) {
+  for (const browser::Json& series : series_of(figure(page, "final-energy-step"), 0, is_mark)) {
     gutter += series.at("data").size();
     CHECK(series.at("yAxisIndex") == 1);
   }
@@ -187,9 +189,9 @@ TEST_CASE("figures of trajectories draw what the cases hold", "[report][browser]
   Page first = page_of("trajectory", results), second = page_of("large", large), third = page_of("stiffness", stiff);
   first.numbers = some_numbers();
   second.controls = false;
-  const Json pages = read_back("trajectory", {first, second, third});
+  const browser::Json pages = read_back("trajectory", {first, second, third});
 
-  const Json& page = pages.at("trajectory");
+  const browser::Json& page = pages.at("trajectory");
   require_works(page, results.cases.size());
   check_facets(results, page);
   check_axes(page);
@@ -199,14 +201,14 @@ TEST_CASE("figures of trajectories draw what the cases hold", "[report][browser]
 
   // A large study keeps every case within its facets.
   for (const char* id : {"final-energy-step", "final-energy-support-amplitude"})
-    for (const Json& chart : figure(pages.at("large"), id).at("charts")) {
+    for (const browser::Json& chart : figure(pages.at("large"), id).at("charts")) {
       std::set<std::string> names;
-      for (const Json& series : chart.at("views")[0].at("series")) names.insert(series.at("name"));
+      for (const browser::Json& series : chart.at("views")[0].at("series")) names.insert(series.at("name"));
       CHECK(names.size() <= 8);
     }
 
   // A method without the parameter on the axis is drawn across.
-  const Json& against = figure(pages.at("stiffness"), "final-energy-contact-stiffness");
+  const browser::Json& against = figure(pages.at("stiffness"), "final-energy-contact-stiffness");
   REQUIRE(against.at("charts").size() == 1);
   CHECK(items_of(against, 0, named("penalty")).size() == 3);
   const auto across = items_of(against, 0, named("signorini"));
@@ -218,7 +220,7 @@ TEST_CASE("figures of trajectories draw what the cases hold", "[report][browser]
   // Rounded intervals contain what they round; numbers are written as the tables write them.
   for (size_t i = 0; i < first.numbers.size(); ++i) {
     const auto [low, high] = first.numbers[i];
-    const Json& said = page.at("words")[i];
+    const browser::Json& said = page.at("words")[i];
     const double slack =
         1e-8 * (high - low);  // the step is rounded with a relative slack of 1e-9, of at most ten steps
     CHECK(said.at("round").at("low").get<double>() <= low + slack);
@@ -237,11 +239,11 @@ TEST_CASE("tens of thousands of samples per curve are drawn", "[report][browser]
   shape.samples = 40000;
   StudyResults results = synthetic::results(shape);
   results.cases.resize(3);  // one chart per figure: what is new here is the length
-  const Json pages =
+  const browser::Json pages =
       read_back("long", {page_of("long", results), {"tables", synthetic::rendered(synthetic::results(), "", "")}});
   require_works(pages.at("long"), results.cases.size());
-  for (const Json& series :
-       series_of(figure(pages.at("long"), "energy"), 0, [](const Json& s) { return s.at("type") == "line"; })) {
+  for (const browser::Json& series : series_of(figure(pages.at("long"), "energy"), 0,
+                                               [](const browser::Json& s) { return s.at("type") == "line"; })) {
     CHECK(series.at("given") == 40001);
     CHECK(series.at("count") > 500);  // what is left for each pixel
     CHECK(series.at("sampling") == "minmax");
@@ -249,7 +251,7 @@ TEST_CASE("tens of thousands of samples per curve are drawn", "[report][browser]
   CHECK_THAT(figure(pages.at("long"), "energy").at("caption").get<std::string>(),
              Contains("the smallest and the largest of each pixel are drawn"));
   // The tables alone work too.
-  const Json& tables = pages.at("tables");
+  const browser::Json& tables = pages.at("tables");
   CHECK(tables.at("figures").empty());
   CHECK(tables.at("canvases") == 0);
   CHECK(tables.at("table").at("rows") == synthetic::results().cases.size());
