@@ -25,7 +25,7 @@ struct LaneSpec {
 /// The lane that the scene itself describes.
 LaneSpec scene_lane(const SemiDiscrete& problem, const Parameters& law);
 
-/// How a march goes from step to step.
+/// How an integration goes from step to step.
 enum class MarchWay {
   automatic,  ///< by flights where they are expected to cost less, else every step
   every_step,

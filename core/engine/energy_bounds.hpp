@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-/// The energies (J) that a scene's data mention, by which a march knows that it has diverged.
+/// The energies (J) that a scene's data mention, by which an integration knows that it has diverged.
 class EnergyScale {
  public:
   explicit EnergyScale(const SemiDiscrete& problem);

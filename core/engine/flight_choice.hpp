@@ -5,8 +5,8 @@
 namespace ricochet {
 
 Refusal refuse_flight(const std::string& cause);
-/// Why a march cannot leave out steps, by what is known before anything is worked out: lanes, loads, modes, memory;
-/// empty: nothing speaks against it.
+/// Why an integration cannot leave out steps, by what is known before anything is worked out: lanes, loads, modes,
+/// memory; empty: nothing speaks against it.
 std::string why_grounded(const Program& program, const CompileOptions& options);
 /// Makes the tables of flights; why there are none, where there are none.
 std::string let_fly(Program& program, const CompileOptions& options);

@@ -22,8 +22,8 @@ struct LaneCandidate {
 
 /// Scenes sorted into groups that march as lanes of one factorisation: same matrices, same step, same scheme and law.
 /// Amplitude, phase, stops, initial state and the law's per-lane parameters may differ. The operator is chosen with the
-/// first group, for a block of eight lanes and a long march, and is the same for all programs: so states are in the
-/// same coordinates and bits do not depend on the number of lanes.
+/// first group, for a block of eight lanes and a long integration, and is the same for all programs: so states are in
+/// the same coordinates, and results do not depend bitwise on the number of lanes.
 class LaneGroups {
  public:
   /// `way`: whether orbits march as lanes, or one by one and leave out steps (automatic: what is expected to cost

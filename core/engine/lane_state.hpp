@@ -4,7 +4,7 @@
 
 namespace ricochet {
 
-/// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with the same bits.
+/// What one lane carries from step to step, in model coordinates: enough to go on elsewhere with bitwise equal results.
 struct LaneState {
   std::vector<double> slots;    ///< slot by slot
   std::vector<double> efforts;  ///< per stage its p, and those of steps before where the plan weights them
@@ -12,7 +12,7 @@ struct LaneState {
   std::vector<double> memory;   ///< of the law, per point
 };
 
-/// Why the march of a lane ended.
+/// Why the integration of a lane ended.
 enum class EndCause {
   none,                   ///< it runs
   position_not_finite,    ///< the displacement at a contact point
@@ -24,10 +24,10 @@ enum class EndCause {
   energy_beyond,          ///< value: energy of an audit, J; bound, J
   idle,                   ///< nothing is marched there
   twin_met,               ///< a twin trajectory fell on its orbit
-  process_ended,          ///< that of the march, for a reason of its own
+  process_ended,          ///< that of the integration, for a reason of its own
 };
 
-/// The end of a march: its cause, with the numbers that the cause tells of.
+/// The end of an integration: its cause, with the numbers that the cause tells of.
 struct LaneEnd {
   EndCause cause = EndCause::none;
   double value = 0, bound = 0, factor = 0;
@@ -35,8 +35,8 @@ struct LaneEnd {
 
   /// Whether there is one.
   explicit operator bool() const { return cause != EndCause::none; }
-  /// Whether the step itself could not be made: then the march has failed. Otherwise it went where no motion of the
-  /// scene goes: it has diverged.
+  /// Whether the step itself could not be made: then the integration has failed. Otherwise it went where no motion of
+  /// the scene goes: it has diverged.
   bool failed() const { return cause == EndCause::law_not_converged || cause == EndCause::process_ended; }
   bool operator==(const LaneEnd&) const = default;
 };

@@ -70,8 +70,8 @@ Marcher::Marcher(Program program)
   connect_tests();
 }
 
-// What the march does for its observers alone. Operators add up squares of unknowns that only efforts of the same stage
-// may move.
+// What the integration does for its observers alone. Operators add up squares of unknowns that only efforts of the same
+// stage may move.
 void Marcher::connect(const Observers& observers) {
   observers_ = observers;
   free_count_ = 0;

@@ -33,16 +33,13 @@ class Marcher {
   long long march(long long steps, const Observers& observers = {});
   /// Steps that were marched, and not left out.
   long long steps_visited() const { return visited_; }
-  /// Where steps are left out: those that were while a point was closed, and all that were made then.
-  long long closed_left_out() const;
-  long long closed_steps() const;
 
   /// The state of a lane between steps, and its return. `spec` takes the place of the lane's own: amplitude, phase,
   /// stops and law parameters; its initial position and velocity are not read. A lane that had stopped runs again.
   LaneState lane_state(int lane) const;
   void set_lane(int lane, const LaneSpec& spec, const LaneState& state);
   /// Sets the number of steps made, hence the time: a periodic problem may be marched period after period on one clock.
-  /// From there on the march depends on the lanes' states alone.
+  /// From there on the integration depends on the lanes' states alone.
   void set_clock(long long step);
 
   /// Tangent columns per lane: X_k' = Df X_k along the lane, with its own contact set and without loads. The derivative

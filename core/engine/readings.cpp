@@ -8,19 +8,11 @@
 #include <ricochet/kernels/flight_kernels.hpp>
 
 /// \file
-/// What others read of a march.
+/// What others read of an integration.
 namespace ricochet {
 
 bool Marcher::any_running() const {
   return std::any_of(status_.begin(), status_.end(), [](const LaneStatus& status) { return status.running; });
-}
-
-long long Marcher::closed_left_out() const {
-  return lane_flight_ ? lane_flight_->closed_left_out() : 0;
-}
-
-long long Marcher::closed_steps() const {
-  return lane_flight_ ? lane_flight_->closed_steps() : 0;
 }
 
 double Marcher::support(int lane, double t) const {

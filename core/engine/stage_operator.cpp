@@ -82,7 +82,7 @@ class Assembly {
 };
 
 /// Band L D Lᵀ, in place of any dense or general sparse structure: half-bandwidth 3 for Hermite, 5 with the interleaved
-/// border; by nodes where the matrices come so, which has the same bits.
+/// border; by nodes where the matrices come so, which gives bitwise equal results.
 class BandOperator final : public StageOperator {
  public:
   BandOperator(const MarchModel& model, const FoldedStage& stage, int lanes)

@@ -34,13 +34,13 @@ struct StageView {
   const SquareSum* sum = nullptr;  ///< what an observer asked for, of z as it is now; null where efforts moved it
 };
 
-/// Sees the steps of a block. A march without observers pays nothing for them.
+/// Sees the steps of a block. An integration without observers pays nothing for them.
 class StepObserver {
  public:
   static constexpr long long never = std::numeric_limits<long long>::max();
 
-  /// What it asks of a march. It keeps this up to date; the marcher reads it when a march begins or goes on, and after
-  /// each call.
+  /// What it asks of an integration. It keeps this up to date; the marcher reads it when an integration begins or goes
+  /// on, and after each call.
   struct Asks {
     /// The next step (counted as Marcher::step() after it) that it has to be shown whatever happens in it. interval()
     /// tells of those before it: steps that flights leave out, and marched ones in which no stage looks at a stop.
@@ -48,7 +48,7 @@ class StepObserver {
     long long next_shown = 0;
     bool tip = false;  ///< whether it reads the tip in marched steps of an interval
     /// Of each stage of the plan, squares that it would see added up in free steps, if its operator sums_squares();
-    /// null or none: it needs none. One observer of a march gets them.
+    /// null or none: it needs none. One observer of an integration gets them.
     std::vector<SquareSum*> squares;
   };
 
@@ -66,7 +66,7 @@ class StepObserver {
   Asks asks_;
 };
 
-/// The observers of a march, in the order in which they are told. Refers to them.
+/// The observers of an integration, in the order in which they are told. Refers to them.
 class Observers {
  public:
   static constexpr std::size_t most = 8;
@@ -79,7 +79,7 @@ class Observers {
   /// Null adds nobody.
   void add(StepObserver* one) {
     if (!one) return;
-    if (count_ == most) throw std::logic_error("a march has too many observers");
+    if (count_ == most) throw std::logic_error("an integration has too many observers");
     all_[count_++] = one;
   }
   bool empty() const { return count_ == 0; }

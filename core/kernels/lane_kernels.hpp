@@ -59,7 +59,7 @@ struct PointTest {
 ///
 ///     form = Σ_i d_i (s_i + Σ_j l_ji s_{i+j})²        projection = Σ_i h_i s_i
 ///
-/// The sums are rounded otherwise than CombinedForm's; z has the bits that it has without.
+/// The sums are rounded otherwise than CombinedForm's; z is bitwise what it is without.
 struct SquareSum {
   const double* fours = nullptr;  ///< l, d and h as CombinedForm::Packed: j = 1 … 3 by nodes, no l in modes
   const double* x = nullptr;      ///< x_1
@@ -70,7 +70,7 @@ struct SquareSum {
 
 /// The step of a BandStep whose rows come by nodes: two dofs each (deflection and rotation of Hermite elements) or,
 /// with `border`, an unknown of the border between them, every node coupled with its neighbours alone. The operations
-/// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the bits are the
+/// are those of BandStep in the same order, without the terms that are zero whatever the numbers: the results are the
 /// same. Update and measures included, each block is read twice per step, once down the nodes and once up. One lane
 /// multiplies and measures in vectors of rows and points.
 struct NodeStep {
@@ -161,7 +161,7 @@ struct LaneKernels {
 };
 
 /// Kernels for T lanes: of the best instruction set of this processor, or of another one that it has. AVX2 and AVX-512
-/// do the same operations on each lane in the same order: their results have the same bits.
+/// do the same operations on each lane in the same order: their results are bitwise equal.
 const LaneKernels& lane_kernels(int lanes, InstructionSet set = best_instruction_set());
 
 /// The smallest T that holds `lanes` (1 … 32).

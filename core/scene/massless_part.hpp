@@ -10,8 +10,8 @@ namespace ricochet {
 
 /// The massless part of a structure: Ker M of a singular mass (n × n), with what K makes of it.
 ///
-/// Up to 400 dofs by a dense basis Z of Ker M, δ = Z (ZᵀKZ)⁻¹ Zᵀ r. Beyond, in O(n), by what a march of steps ever
-/// shorter does to the rest: with S = K + σM, σ a thousand times the largest K_ii/M_ii,
+/// Up to 400 dofs by a dense basis Z of Ker M, δ = Z (ZᵀKZ)⁻¹ Zᵀ r. Beyond, in O(n), by what an integration of steps
+/// ever shorter does to the rest: with S = K + σM, σ a thousand times the largest K_ii/M_ii,
 ///
 ///     δ₁ = S⁻¹ r,    δ_{k+1} = S⁻¹ K δ_k                                                                        (1)
 ///

@@ -92,18 +92,6 @@ double LoadSpec::spread(double x, double t) const {
   return sum;
 }
 
-std::string LoadSpec::text() const {
-  std::string text = formula.is_zero() && !terms.empty() ? "" : formula.text();
-  for (const LoadTerm& term : terms) {
-    if (!text.empty()) text += " + ";
-    if (term.force)
-      text += term.at ? fmt::format("({}) at x = {:g} m", term.history.text(), *term.at) : term.history.text();
-    else
-      text += fmt::format("({})*({})", term.shape.text(), term.history.text());
-  }
-  return text;
-}
-
 DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace& space)
     : formula_(load.formula), size_(space.dofs) {
   if (load.is_zero()) return;

@@ -107,8 +107,6 @@ struct LoadSpec {
   bool has_point_forces() const;
   /// What is spread, f + Σ f_k(x) g_k(t), N/m. Of an oscillator every term is: then N, forces among them.
   double spread(double x, double t) const;
-  /// As a study would write it, for sentences.
-  std::string text() const;
 };
 
 struct SceneSpec {

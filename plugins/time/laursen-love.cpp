@@ -55,7 +55,7 @@ void register_laursen_love(Registry& registry) {
           conserves the energy of an undamped structure to round-off and nothing penetrates at the end of a step; a
           massed point leaves as fast as it came. Nothing is dissipated, hence contact forces chatter: read
           impulses. A step that begins beyond a stop (a law that lets points pass, a stop that was set anew) has no
-          such impulse and ends the march. Compliant laws are those of midpoint: nothing is then given back.)",
+          such impulse and ends the integration. Compliant laws are those of midpoint: nothing is then given back.)",
        .source = R"(Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric
           admissibility within the conserving framework)",
        .parameters = {}},

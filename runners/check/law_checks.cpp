@@ -209,7 +209,7 @@ Verdict lanes_are_independent(const Law& law) {
                         points, l, block, p[0], p != alone.effort(0) ? alone.effort(0)[0] : partly.effort(l)[0]));
     }
   }
-  return fine("the same bits alone and beside others");
+  return fine("bitwise equal alone and beside others");
 }
 
 Verdict untouched_lanes_are_left_alone(const Law& law) {

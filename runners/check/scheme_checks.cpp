@@ -64,7 +64,7 @@ Marched march(const Scheme& scheme, const Setting& setting, int elements, double
   marcher.start(&audit);
   marcher.march(steps, &audit);
   if (!marcher.status(0).running)
-    throw std::runtime_error("a march " + setting.name + " stopped: " + text(marcher.status(0).end));
+    throw std::runtime_error("an integration " + setting.name + " stopped: " + text(marcher.status(0).end));
   return {audit.totals(0), audit.contact(0)};
 }
 

@@ -112,7 +112,7 @@ std::vector<double> errors_after_impact(const Scheme& scheme, const std::vector<
   return errors;
 }
 
-/// A start at a stop, or a share of a step's way from it, and what the march then errs by.
+/// A start at a stop, or a share of a step's way from it, and what the integration then errs by.
 struct StopStart {
   const char* what;
   double away;      // in steps of the way h |v|
@@ -143,7 +143,7 @@ StopStartErrors errors_after_start(const Scheme& scheme, const StopStart& start,
     errors.displacement = std::max(errors.displacement, std::abs(marcher.position(0)[0] - place));
   }
   if (!marcher.status(0).running)
-    throw std::runtime_error(std::string(start.what) + ": the march stopped: " + text(marcher.status(0).end));
+    throw std::runtime_error(std::string(start.what) + ": the integration stopped: " + text(marcher.status(0).end));
   errors.lost = std::nullopt;
   if (audit.balances())
     errors.lost = std::abs(audit.lost_at_stops(0) + audit.totals(0).work_of_scheme - (comes ? 0.5 * (1 - e * e) : 0));

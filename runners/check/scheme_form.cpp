@@ -218,7 +218,7 @@ std::string march_once(const Scheme& scheme, const ProblemPointer& problem, doub
   marcher.march(steps, &dense);
   const std::string where =
       fmt::format("{}, {}, {} lane{}", problem->space.structure, law.name, lanes, lanes == 1 ? "" : "s");
-  if (!marcher.status(0).running) return where + ": the march stopped: " + text(marcher.status(0).end);
+  if (!marcher.status(0).running) return where + ": the integration stopped: " + text(marcher.status(0).end);
   if (const std::string wrong = dense.difference(); !wrong.empty()) return where + ": " + wrong;
   return {};
 }

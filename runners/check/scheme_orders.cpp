@@ -62,7 +62,7 @@ Errors march_against(const Scheme& scheme, const OscillatorBench& bench, const H
           std::max(worst_velocity, std::abs(v - exact.velocity(t + marcher.program().velocity_offset * h)));
     }
     if (!marcher.status(0).running)
-      throw std::runtime_error("the oscillator's march stopped: " + text(marcher.status(0).end));
+      throw std::runtime_error("the oscillator's integration stopped: " + text(marcher.status(0).end));
     errors.steps.push_back(h);
     errors.displacement.push_back(worst);
     errors.velocity.push_back(worst_velocity);
@@ -249,8 +249,8 @@ Verdict stability_as_declared(const Scheme& scheme) {
     return !marcher.status(0).running || std::abs(marcher.position(0)[0]) > 1e4;
   };
   if (grows(limit ? last : 100))
-    return fails(
-        fmt::format("a march with h·ω = {:g} grows without bounds, below the declared limit", limit ? last : 100));
+    return fails(fmt::format("an integration with h·ω = {:g} grows without bounds, below the declared limit",
+                             limit ? last : 100));
   if (!limit) return fine("none up to h·ω = 1e4");
   const double beyond = 1.01 * *limit, r = radius(plan, h, beyond);
   if (r <= 1 + marginal)

@@ -118,7 +118,8 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
 int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int samples, std::ostream& out,
                 const std::atomic<bool>& stop) {
   if (!open.kind->march)
-    throw PointRefused(fmt::format("a case of kind {} is more than one march: it has no curve", open.results.kind));
+    throw PointRefused(
+        fmt::format("a case of kind {} is more than one integration: it has no curve", open.results.kind));
   study_case.samples = samples;
   const CaseRecord again = open.kind->march(study_case, stored.registry, stop);
   if (again.curve.columns.empty() || again.curve.columns.front().empty())
@@ -135,7 +136,8 @@ int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study
 int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int instants,
                    std::ostream& out, const std::atomic<bool>& stop) {
   if (!open.kind->march)
-    throw PointRefused(fmt::format("a case of kind {} is more than one march: it has no film", open.results.kind));
+    throw PointRefused(
+        fmt::format("a case of kind {} is more than one integration: it has no film", open.results.kind));
   if (study_case.settings.is_null()) study_case.settings = Json::object();
   study_case.settings["snapshots"] = instants;
   const CaseRecord again = open.kind->march(study_case, stored.registry, stop);

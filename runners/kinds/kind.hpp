@@ -21,7 +21,7 @@ namespace ricochet {
 struct RunContext {
   const Study& study;
   const Registry& registry;
-  std::function<std::string(const StudyCase&)> key;  ///< of a case and everything that its bits depend on
+  std::function<std::string(const StudyCase&)> key;  ///< of a case and everything that its results depend on
   BlockService* blocks = nullptr;                    ///< what marches blocks of a case elsewhere; null: nothing does
 };
 
@@ -85,7 +85,7 @@ struct Kind {
   std::function<CaseRunner(const RunContext&)> start;
 
   /// Marches the scene of one case once, with its curve, whatever else the kind makes of it. Empty: its cases are more
-  /// than one march.
+  /// than one integration.
   std::function<CaseRecord(const StudyCase&, const Registry&, const std::atomic<bool>& stop)> march;
 
   /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.

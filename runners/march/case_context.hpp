@@ -72,7 +72,7 @@ std::optional<T> recall(const CheckpointStore& checkpoints, const std::string& k
 /// Where a case keeps what would be lost if it were killed, and says how far it is.
 struct CaseContext {
   CheckpointStore checkpoints;     ///< bytes by key; empty bytes forget a key
-  std::string key;                 ///< of this case and everything its bits depend on
+  std::string key;                 ///< of this case and everything its results depend on
   BlockService* blocks = nullptr;  ///< other processes that march for it; null: it marches itself
 };
 

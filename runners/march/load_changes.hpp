@@ -19,8 +19,9 @@ class GapWatch {
     if (penetration > looked_at_) look(marcher, penetration);
   }
 
-  /// What the march did in steps too long for its gaps, a sentence each: a point comes to its stop with a speed that
-  /// crosses the gap in a step; a point passes its stop by more than the gap. `recorder`: of the whole march.
+  /// What the integration did in steps too long for its gaps, a sentence each: a point comes to its stop with a speed
+  /// that crosses the gap in a step; a point passes its stop by more than the gap. `recorder`: of the whole
+  /// integration.
   static std::string crossed(const Marcher& marcher, const ImpactRecorder& recorder);
   std::string passed() const;
 

@@ -56,8 +56,8 @@ Prepared prepare_case(const StudyCase& study_case, const Registry& registry);
 /// the sentence, where there is no program.
 CaseRecord begin_record(const StudyCase& study_case, const Prepared& prepared);
 
-/// How a march that stopped before its end is recorded: diverged or failed, with the step, the time and the cause; a
-/// running lane ran out of its budget.
+/// How an integration that stopped before its end is recorded: diverged or failed, with the step, the time and the
+/// cause; a running lane ran out of its budget.
 void record_early_end(CaseRecord& record, const Marcher& marcher, long long steps, double budget);
 
 /// What makes the figures of a finished case doubtful, a sentence each ("" is none): its reason where it is done, else

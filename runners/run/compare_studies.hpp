@@ -21,7 +21,7 @@ struct CasePair {
 };
 
 /// How two numbers differ: not at all; by no more than 2⁻⁵² × steps of the measure's scale, which is what the round-off
-/// of a march may leave; by more; or one of the two is missing.
+/// of an integration may leave; by more; or one of the two is missing.
 enum class NumberChange { none, round_off, beyond, missing };
 const char* change_word(NumberChange change);
 

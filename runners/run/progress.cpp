@@ -18,7 +18,7 @@ constexpr double kElsewhereEverySeconds = 5;
 constexpr auto kRedrawEvery = std::chrono::milliseconds(200);
 // A case in flight that should have ended is expected to take so much more of what it took.
 constexpr double kOverrun = 0.1;
-// s that a case takes beside its march before any was seen: a transaction of the store on a usual disk.
+// s that a case takes beside its integration before any was seen: a transaction of the store on a usual disk.
 constexpr double kFirstGuess = 0.02;
 // s beyond twice the prediction after which a case is waited for.
 constexpr double kPatience = 5;
@@ -137,13 +137,6 @@ void Progress::finished(const std::string& id) {
   } else if (done_ < total_ && seconds_since(last_line_) >= kLineEverySeconds) {
     draw();
   }
-}
-
-void Progress::note(const std::string& line) {
-  const std::lock_guard guard(mutex_);
-  erase();
-  say(out_, fmt::format("{}\n", line));
-  draw();
 }
 
 void Progress::waiting(const std::string& id, const std::string& call) {

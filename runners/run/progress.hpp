@@ -48,7 +48,7 @@ std::string progress_text(const ProgressState& state);
 std::string progress_bar(const ProgressState& state, int width);
 
 /// Tells a person how far a run is: on a terminal a bar redrawn in place five times a second, otherwise a plain line
-/// now and then. Safe from several threads; nothing else may print to `out` while it lives, except through note().
+/// now and then. Safe from several threads; nothing else may print to `out` while it lives.
 class Progress {
  public:
   /// `elsewhere`: told the same every few seconds, by a thread of its own; must not throw.
@@ -62,8 +62,6 @@ class Progress {
   void finished(const std::string& id);
   /// The call of a plugin's function that a case waits for, "" for none: said where it takes far longer than predicted.
   void waiting(const std::string& id, const std::string& call);
-  /// A line of its own, the bar below it.
-  void note(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;

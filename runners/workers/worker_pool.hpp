@@ -21,7 +21,7 @@
 namespace ricochet {
 
 /// Lets one worker compute what others look for under the same key (a reference), while they wait for it. Nobody waits
-/// for one that waits itself: then both compute it, to the same bits.
+/// for one that waits itself: then both compute it, bitwise alike.
 class KeyClaims {
  public:
   /// What `look` finds; "" where this owner is to compute it. Waits while another one does.

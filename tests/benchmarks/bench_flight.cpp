@@ -1,6 +1,6 @@
-// Marches that leave out the steps in which nothing happens, beside the same march of every step, both with the energy
-// audit and the recorder of impacts: times, steps visited, and how far their ends are apart. Medians of interleaved
-// rounds, every-step of the same build as partner.
+// Marches that leave out the steps in which nothing happens, beside the same integration of every step, both with the
+// energy audit and the recorder of impacts: times, steps visited, and how far their ends are apart. Medians of
+// interleaved rounds, every-step of the same build as partner.
 //
 //     bench_flight [--rounds N] [--only WORD]
 //     bench_flight --flown N [--only WORD]     N flown marches alone, for a profiler
@@ -31,7 +31,7 @@ struct Scene {
   double h = 1e-5, duration = 0.5;
   double beta = 0.5;
   double stiffness = 0;    // of springs behind the stops, N/m; 0: rigid
-  bool every_step = true;  // whether the march of every step can be waited for
+  bool every_step = true;  // whether the integration of every step can be waited for
 };
 
 struct Outcome {

@@ -40,7 +40,7 @@ using namespace ricochet::benchmarks;
 
 namespace {
 
-constexpr long long study_steps = 100000;  // of a march of this marcher
+constexpr long long study_steps = 100000;  // of an integration of this marcher
 constexpr long long common_steps = 12000;  // that both march first
 constexpr long long siconos_steps = 3000;  // of a round: half a period
 
@@ -90,7 +90,7 @@ ShakenBeam matrices(const SemiDiscrete& problem) {
   return beam;
 }
 
-// A march of this marcher with its audit and its recorder of impacts.
+// An integration of this marcher with its audit and its recorder of impacts.
 struct Audited {
   Marcher marcher;
   EnergyAudit audit;
@@ -189,7 +189,7 @@ void race(const Scene& scene, int rounds, Registry& registry) {
         for (long long k = 0; k < siconos_steps; ++k) one.siconos->step();
         one.microseconds.push_back((thread_nanoseconds() - start) / 1e3 / siconos_steps);
       } else {
-        // Set-up is paid by the march: it is what a study pays.
+        // Set-up is paid by the integration: it is what a study pays.
         Audited march(problem, scene.h, one.way, registry);
         march.march(study_steps);
         march.recorder.finish(march.marcher);

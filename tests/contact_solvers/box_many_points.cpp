@@ -169,7 +169,7 @@ TEST_CASE("many points ask for no column", "[box][many]") {
   CHECK(s.asked == 0);
 }
 
-TEST_CASE("few points give the same bits, with a band and without", "[box][many]") {
+TEST_CASE("few points give bitwise equal results, with a band and without", "[box][many]") {
   Random random(2);
   const Row row(300, 1.0);
   int few = 0;

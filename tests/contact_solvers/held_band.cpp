@@ -136,7 +136,7 @@ TEST_CASE("points held in a band push as those of the dense operator", "[held]")
     }
 }
 
-TEST_CASE("a band that held other sets before gives the same bits as a new one", "[held]") {
+TEST_CASE("a band that held other sets before gives bitwise what a new one gives", "[held]") {
   Random random(2);
   constexpr int n = 80;
   const QuasiDefinite S = random.band(n, 3, 12);

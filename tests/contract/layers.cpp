@@ -1,4 +1,4 @@
-// The arrows of the house, read from the sources: who may include whom, and that nobody knows a method by name.
+// Read from the sources: who may include whom, and that nobody knows a method by name.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cctype>
@@ -118,7 +118,7 @@ std::string role_of(const std::string& plugin) {
 }
 
 // "core/measure" of "core/measure/energy/energy_audit.cpp".
-std::string room_of(const std::string& source) {
+std::string folder_of(const std::string& source) {
   return source.substr(0, source.find('/', source.find('/') + 1));
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("core and runners include no plugin, and core no runner") {
       }
 }
 
-TEST_CASE("rooms include what lies below them, and every room has its rule") {
+TEST_CASE("rooms include what lies below them, and every folder has its rule") {
   const std::map<std::string, std::set<std::string>> below = {
       {"core/contract", {}},
       {"core/loader", {"core/contract"}},
@@ -222,25 +222,25 @@ TEST_CASE("rooms include what lies below them, and every room has its rule") {
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {
       if (!source.name.ends_with(".cpp") && !source.name.ends_with(".hpp")) continue;
-      const std::string room = room_of(source.name);
+      const std::string folder = folder_of(source.name);
       INFO(source.name);
-      REQUIRE(below.count(room) == 1);
+      REQUIRE(below.count(folder) == 1);
       for (const std::string& include : includes(source)) {
         const std::string other = layer_of(include);
         INFO("includes " << include);
-        CHECK((other.empty() || other == room || below.at(room).count(other)));
+        CHECK((other.empty() || other == folder || below.at(folder).count(other)));
       }
     }
 }
 
-TEST_CASE("a kind of study is known by name in the rooms of the kinds alone") {
+TEST_CASE("a kind of study is known by name in the folders of the kinds alone") {
   std::set<std::string> kinds;
   for (const auto& folder : fs::directory_iterator(root / "runners" / "kinds"))
     if (folder.is_directory()) kinds.insert(folder.path().filename().string());
   REQUIRE(kinds.count("bifurcation") == 1);
   for (const std::string folder : {"core", "runners"})
     for (const Source& source : sources(folder)) {
-      if (room_of(source.name) == "runners/kinds") continue;
+      if (folder_of(source.name) == "runners/kinds") continue;
       for (const Literal& literal : literals(source.text)) {
         INFO(source.name << ": \"" << literal.text << '"');
         CHECK(kinds.count(literal.text) == 0);

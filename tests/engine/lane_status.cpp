@@ -1,4 +1,4 @@
-// Why a march ended: a cause with its numbers; status and sentence follow from it, never the other way round.
+// Why an integration ended: a cause with its numbers; status and sentence follow from it, never the other way round.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <ricochet/engine/lane_state.hpp>

@@ -130,7 +130,7 @@ TEST_CASE("lanes of many points equal single runs bit for bit", "[many]") {
   }
 }
 
-TEST_CASE("a march of many points allocates nothing once they have closed", "[many]") {
+TEST_CASE("an integration of many points allocates nothing once they have closed", "[many]") {
   Marcher beam = marcher(lying_scene(30, 0), 200, {{"consistent"}, {"signorini"}, {"moreau-jean"}}, 1e-3,
                          {.kind = OperatorKind::band});
   beam.start();

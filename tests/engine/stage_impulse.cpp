@@ -1,4 +1,5 @@
-// A stage with a second unknown, R w = ι Hᵀp: what is marched is the plan, whatever operator, law, mass and company.
+// A stage with a second unknown, R w = ι Hᵀp: what is marched is the plan, whatever operator, law, mass and other
+// lanes.
 #include "runners/check/dense_march.hpp"
 #include "tests/allocations.hpp"
 #include "tests/marching.hpp"
@@ -12,7 +13,7 @@ namespace {
 constexpr double h = 1e-4;
 
 // Newmark (0.3, 0.6) with an impulse that fills everything that one may say: R and feed of all matrices, an effort that
-// also acts on z, now and a step later, ι ≠ 1. Neither accurate nor stable by design; damping and a short march
+// also acts on z, now and a step later, ι ≠ 1. Neither accurate nor stable by design; damping and a short integration
 // suffice.
 StepPlan full_plan(bool gated) {
   const double beta = 0.3, gamma = 0.6, lag = (1 - gamma) * h, curve = (0.5 - beta) * h * h;
@@ -228,7 +229,7 @@ TEST_CASE("tangents of a plan with an impulse are the derivative of its step") {
   }
 }
 
-TEST_CASE("a march with an impulse allocates nothing, columns included") {
+TEST_CASE("an integration with an impulse allocates nothing, columns included") {
   for (const Law& law : laws()) {
     Marcher beam = impulsive(law, touching(1e-4), {"consistent"}, with(OperatorKind::band));
     beam.start();

@@ -252,7 +252,7 @@ TEST_CASE("tangents of a composed step are those of its sub-steps") {
   }
 }
 
-TEST_CASE("an orbit of a composed plan goes on with the same bits in another lane") {
+TEST_CASE("an orbit of a composed plan goes on bitwise equal in another lane") {
   const std::vector<Case> all = cases();
   const Case& one = all.back();
   const Choice time = GENERATE(from_range(schemes()));

@@ -58,8 +58,8 @@ TEST_CASE("tangent columns are the derivative of the step, contacts included") {
   block.march(4000);
   const LaneState base = block.lane_state(0);
   const LaneState direction = direction_of(base);
-  // Lane 0 with its tangent, lanes 1 and 2 to either side: a central difference. Over a short march the same steps are
-  // in contact on both sides, except where a contact begins or ends between them: the offset is small enough.
+  // Lane 0 with its tangent, lanes 1 and 2 to either side: a central difference. Over a short integration the same
+  // steps are in contact on both sides, except where a contact begins or ends between them: the offset is small enough.
   const double offset = 1e-7;
   const LaneSpec spec = block.program().lanes[0];
   block.set_tangent(0, 0, direction);
@@ -100,7 +100,7 @@ TEST_CASE("loads do not enter tangents") {
   CHECK(size(shifted(a, b, -1)) < 1e-9 * size(b));
 }
 
-TEST_CASE("an orbit goes on with the same bits in another lane of another block") {
+TEST_CASE("an orbit goes on bitwise equal in another lane of another block") {
   const auto time =
       GENERATE(Choice{"newmark-dumont-paoli"}, Choice{"newmark"}, Choice{"moreau-jean", {{"theta", 0.6}}});
   const Methods methods{{"singular", {{"velocity", std::string("P1")}}}, {"signorini"}, time};

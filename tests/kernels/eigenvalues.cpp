@@ -10,7 +10,7 @@ namespace eigenvalues_tests {
 // What n roundings of a backward-stable method may leave, relative to the matrix.
 constexpr double round_off = 1e-13;
 
-TEST_CASE("symmetric modes satisfy A φ = λ B φ and φᵀBφ = 1, ascending, without vectors the values are the same bits") {
+TEST_CASE("symmetric modes satisfy A φ = λ B φ and φᵀBφ = 1, ascending, without vectors the values are bitwise the same") {
   std::srand(7);
   const int n = 12;
   const MatrixXd X = MatrixXd::Random(n, n), Y = MatrixXd::Random(n, n);

@@ -110,7 +110,7 @@ TEST_CASE("one thread's denormal numbers are no other's") {
   CHECK_FALSE(flushes_operands());
 }
 
-TEST_CASE("flushed, a lane's bits do not depend on its company or the instruction set's width") {
+TEST_CASE("flushed, a lane does not depend on the other lanes of its block or the instruction set's width") {
   if (!can_flush()) return;
   const FlushDenormals flush;
   std::mt19937 engine(3);

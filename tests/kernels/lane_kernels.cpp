@@ -251,7 +251,7 @@ TEST_CASE("one to eight slots are combined, updated, stepped and measured by the
   }
 }
 
-TEST_CASE("a lane's bits do not depend on its company, whatever the number of slots") {
+TEST_CASE("a lane does not depend on the other lanes of its block, whatever the number of slots") {
   const int count = GENERATE(range(1, most_lane_slots + 1)), T = GENERATE(2, 4, 8, 16, 32);
   const InstructionSet set = GENERATE(from_range(instruction_sets()));
   const auto alone = Slots(count, 1, count + 1).outcome(lane_kernels(1, set));
@@ -263,7 +263,7 @@ TEST_CASE("a lane's bits do not depend on its company, whatever the number of sl
     }
 }
 
-TEST_CASE("a lane's bits are those of AVX2 where vectors are twice as long") {
+TEST_CASE("a lane's results are bitwise those of AVX2 where vectors are twice as long") {
   if (best_instruction_set() != InstructionSet::avx512) {
     WARN("skipped: this processor has no AVX-512");
     return;
@@ -286,7 +286,7 @@ TEST_CASE("a lane's bits are those of AVX2 where vectors are twice as long") {
     }
 }
 
-TEST_CASE("a slot without weight changes no bit, also where the loop takes over from what is written out") {
+TEST_CASE("a slot without weight changes nothing, also where the loop takes over from what is written out") {
   const int count = GENERATE(range(1, most_lane_slots)), T = GENERATE(1, 2, 4, 8, 16, 32);
   const InstructionSet set = GENERATE(from_range(instruction_sets()));
   const LaneKernels& kernels = lane_kernels(T, set);

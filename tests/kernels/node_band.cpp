@@ -127,7 +127,7 @@ struct March {
 
 }  // namespace
 
-TEST_CASE("a step by nodes has the bits of a band's, update and measures included") {
+TEST_CASE("a step by nodes is bitwise that of a band, update and measures included") {
   const int T = GENERATE(1, 2, 4, 8, 16, 32);
   const bool border = GENERATE(false, true), updates = GENERATE(false, true), tests = GENERATE(false, true);
   const LaneKernels& kernels = lane_kernels(T, GENERATE(from_range(instruction_sets())));
@@ -181,7 +181,7 @@ TEST_CASE("a step by nodes has the bits of a band's, update and measures include
   found.require_same(expected);
 }
 
-TEST_CASE("a step by modes has the bits of a diagonal one, update and measure included") {
+TEST_CASE("a step by modes is bitwise that of a diagonal one, update and measure included") {
   const int T = GENERATE(1, 2, 4, 8, 16, 32);
   const bool updates = GENERATE(false, true), tests = GENERATE(false, true);
   const LaneKernels& kernels = lane_kernels(T, GENERATE(from_range(instruction_sets())));
@@ -268,7 +268,7 @@ void check_squares(Kernel LaneKernels::*kernel, const Step& step, const Quadrati
 
 }  // namespace
 
-TEST_CASE("squares added up beside a step by nodes are those of a pass of their own, and the step keeps its bits") {
+TEST_CASE("squares added up beside a step by nodes are those of a pass of their own, and the step stays bitwise equal") {
   const bool border = GENERATE(false, true), everywhere = GENERATE(false, true), wide = GENERATE(false, true);
   BandLdlt ldlt;
   REQUIRE_FALSE(ldlt.factorise(system(border)));
@@ -292,7 +292,7 @@ TEST_CASE("squares added up beside a step by nodes are those of a pass of their 
   check_squares(&LaneKernels::node_step, step, QuadraticForm(wide ? coupled(true) : diagonal), 3, H.rows);
 }
 
-TEST_CASE("squares added up beside a step by modes are those of a pass of their own, and the step keeps its bits") {
+TEST_CASE("squares added up beside a step by modes are those of a pass of their own, and the step stays bitwise equal") {
   const bool unit = GENERATE(false, true);
   std::vector<double> columns(3 * 16, 0.0), value;
   for (std::size_t i = 0; i < dofs; ++i) {

@@ -184,7 +184,7 @@ TEST_CASE("the solution may overwrite the right-hand side", "[sparse-ldlt]") {
   CHECK(in_place == x);
 }
 
-TEST_CASE("equal matrices give equal bits, a moved object goes on", "[sparse-ldlt]") {
+TEST_CASE("equal matrices give bitwise equal results, a moved object goes on", "[sparse-ldlt]") {
   Random random(6);
   const Sparse A = sparse(random.spd(80, 5));
   const VectorXd b = random.vector(80);

@@ -16,7 +16,7 @@ double value(NamedFormulas& formulas, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a formula has the bits of the same expression in C++") {
+TEST_CASE("a formula is bitwise the same expression in C++") {
   NamedFormulas formulas;
   for (const double h : {0.1, 3.1e-5, 0.7e-7})
     for (const double b : {0.3, 0.25, 0.1}) {

@@ -15,7 +15,7 @@ class Flight {
   /// Below it a flight costs more than its steps.
   static constexpr long long least = 4;
 
-  /// For a march of about `steps` steps. `layer` (m): the law acts from so far before the stops.
+  /// For an integration of about `steps` steps. `layer` (m): the law acts from so far before the stops.
   Flight(const Program& program, double layer, long long steps);
 
   /// Why it cannot fly at all; empty where it can.

@@ -4,7 +4,7 @@
 #include <ricochet/kernels/flight_kernels.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 
-// What is asked of a bound while a march goes on; how it is made stands in flight_bound.cpp.
+// What is asked of a bound while an integration goes on; how it is made stands in flight_bound.cpp.
 namespace ricochet {
 namespace {
 

@@ -3,7 +3,7 @@
 
 namespace ricochet {
 
-/// Powers of two steps that tables of a march of so many steps hold.
+/// Powers of two steps that tables of an integration of so many steps hold.
 int flight_powers(long long steps);
 /// Bytes of the tables of one set of closed points, over so many modes and slots.
 double flight_set_bytes(int modes, int slots, int powers);

@@ -9,7 +9,6 @@ bool LaneFlight::follow(const FlownLane& lane) {
   const bool closed = std::any_of(lane.stages.begin(), lane.stages.end(),
                                   [](const auto& stage) { return (stage->contact_lanes & 1U) != 0; });
   open_steps_ = closed ? 0 : open_steps_ + 1;
-  if (closed) ++closed_visits_;
   if (!lane.program.contact) return true;
   if (!closed) {
     if (open_steps_ < settles_after_) return false;
@@ -94,7 +93,6 @@ long long LaneFlight::leave_out(const FlownLane& lane, const double* e, long lon
   scatter(lane);
   told.closed = closed_;
   if (closed_.empty()) return k;
-  closed_left_out_ += k;
   for (const StageProgram& stage : lane.program.stages) told.instants += stage.closes_instant ? 1 : 0;
   told.penetration = flight.penetration();
   return k;

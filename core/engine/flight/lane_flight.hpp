@@ -35,9 +35,6 @@ class LaneFlight {
   /// Whether the step under way is known to touch no stop; step_made() after each.
   bool clear() const { return clear_ > 0; }
   void step_made() { clear_ = std::max(clear_ - 1, 0LL); }
-  /// Steps left out while a point was closed, and all that were made then.
-  long long closed_left_out() const { return closed_left_out_; }
-  long long closed_steps() const { return closed_left_out_ + closed_visits_; }
 
  private:
   bool find_closed(const FlownLane& lane);
@@ -48,7 +45,6 @@ class LaneFlight {
   int settles_after_ = 0;     // steps after which no effort acts any more
   long long open_steps_ = 0;  // steps without contact
   long long clear_ = 0;       // steps to come of which a flight has seen that no point closes in them
-  long long closed_left_out_ = 0, closed_visits_ = 0;
   std::vector<ClosedPoint> closed_;
   std::vector<std::vector<double*>> past_;  // efforts of each stage, and of steps before
   // Slots by column, where a flight takes tangents along: numbers, and pointers to them for each column.

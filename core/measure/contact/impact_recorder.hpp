@@ -8,9 +8,9 @@
 #include <vector>
 
 /// \file
-/// Contact point by point, as a march meets it. Contact is looked at once per instant: each sub-step, with the stages
-/// that ask together as one. With ω the momentum weight of a stage (s: what an effort of 1 N finally gives to a free
-/// mass) and p the effort that it finds at a point (N), an instant
+/// Contact point by point, as an integration meets it. Contact is looked at once per instant: each sub-step, with the
+/// stages that ask together as one. With ω the momentum weight of a stage (s: what an effort of 1 N finally gives to a
+/// free mass) and p the effort that it finds at a point (N), an instant
 ///
 ///     lasts   Ω = max ω                over its stages (s),
 ///     gives   I = Σ ω |p|              (N s),    by the force    F = I / Ω    (N),
@@ -32,8 +32,8 @@ struct Impact {
   /// of its efforts; that of the initial state where there is none before.
   double speed_in = 0;
   /// Away from the stop, m/s: the velocity over the second sub-step without an effort, when what the first one still
-  /// had of the efforts before it is spent; over the first where the point closes again or the march ends after it. NaN
-  /// while the point is closed.
+  /// had of the efforts before it is spent; over the first where the point closes again or the integration ends after
+  /// it. NaN while the point is closed.
   double speed_out = std::numeric_limits<double>::quiet_NaN();
   double impulse = 0;        ///< Σ I, N s
   double peak_force = 0;     ///< largest F, N
@@ -73,7 +73,7 @@ class ImpactRecorder final : public StepObserver {
   void stage_solved(const Marcher& marcher, const StageView& view) override;
   void step_done(Marcher& marcher) override;
   void interval(Marcher& marcher, const StepInterval& steps) override;
-  /// To be called once, when the march is over: what its last sub-step was, for those who wait for it.
+  /// To be called once, when the integration is over: what its last sub-step was, for those who wait for it.
   void finish(const Marcher& marcher);
 
   /// In the order in which they began, those still closed included.

@@ -9,7 +9,7 @@ namespace ricochet {
 /// it has not left it. What closes there meanwhile is no impact: nothing has hit anything. A point that lies on its
 /// stop and moves into it is not held: it hits at t = 0.
 ///
-/// A march whose clock has left t = 0 has no start. Allocates when constructed.
+/// An integration whose clock has left t = 0 has no start. Allocates when constructed.
 class StartContact {
  public:
   StartContact(const Marcher& marcher, int lane);

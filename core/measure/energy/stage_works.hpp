@@ -151,7 +151,7 @@ struct Works {
 /// the same: ω pᵀ(H(v⁻ + v⁺)/2 + Δφ/Δt), v the plan's velocity before and after it, ω p the momentum given within it.
 class StageWorks {
  public:
-  /// M and K in the coordinates of the march.
+  /// M and K in the coordinates of the integration.
   StageWorks(const Marcher& marcher, const QuadraticForm& mass, const QuadraticForm& stiffness);
 
   /// Adds what the stage brings to a lane, its losses only where `losses`. `acting`: whether efforts of stages before

@@ -61,10 +61,10 @@ class ContactLog final : public StepObserver {
 /// time that is a step, q_n and (q_{n+1} − q_{n−1})/2h. Both are second-order accurate or better, whatever the scheme
 /// keeps as its own velocity. Impulses are the momentum that the plan gives to a free mass (MomentumLedger); those of a
 /// scheme whose momentum stands at mid-step (d/h) are brought to t. Energy is ½vᵀMv + ½wᵀKw plus the law's potential at
-/// that time. The march goes up to two steps beyond the last time.
+/// that time. The integration goes up to two steps beyond the last time.
 class MotionSampler {
  public:
-  /// `beside`: looks at the same march.
+  /// `beside`: looks at the same integration.
   MotionSampler(Marcher& marcher, const SampleGrid& grid, StepObserver* beside = nullptr);
 
   /// Marches to the end of the grid. `keep_going` is asked now and then; when it says no, or the lane stops, what was

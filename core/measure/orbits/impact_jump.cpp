@@ -17,7 +17,7 @@ constexpr int clear_flight = 10;
 constexpr int longest_impact = 3;
 // hω up to which a step resolves the motion that an impact leaves; tangents are held for some steps.
 constexpr double resolved_turn = 0.1;
-// e is read off a march of the plan: of none, round-off over h is left.
+// e is read off an integration of the plan: of none, round-off over h is left.
 constexpr double rebounds_above = 1e-6;
 
 bool no_rebound(const std::optional<double>& restitution) {

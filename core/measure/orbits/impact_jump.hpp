@@ -42,7 +42,7 @@ class ImpactJump final : public StepObserver {
   explicit ImpactJump(Marcher& marcher);
   ~ImpactJump();
 
-  /// Whether there are such points and tangents at all; otherwise the march need not be observed.
+  /// Whether there are such points and tangents at all; otherwise the integration need not be observed.
   bool needed() const { return needed_; }
   /// Tangent columns were replaced (orthonormalised): their past is not theirs any more.
   void columns_replaced();

@@ -47,8 +47,8 @@ Recurrence find_recurrence(const SectionSeries& series, const std::vector<double
 /// The largest d_k(lag) of (1) over all rows of the series; infinite where there are none so far apart.
 double lag_distance(const SectionSeries& series, const std::vector<double>& scale, int lag);
 
-/// The same question asked once per period of a march that waits for its transient to end: plain data, O(longest ·
-/// width) per period, no allocation after construction.
+/// The same question asked once per period of an integration that waits for its transient to end: plain data, O(longest
+/// · width) per period, no allocation after construction.
 struct Settling {
   std::vector<double> scale;  ///< one per column, as for find_recurrence()
   double tolerance = 0;

@@ -9,8 +9,8 @@
 
 /// \file
 /// Orbits of a periodically forced scene, read once per forcing period: many at a time, one per lane, each replaced by
-/// the next as it ends. The clock of the march runs over one period and is turned back: the strobed map is autonomous,
-/// and an orbit does not depend on how many periods were marched before, nor in which lane.
+/// the next as it ends. The clock of the integration runs over one period and is turned back: the strobed map is
+/// autonomous, and an orbit does not depend on how many periods were marched before, nor in which lane.
 namespace ricochet {
 
 /// Where the points of a section are taken.

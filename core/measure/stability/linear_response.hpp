@@ -7,7 +7,8 @@
 namespace ricochet {
 
 /// The periodic motion that a scheme gives without contact, for a support that moves as A sin(ωt + ψ): of every slot,
-/// x_n = Re(X e^{iωt_n}), exactly (no march), mode by mode of M φ = μ K φ. `amplitude` scales it: everything is linear.
+/// x_n = Re(X e^{iωt_n}), exactly (no integration), mode by mode of M φ = μ K φ. `amplitude` scales it: everything is
+/// linear.
 struct LinearResponse {
   std::vector<std::complex<double>> contact;  ///< of u = φ + w at the contact points, m per metre of A
   std::complex<double> tip;                   ///< of the tip, m per metre of A

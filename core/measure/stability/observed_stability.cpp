@@ -25,12 +25,12 @@ constexpr double growth_since_start = 4, growth_at_end = 1.5;
 constexpr double blown_up = 1000;
 constexpr std::size_t window = 1024;
 
-// Whether what its largest values of each third of a march say grows on to the end.
+// Whether what its largest values of each third of an integration say grows on to the end.
 bool grows_on(double first, double second, double third) {
   return first > 0 && third >= growth_since_start * first && third >= growth_at_end * second;
 }
 
-// Which third of a march of so many steps a step belongs to.
+// Which third of an integration of so many steps a step belongs to.
 std::size_t third_of(long long step, long long steps) {
   return static_cast<std::size_t>(std::min(2LL, 3 * step / std::max(steps, 3LL)));
 }
@@ -193,7 +193,7 @@ ObservedCell march(Marcher& marcher, Watch& watch, const Horizon& horizon) {
   return cell;
 }
 
-/// What one observation marches: the law is made anew for each march.
+/// What one observation marches: the law is made anew for each integration.
 struct Observation {
   std::shared_ptr<const SemiDiscrete> problem;
   const StepPlan& plan;
@@ -215,8 +215,8 @@ ObservedOrRefusal march_once(const Observation& of, bool bounded) {
   return march(marcher, watch, of.horizon);
 }
 
-// A march that its energy bound stopped is made again without: where it then ends without growing, the energy was that
-// of a transient.
+// An integration that its energy bound stopped is made again without: where it then ends without growing, the energy
+// was that of a transient.
 template <class Watch>
 ObservedOrRefusal observe(const Observation& of) {
   const ObservedOrRefusal stopped = march_once<Watch>(of, true);

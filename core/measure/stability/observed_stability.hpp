@@ -14,7 +14,7 @@
 /// open and close, energy that a rigid impact makes, laws that do not converge).
 namespace ricochet {
 
-/// What a march of a horizon did.
+/// What an integration of a horizon did.
 enum class Behaviour {
   stable,
   linear_growth,  ///< amplitudes grow like the number of steps: a double root on the unit circle
@@ -45,21 +45,21 @@ using ObservedOrRefusal = std::variant<ObservedCell, Refusal>;
 
 struct Horizon {
   long long steps = 3000;
-  std::function<bool()> go_on;  ///< asked now and then; false ends the march early
+  std::function<bool()> go_on;  ///< asked now and then; false ends the integration early
 };
 
 /// The structure alone, without loads, stops and support motion, from `start` (where empty: from the scene's own
 /// state). Growth is read from the squared K- and M-norms of every slot, the largest in each third of the horizon: the
-/// last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step shows. A march that
-/// the energy bound stops is made again without it: energy that swells and falls again (high modes of a step far beyond
-/// their period) is no limit.
+/// last has 4 times the first and 1.5 times the second. In 3000 steps a growth of 3.5e-4 per step shows. An integration
+/// that the energy bound stops is made again without it: energy that swells and falls again (high modes of a step far
+/// beyond their period) is no limit.
 ObservedOrRefusal observe_free(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                const Excitation& start, const Horizon& horizon);
 
 /// The scene itself, impacts and loads included. Growing: at some step the energy exceeds everything that the initial
 /// state and the loads gave by as much again (the scheme's own energy where it has one, plus the springs' of compliant
 /// laws), or the common energy is a thousand times that and grows on to the end, by thirds as above. `law` makes one
-/// for each march.
+/// for each integration.
 ObservedOrRefusal observe_scene(const std::shared_ptr<const SemiDiscrete>& problem, const StepPlan& plan, double h,
                                 const std::function<std::unique_ptr<ContactLaw>()>& law, const Parameters& parameters,
                                 const Horizon& horizon);

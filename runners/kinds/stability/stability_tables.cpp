@@ -37,7 +37,7 @@ Table stability_head() {
 
 Table stability_observed_head() {
   return {"stability_observed",
-          "One march: a step of the range, of the structure alone or of the scene with its contacts.",
+          "One integration: a step of the range, of the structure alone or of the scene with its contacts.",
           {step_column,
            {"closed", "", "Whether the scene with its contacts was marched; otherwise the structure alone."},
            {"behaviour", "", "stable, marginal (grows like the number of steps), unstable, diverged or failed."},
@@ -308,7 +308,7 @@ Table step_limits_table(const StudyResults& results) {
        {"expected", "s", "The smallest predicted limit that the marched cell meets: a scene is open as well."},
        {"ratio", "1", "observed over expected."},
        {"agrees", "", "Whether the ratio is one to 2 %; empty where a limit is missing."},
-       {"disagreeing_steps", "1", "Steps of the range at which the march does not do what the spectra say."},
+       {"disagreeing_steps", "1", "Steps of the range at which the integration does not do what the spectra say."},
        {"marginal", "", "Which roots on the unit circle are the scheme's own, over the range."},
        {"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
        {"grows", "", "What grows there, or why it is refused."},
@@ -342,7 +342,7 @@ Table step_limit_agreement_table(const Table& step_limits) {
                {"limits", "1", "Ranges whose limit is both predicted and observed."},
                {"agree", "1", "Those whose limits agree within the tolerance."},
                {"tolerance", "1", "Difference, relative to the expected limit, up to which limits agree."},
-               {"disagree", "1", "Ranges with a step at which the march does not do what the spectra say."}},
+               {"disagree", "1", "Ranges with a step at which the integration does not do what the spectra say."}},
               {}};
   const TableReader rows(step_limits);
   const std::size_t closed = rows.column("closed"), counted = rows.column("counted"), agrees = rows.column("agrees"),

@@ -57,9 +57,9 @@ void DistributedOrbits::send(OrbitQueue::Batch batch, bool alone) {
   block.running = std::move(batch.orbits);
   orders.order().lanes = options_.lanes;
   orders.order().ends_only = options_.ends_only;
-  // The last ones of a block march in company with those of the next, or of the one that it waits behind.
-  const bool company = queue_.ready() > 0 || static_cast<int>(service_.count()) >= options_.blocks->share();
-  if (!alone && company && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
+  // The last ones of a block march beside those of the next, or of the one that it waits behind.
+  const bool others_march = queue_.ready() > 0 || static_cast<int>(service_.count()) >= options_.blocks->share();
+  if (!alone && others_march && !queue_.chained(block.tasks.front())) orders.order().leave = options_.lanes / 2;
   // One that is suspected tells each of its periods.
   orders.order().interval = alone ? 0 : options_.interval;
   blocks_[service_.begin(to_bytes(orders.order()))] = std::move(block);

@@ -71,15 +71,15 @@ class ForcedScenes {
   std::vector<std::string> beyond_limit_;  // per group: why an explicit step of it is refused
 };
 
-/// Item and reason of what the march of a case does without; tangents belong to the exponents, where these are asked
-/// for.
+/// Item and reason of what the integration of a case does without; tangents belong to the exponents, where these are
+/// asked for.
 std::vector<std::pair<std::string, std::string>> march_left_out(const ForcedScenes& scenes,
                                                                 const StudyCase& study_case);
 
 /// Makes room in a plan for the step of a case that steps by the forcing period.
 void widen_steps(CasePlan& plan, const StudyCase& study_case);
 
-/// What a plan or a record says of the march of a case: its operator, what it does without, notes.
+/// What a plan or a record says of the integration of a case: its operator, what it does without, notes.
 template <class PlanOrRecord>
 void describe_march(PlanOrRecord& out, const ForcedScenes& scenes, const StudyCase& study_case) {
   out.operator_name = scenes.operator_chosen();

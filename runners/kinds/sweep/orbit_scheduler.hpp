@@ -101,7 +101,7 @@ struct ScheduleOptions {
 };
 
 /// Marches orbits in blocks of lanes: chains (orbits that follow each other) first and in narrow blocks of their own.
-/// The bits of an orbit depend on its task alone.
+/// The result of an orbit depends on its task alone.
 class OrbitScheduler {
  public:
   OrbitScheduler(const ForcedScenes& scenes, ScheduleOptions options);

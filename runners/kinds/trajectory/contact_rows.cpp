@@ -34,7 +34,7 @@ NumberTable impacts_head() {
         "shrink."},
        {"duration", "s", "Time for which the point is pushed, whole sub-steps."},
        {"release_force", "N", "The last force; where the point is still closed, that of the last instant."},
-       {"open_end", "", "Whether the point was still closed when the march ended."}});
+       {"open_end", "", "Whether the point was still closed when the integration ended."}});
   table.text = "One impact of one case: a contact point closes, is pushed, and opens. Contact from the start is none.";
   return table;
 }

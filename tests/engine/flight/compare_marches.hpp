@@ -1,6 +1,7 @@
 #pragma once
-// A march that leaves out steps beside the same march of every step, by all that is read of it. How far round-off may
-// carry two equal motions apart a twin says that begins 1e-12 beside, and the same march with another operator.
+// An integration that leaves out steps beside the same integration of every step, by all that is read of it. How far
+// round-off may carry two equal motions apart a twin says that begins 1e-12 beside, and the same integration with
+// another operator.
 #include <fmt/format.h>
 
 #include <ricochet/engine/flight/flight.hpp>
@@ -82,7 +83,7 @@ struct Compared {
   long long steps = 0, visited = 0, contact_steps = 0;
 };
 
-// `spoil`: what the flights are told of the stops, moved away by so much (m): a march that misses contacts.
+// `spoil`: what the flights are told of the stops, moved away by so much (m): an integration that misses contacts.
 inline Compared compare(const SceneSpec& scene, int elements, const Methods& methods, double h, long long steps,
                         double spoil = 0) {
   Compared result;
@@ -126,7 +127,7 @@ inline Compared compare(const SceneSpec& scene, int elements, const Methods& met
   result.visited = one.visited;
   result.contact_steps = one.contact_steps;
   const double size = other.position.lpNorm<Eigen::Infinity>();
-  // The same march with the round-off of another operator.
+  // The same integration with the round-off of another operator.
   CompileOptions band = modal_options(MarchWay::every_step, steps);
   band.kind = OperatorKind::band;
   auto third = compiled(problem, methods, h, band);

@@ -1,7 +1,7 @@
 // What a flight is made of: k steps at once, what bounds them, what they bring, and where there is none.
 #include <random>
-#include <ricochet/engine/flight/step_interval.hpp>
 #include <ricochet/engine/flight/flight_memory.hpp>
+#include <ricochet/engine/flight/step_interval.hpp>
 
 #include "tests/marching.hpp"
 
@@ -136,7 +136,7 @@ TEST_CASE("the tip is told after each step that is left out, with contact and wi
   CHECK(apart < 1e-9);
 }
 
-TEST_CASE("a march by flights keeps its bits when it stops in between, and goes on from a state") {
+TEST_CASE("an integration by flights keeps its results when it stops in between, and goes on from a state") {
   // Flights end where somebody reads: where they end must not matter beyond round-off.
   const SceneSpec scene = swinging(1e-4, 0.02);
   Marcher whole = marcher(scene, 6, free_of_contact, 2e-5, flights()),
@@ -147,7 +147,7 @@ TEST_CASE("a march by flights keeps its bits when it stops in between, and goes 
   for (long long left = 12345, part = 1; left > 0; part = 3 * part + 1) left -= parts.march(std::min(left, part));
   CHECK(whole.step() == parts.step());
   CHECK((whole.position(0) - parts.position(0)).norm() < 1e-11 * whole.position(0).norm());
-  // The same calls give the same bits.
+  // The same calls give bitwise equal results.
   Marcher again = marcher(scene, 6, free_of_contact, 2e-5, flights());
   again.start();
   again.march(12345);

@@ -1,4 +1,4 @@
-// Contact that lasts: the same march of every step, whatever the linear law, the scheme, the mass and the load.
+// Contact that lasts: the same integration of every step, whatever the linear law, the scheme, the mass and the load.
 #include "tests/engine/flight/compare_marches.hpp"
 
 using namespace ricochet;

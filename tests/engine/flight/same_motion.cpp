@@ -1,5 +1,5 @@
-// Leaving out steps changes nothing: every scheme, law and mass matrix, and random scenes, against the same march of
-// every step.
+// Leaving out steps changes nothing: every scheme, law and mass matrix, and random scenes, against the same integration
+// of every step.
 #include <fmt/format.h>
 
 #include <random>
@@ -21,7 +21,9 @@ SceneSpec shaken() {
 
 }  // namespace
 
-TEST_CASE("a march that leaves out steps is the march of every step, whatever the scheme, the law and the mass") {
+TEST_CASE(
+    "an integration that leaves out steps is the integration of every step, whatever the scheme, the law and the "
+    "mass") {
   int flew = 0, left_out = 0;
   std::map<std::string, int> by_scheme, by_law;
   for (const std::string& mass : registry().names(Role::mass))
@@ -116,7 +118,7 @@ TEST_CASE("a flight that looks for the stops where they are not is found out") {
   CHECK_FALSE(compare(scene, 4, methods, 4e-5, 4000, 0.02).alike);
 }
 
-TEST_CASE("the balance of a march that leaves out steps closes as well as that of every step") {
+TEST_CASE("the balance of an integration that leaves out steps closes as well as that of every step") {
   // Where closed contact is left, round-off of the constraint (1e-17 m a step) is a velocity of 1e-9 m/s at h = 1e-7:
   // taken off along what moves the whole structure it gave or took 1e-11 J each time.
   SceneSpec scene = working_set();

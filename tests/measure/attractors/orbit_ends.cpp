@@ -69,7 +69,7 @@ TEST_CASE("orbit ends: runs of one wandering motion are one end, of two motions 
 }
 
 TEST_CASE("basin grid: ends told while the cells were marched are those that are shown") {
-  // Two ends that the sections alone would join: what the march told apart stays apart, in every cell.
+  // Two ends that the sections alone would join: what the integration told apart stays apart, in every cell.
   BasinGrid grid;
   grid.columns = 4;
   grid.rows = 1;

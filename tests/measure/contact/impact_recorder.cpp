@@ -305,7 +305,7 @@ TEST_CASE("a list that is full ends, and the totals go on, nothing is allocated 
   CHECK(after == before);
 }
 
-TEST_CASE("impacts of a lane do not depend on its company") {
+TEST_CASE("impacts of a lane do not depend on the other lanes of its block") {
   const Methods methods{{"consistent"}, {"signorini"}, {"newmark-dumont-paoli", {{"restitution", 0.7}}}};
   const auto placed = [](double height) {
     return [height](const LaneSpec& lane) {

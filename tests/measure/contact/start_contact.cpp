@@ -13,7 +13,7 @@ namespace {
 
 constexpr double weight = 5, h = 1e-3, duration = 0.3;
 
-/// Everybody who counts contact, at one march.
+/// Everybody who counts contact, at one integration.
 struct Counted {
   Marcher march;
   EnergyAudit audit;
@@ -69,7 +69,7 @@ TEST_CASE("a mass that is pressed on its rigid stop at t = 0 hits nothing, whate
   run.impacts(0);
   const StopTotals& totals = run.recorder.totals(0, 0, StopSide::lower);
   CHECK(totals.fastest == 0);
-  // Contact for as long as the march, but for what the start rule does not ask.
+  // Contact for as long as the integration, but for what the start rule does not ask.
   CHECK(totals.contact_time == Approx(duration).margin(2 * h));
   CHECK(totals.impulse == Approx(weight * duration).margin(2 * weight * h));
   CHECK(totals.impulse == Approx(run.audit.contact(0).impulse).epsilon(1e-12));

@@ -169,7 +169,7 @@ TEST_CASE("what a scene at rest is given is what its loads bring in, at any step
 
 namespace {
 
-/// One march under both ways to look.
+/// One integration under both ways to look.
 struct BothModes final : StepObserver {
   explicit BothModes(const Marcher& marcher) : every(marcher), seldom(marcher, SamplingMode::seldom) {}
   void stage_solved(const Marcher& marcher, const StageView& view) override {

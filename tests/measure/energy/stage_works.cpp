@@ -11,7 +11,7 @@ using namespace ricochet::testing;
 
 namespace {
 
-/// The terms of one lane as a plan declares them, in the coordinates of the march.
+/// The terms of one lane as a plan declares them, in the coordinates of the integration.
 class DefinedLedger final : public StepObserver {
  public:
   DefinedLedger(const Marcher& marcher, int lane, EnergyAudit& audit) : lane_(lane), audit_(audit) {
@@ -235,7 +235,8 @@ struct Observed {
 
 }  // namespace
 
-TEST_CASE("steps that nobody was shown add up what they would have, bit for bit, wherever a march was interrupted") {
+TEST_CASE(
+    "steps that nobody was shown add up what they would have, bit for bit, wherever an integration was interrupted") {
   const auto kind = GENERATE(OperatorKind::band, OperatorKind::modal);
   const auto place = GENERATE(StopsSpec::Place::nodes, StopsSpec::Place::tip);
   const auto mass = GENERATE(Choice{"consistent"}, Choice{"singular", {{"velocity", std::string("P1")}}});
@@ -293,7 +294,7 @@ TEST_CASE("steps that nobody was shown add up what they would have, bit for bit,
   }
 }
 
-TEST_CASE("squares that a visited step adds up leave a march by flights what it is") {
+TEST_CASE("squares that a visited step adds up leave an integration by flights what it is") {
   const auto place = GENERATE(StopsSpec::Place::nodes, StopsSpec::Place::tip);
   SceneSpec scene = busy_scene({1e-4, 0}, false);
   scene.stops.place = place;

@@ -1,5 +1,5 @@
 // Periodic orbits of the oscillator of Shaw and Holmes (1983), m = k = F = 1 and one stop: what its closed forms say of
-// period, impact speed and period doubling is what a march of fixed steps is judged to do.
+// period, impact speed and period doubling is what an integration of fixed steps is judged to do.
 #include <numbers>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
 

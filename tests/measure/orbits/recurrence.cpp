@@ -241,7 +241,7 @@ TEST_CASE("settling: a cycle of p is seen after p + max(p, 4) + 4 periods") {
   }
 }
 
-TEST_CASE("settling: agrees with the recurrence of what follows, and a chaotic or broken march never settles") {
+TEST_CASE("settling: agrees with the recurrence of what follows, and a chaotic or broken integration never settles") {
   Settling periodic({1.0}, tolerance), chaotic({1.0}, tolerance), broken({1.0}, tolerance);
   double x = 0.4, y = 0.4;
   int settled_at = 0;

@@ -188,7 +188,7 @@ TEST_CASE("grazing of the undamped beam follows from the scheme's linear respons
   CHECK(overlap(*response, lane) > 0);
 }
 
-TEST_CASE("the linear response is what a long march without contact settles to") {
+TEST_CASE("the linear response is what a long integration without contact settles to") {
   SceneSpec scene = forced_beam(StopsSpec::Place::tip, 5e-3);
   scene.stops.lower.reset();
   scene.stops.upper.reset();

@@ -111,7 +111,7 @@ SceneSpec damped_scene(double alpha, StopsSpec::Place place = StopsSpec::Place::
   return scene;
 }
 
-/// State of a lane as step_map() orders it, slots first; past efforts, at the start of a march, are zero.
+/// State of a lane as step_map() orders it, slots first; past efforts, at the start of an integration, are zero.
 VectorXd state(const Marcher& marcher, int lane, Eigen::Index size) {
   VectorXd x = VectorXd::Zero(size);
   const int rows = marcher.program().model->rows();

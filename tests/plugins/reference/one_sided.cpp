@@ -151,7 +151,7 @@ SampleGrid grid_to(double end) {
   return grid;
 }
 
-/// The motion by a reference; by the march of a method itself where that is "self".
+/// The motion by a reference; by the integration of a method itself where that is "self".
 SampledMotion motion_by(const std::string& reference, const SceneSpec& scene, const Drawn& one, const Choice& mass,
                         double restitution, double end) {
   const int elements = one.structure == "oscillator" ? 1 : 3;

@@ -21,7 +21,7 @@ double largest_gain(const Choice& mass, const Choice& time, double h, double cha
   return audit.totals(0).largest_step_gain / audit.totals(0).scheme_start;
 }
 
-// Median over nine beams that differ by 10⁻³: one march is a draw that may be ten times another.
+// Median over nine beams that differ by 10⁻³: one integration is a draw that may be ten times another.
 double usual_gain(const Choice& time, double h) {
   std::vector<double> gains;
   for (int k = -4; k <= 4; ++k) gains.push_back(largest_gain({"consistent"}, time, h, 1e-3 * k));

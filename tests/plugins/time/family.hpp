@@ -10,7 +10,7 @@
 
 /// \file
 /// What the tests of the time schemes have in common: plans by name, the beam and the bar that they are compared on,
-/// and the force that a march shows.
+/// and the force that an integration shows.
 namespace ricochet::testing {
 
 /// "hht-alpha alpha = -0.3", to be read in a failure.

@@ -1,4 +1,4 @@
-// A march that begins at a rigid stop, or nearer than a step's way to it.
+// An integration that begins at a rigid stop, or nearer than a step's way to it.
 #include "tests/plugins/time/family.hpp"
 
 using namespace ricochet;
@@ -72,7 +72,7 @@ TEST_CASE("a free mass that starts within a step's way of its stop rebounds with
         }
 }
 
-TEST_CASE("what leaves its stop as a march begins is not pushed, whatever the load") {
+TEST_CASE("what leaves its stop as an integration begins is not pushed, whatever the load") {
   for (const double e : {0.0, 0.5, 1.0})
     for (const Choice& time : restituting(e)) {
       SceneSpec scene = with_stop(oscillator(0, 0, 0, 4.905), true);
@@ -91,7 +91,7 @@ TEST_CASE("what leaves its stop as a march begins is not pushed, whatever the lo
     }
 }
 
-TEST_CASE("what is pressed on its stop as a march begins stays there, the stop carrying the load") {
+TEST_CASE("what is pressed on its stop as an integration begins stays there, the stop carrying the load") {
   for (const double e : {0.0, 0.5, 1.0})
     for (const Choice& time : restituting(e)) {
       INFO(label(time));
@@ -106,7 +106,7 @@ TEST_CASE("what is pressed on its stop as a march begins stays there, the stop c
 }
 
 TEST_CASE("a cantilever's massive tip rebounds from a start at its stop as from an impact on the way") {
-  // The tip moves with the whole beam; the start at the stop tends to the march that meets it a step later.
+  // The tip moves with the whole beam; the start at the stop tends to the integration that meets it a step later.
   for (const double e : {0.0, 0.5})
     for (const char* start : {"first-order", "second-order"}) {
       const auto tip = [&](double gap, double h) {

@@ -108,7 +108,7 @@ TEST_CASE("A case of stability prints its rows, and orbits are sent to point") {
   CHECK_THAT(again.out, Contains("stability:") && Contains("as stored to the last bit"));
   const Said curve = say(here, "case there " + id + " --samples 10");
   CHECK(curve.code == 2);
-  CHECK_THAT(curve.err, Contains("more than one march"));
+  CHECK_THAT(curve.err, Contains("more than one integration"));
 
   const ScratchFolder other;
   Json sweep = study("bifurcation");

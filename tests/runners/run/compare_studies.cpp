@@ -11,7 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Two masses × two steps; a march of a thousand steps.
+/// Two masses × two steps; an integration of a thousand steps.
 StudyResults study(const std::string& beginning = "a") {
   StudyResults results;
   results.name = "pair";
@@ -79,7 +79,7 @@ TEST_CASE("What was asked differently is told by pointer, a list that grew as on
   CHECK(found.inputs[3].a.empty());
 }
 
-TEST_CASE("A number moves within the round-off of its march, or beyond it, against what it is a share of") {
+TEST_CASE("A number moves within the round-off of its integration, or beyond it, against what it is a share of") {
   const StudyResults a = study();
   StudyResults b = study();
   // The scale of what contact takes is the energy brought in, 4: round-off of 1000 steps is 4 × 1000 × 2⁻⁵².

@@ -44,7 +44,7 @@ TEST_CASE("outputs: tables of numbers stand beside cases.csv, those for the repo
   CHECK(read_text(folder / "export/points.csv") == points);
 }
 
-TEST_CASE("outputs: of tables that the folder had, those that the results have no longer go, and a stranger's stay") {
+TEST_CASE("outputs: of tables that the folder had, those that the results have no longer go, and a third party's stay") {
   const ScratchFolder folder;
   const auto page = [](const StudyResults&) { return std::string("page"); };
   write_outputs(folder.path(), results_with_points(), page);

@@ -46,17 +46,16 @@ TEST_CASE("progress: the bar fits the terminal") {
   CHECK_THAT(progress_bar(state, 80), Catch::StartsWith("[#") && Catch::EndsWith("30 s left"));
 }
 
-TEST_CASE("progress: a terminal's line is erased at the end, and notes stand on lines of their own") {
+TEST_CASE("progress: a terminal's line is erased at the end") {
   const ScratchFolder scratch;
   const std::atomic<bool> stop{false};
   std::FILE* file = std::fopen((scratch / "terminal").c_str(), "w");
   {
     Progress progress(file, true, 2, 2, stop);
     progress.started("a", 1);
-    progress.note("hello");
     progress.finished("a");
   }
   std::fclose(file);
   const std::string text = read_text(scratch / "terminal");
-  CHECK_THAT(text, Catch::Contains("\r\x1b[Khello\n") && Catch::Contains("1/2 cases") && Catch::EndsWith("\r\x1b[K"));
+  CHECK_THAT(text, Catch::Contains("1/2 cases") && Catch::EndsWith("\r\x1b[K"));
 }

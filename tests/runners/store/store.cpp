@@ -118,7 +118,7 @@ TEST_CASE("store: cases are in the study's order, whatever the order they finish
   CHECK(seen.cases[0].id == kExpected[0].id);
 }
 
-TEST_CASE("store: kept are the cases whose fingerprint is the same, others and strangers are no longer there") {
+TEST_CASE("store: kept are the cases whose fingerprint is the same, others and foreign ones are no longer there") {
   const ScratchFolder folder;
   fill(folder.path());
   Store store(folder.path(), false);

@@ -1,4 +1,4 @@
-/// Cases in worker processes: the same results as in one process, whatever a plugin or a stranger does to the workers.
+/// Cases in worker processes: the same results as in one process, whatever a plugin or another program does to the workers.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -226,7 +226,7 @@ TEST_CASE("workers: a call that never returns is told by case, plugin and functi
   CHECK_THAT(told(), Contains("interrupted: 2 of 4"));
 }
 
-TEST_CASE("workers: one that a stranger kills costs nothing but time") {
+TEST_CASE("workers: one that another program kills costs nothing but time") {
   const ScratchFolder scratch;
   const Json study = longer();
   REQUIRE(run(scratch, study, "here", "--inline").code == 0);

@@ -182,7 +182,7 @@ TEST_CASE("A value that every cell replaces is not looked at") {
   CHECK_THROWS_WITH(Opened(study), Contains("does not parse"));
 }
 
-TEST_CASE("Cells marched in batches of their own or many batches together have the same bits") {
+TEST_CASE("Cells marched in batches of their own or many batches together are bitwise equal") {
   Json text = grid_study(96, 96, false);
   text["transient"] = {{"periods", 4}, {"at_most", 8}};
   text["keep"] = 16;
@@ -197,7 +197,7 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   std::atomic<bool> stop = false;
   CaseContext context{{}, "key", &workers};
   context.checkpoints.find = [&](const std::string& key) {
-    stop = key.starts_with("orbits/");  // looked for when the march begins
+    stop = key.starts_with("orbits/");  // looked for when the integration begins
     return kept.count(key) ? kept[key] : "";
   };
   context.checkpoints.keep = [&](const std::string& key, const std::string& bytes) { kept[key] = bytes; };
@@ -209,7 +209,7 @@ TEST_CASE("Cells marched in batches of their own or many batches together have t
   CHECK((bits(run_basins(opened.study.cases.front(), opened.registry, context, stop)) == wanted));
 }
 
-TEST_CASE("Workers, interruptions and damage to what was stored do not change the bits of basins") {
+TEST_CASE("Workers, interruptions and damage to what was stored do not change basins") {
   const Opened opened(grid_study(13, 13, true));
   const std::string wanted = bits(opened.run());
   for (int run = 0; run < 3; ++run) {
@@ -223,7 +223,7 @@ TEST_CASE("Workers, interruptions and damage to what was stored do not change th
   CaseContext context;
   context.key = "key";
   context.checkpoints.find = [&](const std::string& key) {
-    if (key.starts_with("orbits/") && ++looks % 5 == 0) stop = true;  // a march that ends in its first periods
+    if (key.starts_with("orbits/") && ++looks % 5 == 0) stop = true;  // an integration that ends in its first periods
     return kept.contains(key) ? kept.at(key) : std::string();
   };
   context.checkpoints.keep = [&](const std::string& key, const std::string& bytes) {

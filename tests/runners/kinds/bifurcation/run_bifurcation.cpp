@@ -20,7 +20,7 @@ std::vector<double> sections(const CaseRecord& record, std::size_t start) {
   return found;
 }
 
-// The bits of what a case found: how many steps it took is not part of them.
+// What a case found, as bytes: how many steps it took is not part of them.
 std::string tables_of(CaseRecord record) {
   record.steps = 0;
   return bits_of(record);
@@ -59,7 +59,7 @@ TEST_CASE("bifurcation: a start beyond a stop is for the laws that push it back,
   }
 }
 
-TEST_CASE("bifurcation: what was stored and is damaged is marched again, to the same bits") {
+TEST_CASE("bifurcation: what was stored and is damaged is marched again, bitwise equal") {
   Json text = beam_sweep({0.05, 0.08, 0.086}, Json::array({"rest", "up"}));
   text["exponents"] = 1;
   const std::string wanted = tables_of(run_sweep(text));

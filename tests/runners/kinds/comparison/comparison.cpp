@@ -293,13 +293,13 @@ TEST_CASE("effects stand beside the cases wherever two choices of three levels v
   CHECK(sums["tip_displacement_end"] == Approx(1).epsilon(1e-9));
 }
 
-TEST_CASE("a stranger's scheme and law are known by what they declare, not by what they call it") {
+TEST_CASE("a third party's scheme and law are known by what they declare, not by what they call it") {
   Catalogue catalogue{RICOCHET_PLUGIN_DIR, {}, {}};
   Registry registry;
   catalogue.open_all(registry);
   // Moreau–Jean and the penalty under other names, with other keys.
   registry.add_time(
-      {.name = "stranger",
+      {.name = "foreign",
        .summary = "a scheme of the tests",
        .text = "Moreau-Jean.",
        .source = "these tests",
@@ -316,7 +316,7 @@ TEST_CASE("a stranger's scheme and law are known by what they declare, not by wh
     return reference_problem(read.cases.front(), registry);
   };
   const Json own = {{"name", "moreau-jean"}, {"theta", 0.5}, {"restitution", 0.5}},
-             other = {{"name", "stranger"}, {"bounce", 0.5}}, spring = {{"name", "penalty"}, {"stiffness", 1e4}};
+             other = {{"name", "foreign"}, {"bounce", 0.5}}, spring = {{"name", "penalty"}, {"stiffness", 1e4}};
   CHECK(problem(own, "signorini").restitution == 0.5);
   CHECK(problem(other, "signorini").restitution == 0.5);
   CHECK(problem(other, spring).contact_stiffness == 1e4);

@@ -265,7 +265,7 @@ class Moody final : public TimeScheme {
 
 }  // namespace
 
-TEST_CASE("a march that is not what its spectrum says, without contact, is an error of the method") {
+TEST_CASE("an integration that is not what its spectrum says, without contact, is an error of the method") {
   Json text = study_text("consistent", "none", {{"name", "newmark"}}, 1e-4, 1e-3, 3);
   Study study;
   Registry& registry = opened(text, study);

@@ -31,7 +31,7 @@ Json diagram() {
 
 }  // namespace
 
-TEST_CASE("A point is marched with the bits of its diagram") {
+TEST_CASE("A point is marched bitwise equal to those of its diagram") {
   Catalogue catalogue(RICOCHET_PLUGIN_DIR, {}, {});
   Registry registry;
   const Study study = parse_study(diagram().dump(1), catalogue, registry);

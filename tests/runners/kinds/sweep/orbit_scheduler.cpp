@@ -167,7 +167,7 @@ TEST_CASE("orbits do not depend on who marches them nor on lanes") {
   CHECK(difference(marched(sweep, 3, 2), reference) == "");
 }
 
-TEST_CASE("a sweep that is stopped at any moment goes on with the same bits") {
+TEST_CASE("a sweep that is stopped at any moment goes on bitwise equal") {
   Json text = beam_sweep({0.078, 0.086, 0.099});
   SECTION("rigid") {}
   SECTION("springs") {
@@ -254,7 +254,7 @@ TEST_CASE("what is marched after the first run takes part as if it had been ther
   CHECK(difference(bits(once), bits(twice)) == "");
 }
 
-TEST_CASE("a budget that is spent ends the march, and says so") {
+TEST_CASE("a budget that is spent ends the integration, and says so") {
   Sweep sweep(beam_sweep({0.078, 0.086, 0.099}));
   sweep.options.budget = 1e-6;
   OrbitScheduler scheduler(sweep.scenes, sweep.options);

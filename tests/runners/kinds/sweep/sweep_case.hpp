@@ -106,7 +106,7 @@ inline std::vector<Cell> of_values(const CaseRecord& record, const std::string& 
   return column_of(table_of(record, "values"), name);
 }
 
-/// Every table and number of a record as text that tells any two bits apart.
+/// Every table and number of a record as text that tells results apart which differ in one bit.
 inline std::string bits_of(const CaseRecord& record) {
   std::string text = record.status + record.reason + std::to_string(record.steps);
   for (const Table& table : record.tables)

@@ -1,4 +1,4 @@
-// Steps that a trajectory leaves out: its rows, its curve and its window are those of the march of every step.
+// Steps that a trajectory leaves out: its rows, its curve and its window are those of the integration of every step.
 #include <catch2/catch.hpp>
 
 #include "runners/store/record_values.hpp"
@@ -67,7 +67,7 @@ TEST_CASE("a trajectory that leaves out steps has the measures, the curve and th
   }
 }
 
-TEST_CASE("how a march goes is an axis of the study, and absent it is chosen case by case") {
+TEST_CASE("how an integration goes is an axis of the study, and absent it is chosen case by case") {
   CaseRuns shaken;
   Json text = shaken_study();
   const Study two = shaken.study(text);
@@ -85,7 +85,7 @@ TEST_CASE("how a march goes is an axis of the study, and absent it is chosen cas
   CHECK(measure(chosen, "steps_visited").value() < 10000);
 }
 
-TEST_CASE("a march by flights that cannot fly is refused with the reason, and one that may choose marches") {
+TEST_CASE("an integration by flights that cannot fly is refused with the reason, and one that may choose marches") {
   CaseRuns shaken;
   Json text = shaken_study();
   text["scene"]["load"] = "0.1*sin(3*t)";
