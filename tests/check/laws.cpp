@@ -28,7 +28,7 @@ enum class Wrong {
   dissipation,
   pulls,
   neighbour,       // writes a lane that is not touched
-  neighbour,         // depends on the lane before it
+  lane_before,     // depends on the lane before it
   memory_of_last,  // adds the effort of the last step
   residual,        // owns up to nothing while it stops early
   no_number
@@ -49,7 +49,7 @@ class FlawedLaw final : public ContactLaw {
       void* volatile raw = std::malloc(64);
       std::free(raw);
     }
-    double neighbour = 0;
+    double lane_before = 0;
     for (const int lane : problem.touched) {
       const auto at = [&](int i) { return i * problem.lanes + lane; };
       const double last = problem.effort[lane];
@@ -60,12 +60,12 @@ class FlawedLaw final : public ContactLaw {
         double& p = problem.effort[at(i)];
         if (wrong_ == Wrong::effort) p *= 3;
         if (wrong_ == Wrong::pulls) p = -p;
-        if (wrong_ == Wrong::neighbour) p += neighbour;
+        if (wrong_ == Wrong::lane_before) p += lane_before;
         if (wrong_ == Wrong::memory_of_last && last != 0) p += 0.1 * last;
         if (wrong_ == Wrong::residual) p *= 0.99;
         if (wrong_ == Wrong::no_number) p = std::nan("");
       }
-      neighbour += 1e-9 * problem.effort[at(0)];
+      lane_before += 1e-9 * problem.effort[at(0)];
       if (wrong_ == Wrong::dissipation) problem.outcome[lane].dissipation = 1;
     }
     if (wrong_ == Wrong::neighbour) problem.effort[0] = 0;
@@ -190,7 +190,7 @@ TEST_CASE("check: an allocation in solve() is caught, whoever makes it") {
 
 TEST_CASE("check: lanes that know of each other, or of lanes that are not theirs, are caught") {
   caught(true, Wrong::neighbour, "untouched lanes", "which is not in `touched`");
-  caught(false, Wrong::neighbour, "lanes independent", "lanes must not know of each other");
+  caught(false, Wrong::lane_before, "lanes independent", "lanes must not know of each other");
 }
 
 TEST_CASE("check: a solution that depends on where the search begins is caught") {
