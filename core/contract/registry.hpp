@@ -40,6 +40,7 @@ struct PluginManual {
   std::string text;     ///< one paragraph
   std::string source;   ///< author, year, equation
   std::vector<ParameterSpec> parameters;
+  std::string words = {};  ///< what sentences call it, "rigid stops"; "": its name
 };
 
 /// One registered method.

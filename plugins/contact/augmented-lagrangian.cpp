@@ -89,7 +89,8 @@ void register_augmented_lagrangian(Registry& registry) {
                       real_parameter("tolerance", "1", 1e-10, {.low = 0, .high = 1},
                                      "relative change of the efforts at which a step stops; 0: always all iterations"),
                       word_parameter("start", {"zero", "previous"}, "previous",
-                                     "the multiplier that a step starts from: zero, or the last step's effort")}},
+                                     "the multiplier that a step starts from: zero, or the last step's effort")},
+       .words = "augmented Lagrangian"},
       [](const Parameters& p) {
         return std::make_unique<AugmentedLagrangian>(static_cast<int>(p.integer("iterations")), p.real("tolerance"),
                                                      p.word("start") == "previous");

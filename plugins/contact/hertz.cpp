@@ -38,7 +38,8 @@ void register_hertz(Registry& registry) {
           it may, little.)",
        .source = "Hertz (1881), Über die Berührung fester elastischer Körper; " + std::string(evaluation_source),
        .parameters = {stiffness_parameter("N/m^n", "k, force at a depth of 1 m at each contact point"),
-                      exponent_parameter(), evaluation_parameter()}},
+                      exponent_parameter(), evaluation_parameter()},
+       .words = "Hertz"},
       [](const Parameters& p) { return std::make_unique<Hertz>(evaluation_of(p)); });
 }
 

@@ -49,7 +49,8 @@ void register_hunt_crossley(Registry& registry) {
           by the law.)",
        .source = "Hunt and Crossley (1975), Coefficient of restitution interpreted as damping in vibroimpact",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
-                      exponent_parameter(), damping, evaluation_parameter()}},
+                      exponent_parameter(), damping, evaluation_parameter()},
+       .words = "Hunt–Crossley"},
       [](const Parameters& p) { return std::make_unique<HuntCrossley>(evaluation_of(p)); });
 }
 

@@ -85,7 +85,8 @@ void register_kelvin_voigt(Registry& registry) {
           law.)",
        .source = "Goldsmith (1960), Impact, section 3.4; Brogliato (2016), Nonsmooth Mechanics, section 2.1",
        .parameters = {stiffness_parameter("N/m", "k, stiffness of the spring at each contact point"), viscosity,
-                      evaluation_parameter()}},
+                      evaluation_parameter()},
+       .words = "Kelvin–Voigt"},
       [](const Parameters& p) { return std::make_unique<KelvinVoigt>(evaluation_of(p)); });
 }
 

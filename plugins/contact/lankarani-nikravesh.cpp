@@ -85,7 +85,8 @@ void register_lankarani_nikravesh(Registry& registry) {
        .source = R"(Lankarani and Nikravesh (1990), A contact force model with hysteresis damping for impact analysis
           of multibody systems)",
        .parameters = {stiffness_parameter("N/m^n", "k, force at rest at a depth of 1 m at each contact point"),
-                      exponent_parameter(), restitution, evaluation_parameter()}},
+                      exponent_parameter(), restitution, evaluation_parameter()},
+       .words = "Lankarani–Nikravesh"},
       [](const Parameters& p) { return std::make_unique<LankaraniNikravesh>(evaluation_of(p)); });
 }
 

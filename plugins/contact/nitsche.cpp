@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ricochet/kernels/eigenvalues.hpp>
 #include <ricochet/contract/contact_law.hpp>
+#include <ricochet/kernels/eigenvalues.hpp>
 
 #include "power_law.hpp"
 
@@ -113,7 +113,8 @@ void register_nitsche(Registry& registry) {
                                      "γ₀, κ over 12EI/ℓ³ of a beam's element or EA/ℓ of a bar's"),
                       integer_parameter("theta", 1, {.low = -1, .high = 1},
                                         "θ of Nitsche's family; 1, the symmetric method, is the one that is offered"),
-                      evaluation_parameter()}},
+                      evaluation_parameter()},
+       .words = "Nitsche"},
       [](const Parameters& p) {
         return std::make_unique<Nitsche>(p.real("gamma0"), p.integer("theta"), evaluation_of(p));
       });

@@ -19,7 +19,8 @@ void register_none(Registry& registry) {
        .text = R"(The structure moves through its stops. What remains is the linear problem, which shows the mesh
           and the time scheme alone.)",
        .source = "—",
-       .parameters = {}},
+       .parameters = {},
+       .words = "no stops"},
       [](const Parameters&) { return std::make_unique<None>(); });
 }
 

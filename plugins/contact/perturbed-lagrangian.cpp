@@ -47,7 +47,8 @@ void register_perturbed_lagrangian(Registry& registry) {
           the implicit penalty. What the measure passes its bound by is reported as complementarity residual.)",
        .source = R"(Simo, Wriggers and Taylor (1985), A perturbed Lagrangian formulation for the finite element
           solution of contact problems)",
-       .parameters = {stiffness_parameter("N/m", "κ, effort per unit of the scheme's impact measure")}},
+       .parameters = {stiffness_parameter("N/m", "κ, effort per unit of the scheme's impact measure")},
+       .words = "perturbed Lagrangian"},
       [](const Parameters&) { return std::make_unique<PerturbedLagrangian>(); });
 }
 

@@ -30,7 +30,8 @@ void register_signorini(Registry& registry) {
        .source =
            R"(Signorini (1959); Moreau (1988), complementarity; solved by the primal–dual active set of Hintermüller,
           Ito and Kunisch (2002), with Murty's (1974) least-index pivoting as the finite fallback)",
-       .parameters = {}},
+       .parameters = {},
+       .words = "rigid stops"},
       [](const Parameters&) { return std::make_unique<Signorini>(); });
 }
 

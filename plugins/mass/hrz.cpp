@@ -14,6 +14,7 @@ class Hrz : public MassStrategy {
 void register_hrz(Registry& registry) {
   PluginManual manual;
   manual.name = "hrz";
+  manual.words = "HRZ";
   manual.summary = "diagonal mass: the consistent diagonal scaled to the element's mass";
   manual.text = "The name under which many look for the lumped mass with scaled rotations: it is that of lumped.";
   manual.source =

@@ -109,6 +109,7 @@ class HybridSingular : public MassStrategy {
 void register_hybrid_singular(Registry& registry) {
   PluginManual manual;
   manual.name = "hybrid-singular";
+  manual.words = "hybrid singular";
   manual.summary = "velocities and momenta of their own, bi-orthogonal, none at contact: M = (Y⁻¹A)ᵀ C (Y⁻¹A)";
   manual.text =
       R"(Velocities are hat functions ψ^v at the nodes, tied to displacements through dual functions ψ^p, which makes

@@ -52,6 +52,7 @@ class MassScaling : public MassStrategy {
 void register_mass_scaling(Registry& registry) {
   PluginManual manual;
   manual.name = "mass-scaling";
+  manual.words = "scaled";
   manual.summary = "lumped mass, with more inertia against each element's own deformation";
   manual.text =
       R"(For explicit schemes: each element is 1 + 2β times as heavy against its deformation as against its rigid

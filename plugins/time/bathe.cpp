@@ -93,7 +93,8 @@ void register_bathe(Registry& registry) {
           is ½)"),
                       real_parameter("split", "1", 0.0, {.low = 0, .high = 1, .high_open = true},
                                      R"(γ, where the first sub-step ends, in steps; 0: (2 − √(2+2ρ∞))/(1 − ρ∞), ½ at
-          ρ∞ = 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005)")}},
+          ρ∞ = 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005)")},
+       .words = "Bathe"},
       [](const Parameters& p) { return std::make_unique<Bathe>(p.real("rho_inf"), p.real("split")); });
 }
 

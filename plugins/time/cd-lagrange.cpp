@@ -90,7 +90,8 @@ void register_cd_lagrange(Registry& registry) {
           integrator for nonsmooth dynamics)",
        .parameters = {with_role(
            real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient"),
-           ParameterRole::restitution)}},
+           ParameterRole::restitution)},
+       .words = "CD-Lagrange"},
       [](const Parameters& p) { return std::make_unique<CdLagrange>(p.real("restitution")); });
 }
 

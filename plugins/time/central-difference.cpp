@@ -56,7 +56,8 @@ void register_central_difference(Registry& registry) {
           which are the same scheme with a multiplier.)",
        .source = R"(Belytschko, Liu and Moran (2000), Nonlinear Finite Elements for Continua and Structures, ch. 6;
           Hughes (1987), The Finite Element Method, section 9.1)",
-       .parameters = {}},
+       .parameters = {},
+       .words = "central difference"},
       [](const Parameters&) { return std::make_unique<CentralDifference>(); });
 }
 

@@ -77,7 +77,8 @@ void register_contact_stabilised_newmark(Registry& registry) {
        .source = R"(Deuflhard, Krause and Ertel (2008), A contact-stabilized Newmark method for dynamical contact
           problems; corrected: this program)",
        .parameters = {word_parameter("velocity", {"original", "corrected"}, "original",
-                                     "whether the projection moves positions alone, or velocities with them")}},
+                                     "whether the projection moves positions alone, or velocities with them")},
+       .words = "contact-stabilised Newmark"},
       [](const Parameters& p) {
         return std::make_unique<ContactStabilisedNewmark>(p.word("velocity") == "corrected");
       });

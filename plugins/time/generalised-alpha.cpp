@@ -58,7 +58,8 @@ void register_generalised_alpha(Registry& registry) {
                                      "ρ∞, what a step leaves of the highest frequencies; 1 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
                                      R"(how a rigid effort enters: end, whole; weighted, as internal forces (1−α_f
-          now, α_f of the one before))")}},
+          now, α_f of the one before))")},
+       .words = "generalised α"},
       [](const Parameters& p) {
         return std::make_unique<GeneralisedAlpha>(p.real("rho_inf"), p.word("contact") == "weighted");
       });

@@ -76,7 +76,8 @@ void register_hht_alpha(Registry& registry) {
        .parameters = {real_parameter("alpha", "1", -0.1, {.low = -1.0 / 3, .high = 0}, "α; 0 does not damp"),
                       word_parameter("contact", {"end", "weighted"}, "end",
                                      R"(how a rigid effort enters: end, whole; weighted, as internal forces (1+α now,
-          −α of the one before))")}},
+          −α of the one before))")},
+       .words = "HHT"},
       [](const Parameters& p) {
         return std::make_unique<HilberHughesTaylor>(p.real("alpha"), p.word("contact") == "weighted");
       });

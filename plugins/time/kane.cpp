@@ -122,7 +122,8 @@ void register_kane(Registry& registry) {
                       real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1}, "γ; above ½ it damps, at first order"),
                       word_parameter("impulse", {"energy", "mass"}, "energy",
                                      R"(where β ≠ γ/2, R of the jump R w = Hᵀp: energy, (M + (β−γ/2)h²K)/h, so that
-          contact never gives energy; mass, M/h)")}},
+          contact never gives energy; mass, M/h)")},
+       .words = "Kane"},
       [](const Parameters& p) {
         return std::make_unique<Kane>(p.real("beta"), p.real("gamma"), p.word("impulse") == "energy");
       });

@@ -43,7 +43,8 @@ void register_laursen_chawla(Registry& registry) {
           over. It is Newton's law with e = 1 asked at the beginning of the step.)",
        .source = R"(Laursen and Chawla (1997), Design of energy conserving algorithms for frictionless dynamic contact
           problems)",
-       .parameters = {}},
+       .parameters = {},
+       .words = "Laursen–Chawla"},
       [](const Parameters&) { return std::make_unique<LaursenChawla>(); });
 }
 

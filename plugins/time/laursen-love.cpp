@@ -58,7 +58,8 @@ void register_laursen_love(Registry& registry) {
           such impulse and ends the integration. Compliant laws are those of midpoint: nothing is then given back.)",
        .source = R"(Laursen and Love (2002), Improved implicit integrators for transient impact problems: geometric
           admissibility within the conserving framework)",
-       .parameters = {}},
+       .parameters = {},
+       .words = "Laursen–Love"},
       [](const Parameters&) { return std::make_unique<LaursenLove>(); });
 }
 

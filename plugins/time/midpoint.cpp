@@ -42,7 +42,8 @@ void register_midpoint(Registry& registry) {
        .source = R"(Simo and Tarnow (1992), The discrete energy–momentum method; Armero and Petocz (1998) for contact
           that conserves; Kane, Repetto, Ortiz and Marsden (1999) for the constraint at the end)",
        .parameters = {word_parameter("constraint", {"end", "middle"}, "end",
-                                     "which position lies between the stops: that of the end, or the mean of both")}},
+                                     "which position lies between the stops: that of the end, or the mean of both")},
+       .words = "mid-point"},
       [](const Parameters& p) { return std::make_unique<Midpoint>(p.word("constraint") == "middle"); });
 }
 

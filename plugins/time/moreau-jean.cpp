@@ -76,7 +76,8 @@ void register_moreau_jean(Registry& registry) {
        .parameters = {real_parameter("theta", "1", 0.5, {.low = 0.5, .high = 1}, "θ; above ½ it damps, at first order"),
                       with_role(real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1},
                                                "e, Newton's restitution coefficient"),
-                                ParameterRole::restitution)}},
+                                ParameterRole::restitution)},
+       .words = "Moreau–Jean"},
       [](const Parameters& p) { return std::make_unique<MoreauJean>(p.real("theta"), p.real("restitution")); });
 }
 

@@ -72,7 +72,8 @@ void register_newmark(Registry& registry) {
           Laursen and Chawla (1997))",
        .parameters = {real_parameter("beta", "1", 0.25, {.low = 0, .high = 0.5}, "β"),
                       real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1},
-                                     "γ; above ½ it damps, at first order")}},
+                                     "γ; above ½ it damps, at first order")},
+       .words = "Newmark"},
       [](const Parameters& p) {
         AlphaMethod method;
         method.beta = p.real("beta");

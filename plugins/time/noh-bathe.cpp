@@ -102,7 +102,8 @@ void register_noh_bathe(Registry& registry) {
           program's; the authors give none.)",
        .source = "Noh and Bathe (2013), An explicit time integration scheme for the analysis of wave propagations",
        .parameters = {real_parameter("split", "1", 0.54, {.low = 0.5, .high = 1, .low_open = true, .high_open = true},
-                                     "p, where the first sub-step ends, in steps")}},
+                                     "p, where the first sub-step ends, in steps")},
+       .words = "Noh–Bathe"},
       [](const Parameters& p) { return std::make_unique<NohBathe>(p.real("split")); });
 }
 

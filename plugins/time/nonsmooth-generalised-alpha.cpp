@@ -144,7 +144,8 @@ void register_nonsmooth_generalised_alpha(Registry& registry) {
                       word_parameter(
                           "position", {"half", "beta", "projected"}, "half",
                           R"(what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected, that and onto
-          the stops)")}},
+          the stops)")},
+       .words = "nonsmooth generalised α"},
       [](const Parameters& p) {
         return std::make_unique<NonsmoothGeneralisedAlpha>(p.real("rho_inf"), p.real("restitution"),
                                                            p.word("position"));

@@ -87,7 +87,8 @@ void register_sdirk(Registry& registry) {
           penalties coincide.)",
        .source =
            "Alexander (1977), Diagonally implicit Runge–Kutta methods for stiff O.D.E.'s; order 3: Nørsett (1974)",
-       .parameters = {integer_parameter("order", 2, {.low = 2, .high = 3}, "2: L-stable; 3: A-stable")}},
+       .parameters = {integer_parameter("order", 2, {.low = 2, .high = 3}, "2: L-stable; 3: A-stable")},
+       .words = "SDIRK"},
       [](const Parameters& p) { return std::make_unique<Sdirk>(p.integer("order") == 3); });
 }
 

@@ -123,7 +123,8 @@ void register_newmark_dumont_paoli(Registry& registry) {
             word_parameter(
                 "start", {"first-order", "second-order"}, "second-order",
                 R"(first-order: q₁ = q₀ + h v₀; second-order: q₋₁ = q₁ − 2h v₀ in the scheme's own equation; stops
-          hold either)")}},
+          hold either)")},
+       .words = "Dumont–Paoli"},
       [](const Parameters& p) {
         return std::make_unique<ThreeLevel>(p.real("beta"), p.real("restitution"), p.word("start") == "second-order");
       });
@@ -140,7 +141,8 @@ void register_paoli_schatzman(Registry& registry) {
                      .source = "Paoli and Schatzman (2002), A numerical scheme for impact problems",
                      .parameters = {with_role(
                          real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, restitution coefficient"),
-                         ParameterRole::restitution)}},
+                         ParameterRole::restitution)},
+                     .words = "Paoli–Schatzman"},
                     [](const Parameters& p) { return std::make_unique<ThreeLevel>(0.0, p.real("restitution"), true); });
 }
 
@@ -154,7 +156,8 @@ void register_carpenter_taylor_katona(Registry& registry) {
           contact never gives energy.)",
        .source = R"(Carpenter, Taylor and Katona (1991), Lagrange constraints for transient finite element surface
           contact)",
-       .parameters = {}},
+       .parameters = {},
+       .words = "Carpenter–Taylor–Katona"},
       [](const Parameters&) { return std::make_unique<ThreeLevel>(0.0, 0.0, true); });
 }
 

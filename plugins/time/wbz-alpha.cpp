@@ -44,7 +44,8 @@ void register_wbz_alpha(Registry& registry) {
           coincide.)",
        .source = "Wood, Bossak and Zienkiewicz (1980), An alpha modification of Newmark's method",
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
-                                     "ρ∞, what a step leaves of the highest frequencies; 1 is Newmark (¼, ½)")}},
+                                     "ρ∞, what a step leaves of the highest frequencies; 1 is Newmark (¼, ½)")},
+       .words = "WBZ"},
       [](const Parameters& p) { return std::make_unique<WoodBossakZienkiewicz>(p.real("rho_inf")); });
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/answers/answer.hpp"
 #include "runners/march/case_context.hpp"
 #include "runners/march/prepare_case.hpp"
 #include "runners/report/kind_page.hpp"
@@ -90,9 +91,9 @@ struct Kind {
 
   /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
   std::function<void(StudyResults&)> tables;
-  /// The rows of `answers` (answers_head) where this kind answers in its own way. Empty: what each choice makes of the
-  /// observed measures.
-  std::function<Table(const StudyResults&)> answers;
+  /// The answer where this kind has its own way. Empty: methods in tiers, or choices by what they move, in the observed
+  /// measures.
+  std::function<answers::Answer(const StudyResults&)> answers;
   /// The measures that an answer is made of where the study names none. Empty: none.
   std::function<std::vector<std::string>(const StudyResults&)> observed;
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
@@ -113,17 +114,6 @@ struct Kind {
   /// Marches one point of a stored study again, samples to `out`; returns the exit code. Throws PointRefused. Empty:
   /// such a study has no points.
   std::function<int(const StudyResults&, const PointRequest&, std::ostream& out)> point;
-};
-
-/// `answers` without rows.
-Table answers_head();
-
-/// A row of `answers`; what a kind does not say stays nothing.
-struct AnswerRow {
-  Cell choice = {}, measure = {}, verdict = {}, effect = {}, largest = {}, scale = {}, step_open = {}, mesh_open = {},
-       window_open = {}, combinations = {}, depends_on = {}, sentence = {};
-  /// In the order of answers_head().
-  Row row() const;
 };
 
 /// The kinds of the program, in the order in which they are told.

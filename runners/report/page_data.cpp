@@ -111,7 +111,7 @@ PageJson measures_json(const PageJson& cases) {
 PageJson tables_json(const CaseView& view, const KindPage& kind) {
   PageJson out = PageJson::object();
   std::vector<std::string_view> names = kind.tables;
-  names.insert(names.end(), {"answers", "effects", "effects_said"});
+  names.insert(names.end(), {"answers", "differences", "effects", "effects_said"});
   for (const std::string_view name : names)
     if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
   return out;

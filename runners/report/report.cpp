@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
 #include <unordered_set>
 
@@ -73,12 +74,21 @@ std::string script(const std::string& attributes, const std::string& content) {
   return "<script" + attributes + ">" + content + "</script>\n";
 }
 
-/// What the rows of `answers` say, the weightiest first.
+/// A sentence with its numbers in bold, so that the eye finds them.
+std::string emphasised(const std::string& sentence) {
+  static const std::string digits = "(?:−)?[0-9][0-9.]*(?:e-?[0-9]+)?",
+                           unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W)";
+  static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
+                                 "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
+  return std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>");
+}
+
+/// The answer: its first sentence large, the others below it; more of them fold.
 std::string answer_sentences(const StudyResults& results) {
   const std::vector<std::string> lines = answer_lines(results);
   if (lines.empty()) return "";
-  std::string out = "<ul class=\"answer lead\">\n", rest;
-  for (size_t k = 0; k < lines.size(); ++k)
+  std::string out = "<p class=\"headline\">" + emphasised(lines.front()) + "</p>\n<ul class=\"answer\">\n", rest;
+  for (size_t k = 1; k < lines.size(); ++k)
     (k < most_answer_lines ? out : rest) += "<li>" + escape(lines[k]) + "</li>\n";
   out += "</ul>\n";
   if (!rest.empty())
@@ -95,7 +105,7 @@ std::string answer_html(const CaseView& view, const KindPage& kind) {
   const std::string said = answer_sentences(view.results()), more = kind.answer ? kind.answer(view) : "";
   const std::string answer =
       said.empty() ? more
-                   : "<div class=\"first\"><div>\n" + said + "</div><div id=\"answer-figure\"></div></div>\n" + more;
+                   : "<div class=\"first\"><div>\n" + said + more + "</div><div id=\"answer-figure\"></div></div>\n";
   if (answer.empty() && view.with_status("done").empty())
     return "<p>No case has finished with a result; the table below says why.</p>\n";
   return answer;

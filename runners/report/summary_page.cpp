@@ -135,8 +135,7 @@ Fill limits_fill(const StudyResults& results) {
   if (const Table* answers = find_table(results.derived, "answers")) {
     const TableReader rows(*answers);
     for (std::size_t row = 0; row < rows.size(); ++row)
-      if (const std::string verdict = rows.text(row, "verdict"); verdict == "not resolved" || verdict == "not told")
-        open.push_back(in_words(rows.text(row, "measure")) + " by " + rows.text(row, "choice"));
+      if (rows.text(row, "form") == "open") open.push_back(in_words(rows.text(row, "measure")));
   }
   if (!open.empty()) out << line_fill("Not resolved: " + list_text(open, most_values) + ".");
   std::size_t notes = 0;

@@ -36,33 +36,6 @@ MeasureSpread spread_of(const StudyResults& results, const std::string& measure)
 /// What round-off of a run may make of a value, over its scale: 2⁻⁵² × steps.
 double round_off(const CaseRecord& record);
 
-// What each choice of a study makes of a measure, against what step and mesh leave open.
-
-/// A difference below this share of its scale is said not to matter.
-inline constexpr double answer_threshold = 0.01;
-
-/// Whether a column is refined rather than chosen: the step, the mesh.
-bool refines(const std::string& column);
-
-/// The levels of one choice with all other choices the same, each by its finest case.
-struct GroupEffect {
-  ResolvedEffect found;  ///< in units of the scale
-  Cases levels;          ///< the finest finished case of each level
-  double step = 0;       ///< the finest step, s; 0 where the cases have none
-  double elements = 0;   ///< of the finest mesh; 0 where the cases have none
-};
-
-/// One choice and one measure over all groups with two levels or more.
-struct ChoiceEffects {
-  std::string choice, measure, scale;  ///< scale in words: "of the energy brought in", "of the larger"
-  std::vector<GroupEffect> groups;
-  std::size_t count(EffectVerdict verdict) const;
-};
-
-/// Every choice that varies (a method with its parameters is one) but step and mesh, with every measure given, in
-/// that order.
-std::vector<ChoiceEffects> choice_effects(const StudyResults& results, const std::vector<std::string>& measures);
-
 /// effects: per measure of the motion, the share of its spread that each choice explains; no rows where fewer than two
 /// choices vary.
 Table effects_table(const StudyResults& results);

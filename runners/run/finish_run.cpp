@@ -30,6 +30,8 @@ void derive_tables(StudyResults& results) {
   // The answer says the shares, and stands before them.
   const auto before_shares = static_cast<std::ptrdiff_t>(results.derived.size());
   if (Table shares = effects_table(results); !shares.rows.empty()) results.derived.push_back(std::move(shares));
+  for (Table& table : evidence_tables(results))
+    if (!table.rows.empty()) results.derived.push_back(std::move(table));
   if (Table answers = answers_table(results); !answers.rows.empty())
     results.derived.insert(results.derived.begin() + before_shares, std::move(answers));
   if (Table reasons = reasons_table(results); !reasons.rows.empty()) results.derived.push_back(std::move(reasons));
@@ -89,9 +91,10 @@ int tell_results(std::FILE* out, const StudyResults& results, const std::filesys
   constexpr int nothing_ran = 3;
   const bool nothing = std::all_of(results.cases.begin(), results.cases.end(),
                                    [](const CaseRecord& one) { return one.status == "refused"; });
+  const std::string rows = evidence_text(results), evidence = rows.empty() ? "" : rows + "\n";
   const int code = nothing ? nothing_ran : results_exit_code(results);
-  say(out, fmt::format("{}{}\n{} ({})\n{}report: {}\n", table ? case_table(results) + "\n" : "", answer_text(results),
-                       totals_text(results), how, extremes_text(results), (folder / "report.html").string()));
+  say(out, fmt::format("{}{}\n{}{} ({})\nreport: {}\n", table ? case_table(results) + "\n" : "", answer_text(results),
+                       evidence, totals_text(results), how, (folder / "report.html").string()));
   if (nothing)
     say(out, "nothing ran: every case is refused; the reasons above and in the report say what to change\n");
   else if (code != 0)

@@ -68,6 +68,7 @@ StudyResults results_header(const Study& study) {
   results.kind = study.kind;
   results.columns = study.columns;
   results.axes = study.axes;
+  results.method_words = study.method_words;
   results.expected_cases = static_cast<int>(study.cases.size());
   return results;
 }

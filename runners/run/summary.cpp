@@ -60,43 +60,6 @@ std::string answer_text(const StudyResults& results) {
   return out;
 }
 
-std::string extremes_text(const StudyResults& results) {
-  std::string out;
-  if (const std::vector<std::string> observed = observed_measures(results); !observed.empty()) {
-    const CaseRecord *least = nullptr, *most = nullptr;
-    double low = 0, high = 0;
-    for (const CaseRecord& record : results.cases) {
-      const auto value = record.status == "done" ? measure(record, observed.front()) : std::nullopt;
-      if (!value) continue;
-      if (!least || *value < low) least = &record, low = *value;
-      if (!most || *value > high) most = &record, high = *value;
-    }
-    const MeasureInfo* info = measure_info(observed.front());
-    const std::string unit = info && std::string(info->unit) != "1" ? std::string(" ") + info->unit : "";
-    const report::CaseView view(results);
-    if (least && least != most)
-      for (const auto& [word, record, value] : {std::tuple("least", least, low), std::tuple("most", most, high)})
-        out += fmt::format("{} {}: {:.4g}{} in {} ({})\n", word, report::in_words(observed.front()), value, unit,
-                           record->id, view.label(*record));
-  }
-  const Table* table = find_table(results.derived, "reasons");
-  if (!table) return out;
-  // By status the reason of most cases; of done ones each.
-  std::map<std::string, std::pair<int, std::string>> reasons;
-  const TableReader rows(*table);
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const int cases = static_cast<int>(rows.number(row, "cases").value_or(0));
-    if (rows.text(row, "status") == "done") {
-      out += fmt::format("done, with a doubt ({}): {}\n", cases, rows.text(row, "reason"));
-      continue;
-    }
-    auto& [count, reason] = reasons[rows.text(row, "status")];
-    if (cases > count) count = cases, reason = rows.text(row, "reason");
-  }
-  for (const auto& [status, most] : reasons) out += fmt::format("{} ({}): {}\n", status, most.first, most.second);
-  return out;
-}
-
 std::string case_table(const StudyResults& results) {
   std::vector<std::string> header;
   for (const std::string& name : results.columns) {

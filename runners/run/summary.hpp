@@ -13,10 +13,6 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind);
 /// The question and the sentences of the answer, a few at most, each on a line of its own; how many more there are.
 std::string answer_text(const StudyResults& results);
 
-/// The finished cases with the least and the most of the first measure that the study observes, a line each, and the
-/// most frequent reason of each status that is no result; "" where there is nothing to say.
-std::string extremes_text(const StudyResults& results);
-
 /// One line per case: the axes that vary in aligned columns under their names, then the outcome.
 std::string case_table(const StudyResults& results);
 

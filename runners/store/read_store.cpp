@@ -55,6 +55,7 @@ void read_study(SQLite::Database& database, StudyResults& results) {
       for (const Json& axis : value)
         results.axes.push_back(
             {axis.at(0).get<std::string>(), axis.at(1).get<std::string>(), axis.at(2).get<std::string>()});
+    if (key == "method_words") results.method_words = value.get<std::map<std::string, std::string>>();
     if (key == "expected_cases") results.expected_cases = value.get<int>();
     if (key == "part") results.part = part_of(value);
   }
@@ -308,7 +309,7 @@ RunStatus read_status(const std::filesystem::path& folder) {
   RunStatus status;
   with_store(folder, [&](SQLite::Database& database) {
     SQLite::Transaction transaction(database);
-    SQLite::Statement study(database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes')");
+    SQLite::Statement study(database, "SELECT key, value FROM study WHERE key NOT IN ('resolved', 'columns', 'axes', 'method_words')");
     while (study.executeStep()) {
       const std::string key = study.getColumn(0).getString();
       const auto value = nlohmann::json::parse(study.getColumn(1).getString());

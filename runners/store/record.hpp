@@ -1,5 +1,7 @@
 #pragma once
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +53,7 @@ struct StudyResults {
   std::string name, question, kind;
   std::vector<std::string> columns;  ///< axis columns of cases.csv, in order
   std::vector<Column> axes = {};     ///< what is known of them beyond the study format: parameters of methods
+  std::map<std::string, std::string> method_words = {};  ///< see Study
   std::vector<CaseRecord> cases;     ///< in the study's order; those not run yet are absent
   int expected_cases = 0;
   StudyPart part = {};  ///< of which these are the cases
@@ -71,6 +74,14 @@ struct MeasureInfo {
   /// The measure of the same case that differences of this one are shares of; "1": it is a share itself; "": its own
   /// largest value.
   const char* scale = "";
+  /// How an answer speaks of it.
+  struct Reading {
+    const char* words = "";             ///< "energy lost at the stops"; "": words of its name
+    int direction = 0;                  ///< 1: more is better, −1: less is, 0: neither
+    std::optional<double> truth = {};   ///< exact where nothing but contact changes energies, and the direction then
+    bool decades = false;               ///< differences are factors, not shares
+  };
+  Reading reading = {};
 };
 
 /// The measures of all kinds, in order. Given by the registry of kinds.

@@ -122,6 +122,7 @@ std::set<std::string> Store::begin(const StudyResults& study, const std::vector<
     Json axes = Json::array();
     for (const Column& axis : study.axes) axes.push_back({axis.name, axis.unit, axis.text});
     insert(state, "axes", text_of(axes));
+    insert(state, "method_words", text_of(study.method_words));
     insert(state, "expected_cases", text_of(study.expected_cases));
     insert(state, "part", text_of({study.part.number, study.part.of}));
   });

@@ -160,4 +160,18 @@ std::vector<Column> axis_meanings(const Study& study, const Registry& registry) 
   return columns;
 }
 
+std::map<std::string, std::string> method_words(const Study& study, const Registry& registry) {
+  std::map<std::string, std::string> words;
+  const auto add = [&](const char* name, Role role, const MethodChoice& method) {
+    const PluginManual* manual = method.plan ? nullptr : registry.manual(role, method.name);
+    if (manual && !manual->words.empty()) words[std::string(name) + " " + method.name] = manual->words;
+  };
+  for (const StudyCase& one : study.cases) {
+    add("mass", Role::mass, one.mass);
+    add("contact", Role::contact, one.contact);
+    add("time", Role::time, one.time);
+  }
+  return words;
+}
+
 }  // namespace ricochet

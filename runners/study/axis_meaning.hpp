@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <nlohmann/json.hpp>
 #include <ricochet/contract/registry.hpp>
 #include <string>
@@ -23,5 +24,8 @@ std::string spoken_choice(const std::string& column);
 
 /// Every axis of a study that is about to run; parameters of methods as their plugins declare them.
 std::vector<Column> axis_meanings(const Study& study, const Registry& registry);
+
+/// Study::method_words of a study that is about to run.
+std::map<std::string, std::string> method_words(const Study& study, const Registry& registry);
 
 }  // namespace ricochet

@@ -86,7 +86,7 @@ Field budget() {
 
 Field observe(std::vector<std::string> measures) {
   Field field = of_form(Field::Form::words, "observe", std::nullopt,
-                        "Measures that the answer is made of; null: the kind chooses.");
+                        "What the answer is made of, the first first: measures, or status; null: the kind chooses.");
   field.spec = word_parameter("observe", std::move(measures), std::nullopt, field.spec.text.c_str());
   return optional(std::move(field));
 }

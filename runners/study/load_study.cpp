@@ -19,6 +19,42 @@ namespace {
 
 using Axes = std::vector<std::pair<std::string, Json>>;
 
+/// Refuses a comparison of what has one level, or of what the study does not have.
+void check_compare(const Study& study) {
+  const auto asked = study.resolved.find("compare");
+  if (asked == study.resolved.end()) return;
+  const std::string name = asked->get<std::string>();
+  if (name.empty() || name == "all") return;
+  std::vector<std::string> varying, known = {"all"};
+  const auto add = [](std::vector<std::string>& list, const std::string& one) {
+    if (std::find(list.begin(), list.end(), one) == list.end()) list.push_back(one);
+  };
+  for (const std::string& column : study.columns) {
+    if (column == "step" || column == "elements" || column == "steps_per_period") continue;
+    add(known, axis_role(column));
+    add(known, column);
+    const auto value = [&](const StudyCase& one) {
+      for (const auto& [axis, level] : one.axes)
+        if (axis == column) return level;
+      return Json(nullptr);
+    };
+    const Json first = study.cases.empty() ? Json(nullptr) : value(study.cases.front());
+    if (std::all_of(study.cases.begin(), study.cases.end(), [&](const StudyCase& one) { return value(one) == first; }))
+      continue;
+    add(varying, axis_role(column));
+    add(varying, column);
+  }
+  if (std::find(varying.begin(), varying.end(), name) != varying.end()) return;
+  const std::string choices =
+      varying.empty() ? "no choice varies" : fmt::format("expected one of {}", fmt::join(varying, ", "));
+  if (std::find(known.begin(), known.end(), name) != known.end())
+    throw InputError("/compare",
+                     fmt::format("\"{}\" has one level in this study, so nothing is compared; {}", name, choices));
+  const std::string nearest = nearest_name(name, varying);
+  throw InputError("/compare", fmt::format("no choice of this study is called \"{}\"; {}{}", name, choices,
+                                           nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+}
+
 // More steps than any machine marches: beyond, the ratio is a slip of units.
 constexpr double most_steps = 1e12;
 
@@ -222,6 +258,7 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   // One that is not given is none of the study's axes, and none of the study as it is kept.
   const bool ways = given.contains("march");
   if (!ways) resolved.erase("march");
+  if (!given.contains("compare")) resolved.erase("compare");
   if (kind.check) kind.check(resolved);
   const std::vector<int> meshes = list_of<int>(resolved["mesh"]["elements"]);
 
@@ -303,7 +340,9 @@ Study parse_study(const std::string& text, Catalogue& catalogue, Registry& regis
   }
   apply_excludes(resolved["exclude"], study);
   if (kind.check_cases) kind.check_cases(study);
+  check_compare(study);
   study.axes = axis_meanings(study, registry);
+  study.method_words = method_words(study, registry);
   return study;
 }
 

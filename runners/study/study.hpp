@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
@@ -49,6 +50,8 @@ struct Study {
   Json resolved;                     ///< the study with every default written out
   std::vector<std::string> columns;  ///< axis columns over all cases, in order
   std::vector<Column> axes;          ///< what these mean
+  /// What sentences call its methods, by role and name ("contact signorini"); those whose name says it are left out.
+  std::map<std::string, std::string> method_words = {};
   std::vector<StudyCase> cases;
 };
 

@@ -149,6 +149,8 @@ ObjectForm study() {
       of_form(Field::Form::text, "name", std::nullopt,
               "Letters, digits, '-', '_' and '.'; results go to results/NAME."),
       of_form(Field::Form::text, "question", Json(""), "The question that the study answers."),
+      of_form(Field::Form::text, "compare", Json(""),
+              "What the question compares: a role, an axis that varies, or all; empty: every method."),
       word("kind", kind_names(), std::nullopt, "What is made of each case."),
       object("scene", std::nullopt, "What is simulated, in SI units.", scene()),
       object("mesh", Json{{"elements", 1}}, "The meshes; only an oscillator does without.", mesh),

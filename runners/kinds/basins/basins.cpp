@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 
+#include "runners/kinds/basins/basin_answers.hpp"
 #include "runners/kinds/basins/basin_tables.hpp"
 #include "runners/kinds/basins/cell_scenes.hpp"
 #include "runners/kinds/basins/page/page.hpp"
@@ -48,12 +49,7 @@ Kind basins_kind() {
   kind.format.keys = basins_keys();
   kind.plan = plan_basins;
   kind.point = march_cell_again;
-  kind.answers = [](const StudyResults& results) {
-    Table table = answers_head();
-    for (const std::string& sentence : report::basins_said(report::CaseView(results)))
-      table.rows.push_back(AnswerRow{.sentence = sentence}.row());
-    return table;
-  };
+  kind.answers = [](const StudyResults& results) { return basins_answer(answers::Compared(results)); };
   kind.page = report::basins_page;
   return kind;
 }

@@ -65,7 +65,7 @@ Kind bifurcation_kind() {
   kind.format.keys = bifurcation_keys();
   kind.plan = plan_bifurcation;
   kind.measures = orbit_measures();
-  kind.answers = bifurcation_answers;
+  kind.answers = [](const StudyResults& results) { return bifurcation_answer(answers::Compared(results)); };
   kind.point = march_orbit_again;
   kind.page = report::bifurcation_page;
   return kind;

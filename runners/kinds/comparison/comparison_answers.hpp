@@ -1,13 +1,19 @@
 #pragma once
-#include "runners/store/record.hpp"
+#include "runners/answers/answer.hpp"
 
 namespace ricochet {
 
-/// Rows of `answers` on orders in the step, one per time scheme: whether what was fitted is what it declares.
-void say_orders(const StudyResults& results, Table& answers);
+/// Sentences before those on cases without a result.
+inline constexpr std::size_t sentences_at_most = 6;
 
-/// Rows of `answers` on what to take: the cheapest method for a relative error of 1 %, 0.1 %, …, and who does not get
-/// there; of the first error that the study asks for, in each of its scenes.
-void say_precision(const StudyResults& results, Table& answers);
+/// What a convergence study says: orders in the step and in the mesh, who stops and at what, who does not converge.
+answers::Answer orders_answer(const answers::Compared& study);
+
+/// What a work-precision study says: the cheapest methods for an accuracy of 10, 1, 0.1, … %, who never gets there, and
+/// what a compared choice costs.
+answers::Answer precision_answer(const answers::Compared& study);
+
+/// order_runs: one row per method, error and refined quantity.
+Table order_runs_table(const answers::Compared& study);
 
 }  // namespace ricochet

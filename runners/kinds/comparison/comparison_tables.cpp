@@ -23,11 +23,6 @@ std::vector<std::string> without(std::vector<std::string> columns, const std::st
   return columns;
 }
 
-std::vector<std::string> errors_of(const StudyResults& results) {
-  const Json& errors = results.study.value("errors", Json::array());
-  return errors.get<std::vector<std::string>>();
-}
-
 const Column error_column{"error", "", "Which error: a quantity of the motion and how its difference is measured."};
 const Column value_column{"value", "that of the error", "The error of the case against its reference."};
 
@@ -76,6 +71,11 @@ std::string saturates_at(const OrderQuestion& question, bool reference_of_law) {
 }
 
 }  // namespace
+
+std::vector<std::string> errors_of(const StudyResults& results) {
+  const Json errors = results.study.value("errors", Json::array());
+  return errors.get<std::vector<std::string>>();
+}
 
 Table errors_table(const StudyResults& results) {
   Table table = table_of_cases(

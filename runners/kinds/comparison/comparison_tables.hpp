@@ -3,6 +3,9 @@
 
 namespace ricochet {
 
+/// The errors that a study asks for, in its order.
+std::vector<std::string> errors_of(const StudyResults& results);
+
 /// errors: one row per case and error, with the floor below which it says nothing.
 Table errors_table(const StudyResults& results);
 

@@ -26,14 +26,11 @@ Kind convergence_kind() {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
     results.derived.push_back(order_verdicts_table(results.derived.back()));
+    results.derived.push_back(order_runs_table(answers::Compared(results)));
     describe_contact(results.cases);
     collect_tables(results);
   };
-  kind.answers = [](const StudyResults& results) {
-    Table table = answers_head();
-    say_orders(results, table);
-    return table;
-  };
+  kind.answers = [](const StudyResults& results) { return orders_answer(answers::Compared(results)); };
   kind.curve = curves_head();
   kind.outcome = errors_text;
   kind.measures = comparison_measures();

@@ -20,9 +20,6 @@ Table restitution_head();
 /// that are older say the contact state in the words of a column `contact`.
 void describe_stability(CaseRecord& record);
 
-/// Rows of `answers`: which schemes have a largest step and which none, and how often march and spectrum agree.
-Table stability_answers(const StudyResults& results);
-
 // The cells that a case of kind `stability` left, as a range of steps.
 
 /// One step of a range.

@@ -14,22 +14,10 @@ inline constexpr double exact_balance = 1e-8;
 /// A step counts as gaining energy above this share of the energy brought in.
 inline constexpr double step_gain_threshold = 1e-9;
 
-/// Whether nothing but contact changes the energy of the finished cases: then its start is the reference.
-bool energy_is_kept(const StudyResults& results);
-
 /// energy_ends: one row per finished case with an energy at its end.
 Table energy_ends_table(const StudyResults& results);
 
-/// energy_by_mass: one row per mass matrix, over everything else that varies.
-Table energy_by_mass_table(const StudyResults& results);
-
-/// energy_trends: one row per method, over its steps.
-Table energy_trends_table(const StudyResults& results);
-
 /// energy_ledger: one row per finished case, where its energy came from and where it went.
 Table energy_ledger_table(const StudyResults& results);
-
-/// choice_worth: the spread of a result over the finished cases that differ in one choice alone.
-Table choice_worth_table(const StudyResults& results);
 
 }  // namespace ricochet

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/contact_rows.hpp"
@@ -132,6 +133,32 @@ std::vector<MeasureInfo> trajectory_measures() {
   };
 }
 
+/// How answers speak of them.
+std::vector<MeasureInfo> with_readings(std::vector<MeasureInfo> measures) {
+  constexpr int more = 1, less = -1, neither = 0;
+  const std::map<std::string, MeasureInfo::Reading> readings = {
+      {"energy_left", {"the energy left", more, 1.0}},
+      {"energy_ratio", {"the energy left", more, 1.0}},
+      {"dissipated_at_contact", {"energy lost at the stops", less, 0.0}},
+      {"largest_step_gain", {"largest energy gain of one step", less, std::nullopt, true}},
+      {"contact_force_deviation", {"deviation of the force", less, std::nullopt, true}},
+      {"contact_force_mean", {"mean force", neither}},
+      {"peak_contact_force", {"peak force", neither}},
+      {"tip_displacement_end", {"the tip at the end", neither}},
+      {"deepest_penetration", {"deepest penetration", neither}},
+      {"window_power", {"power lost at the stops", neither}},
+      {"window_force", {"force on the stops", neither}},
+      {"window_impact_rate", {"impacts per second", neither}},
+      {"window_tip_rms", {"root mean square of the tip", neither}},
+      {"contact_time", {"time in contact", neither}},
+      {"active_set_changes", {"switches of contact", neither}},
+      {"balance_residual", {"residual of the energy balance", less, std::nullopt, true}},
+  };
+  for (MeasureInfo& measure : measures)
+    if (const auto found = readings.find(measure.name); found != readings.end()) measure.reading = found->second;
+  return measures;
+}
+
 std::string signed_percent(double ratio) {
   const double percent = 100 * ratio;
   constexpr double tenth = 0.05, double_noise = 1e-13;  // percent
@@ -190,7 +217,7 @@ void check_window(const Json& study) {
 }
 
 std::vector<std::string> measure_names(const std::vector<MeasureInfo>& measures) {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"status"};
   for (const MeasureInfo& info : measures) names.emplace_back(info.name);
   return names;
 }
@@ -203,7 +230,7 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
   // Paths of a chaotic motion part; its means do not.
   if (std::any_of(results.cases.begin(), results.cases.end(),
                   [](const CaseRecord& record) { return measure(record, "window_tip_rms").has_value(); }))
-    return {"window_power", "window_force", "window_impact_rate", "window_tip_rms"};
+    return {"window_tip_rms", "window_force", "window_impact_rate", "window_power"};
   return {driven ? "dissipated_at_contact" : "energy_left", "impulse", "tip_displacement_end"};
 }
 
@@ -213,7 +240,7 @@ Kind trajectory_kind() {
   Kind kind;
   kind.format.name = "trajectory";
   kind.format.text = "Each case marches its scene once.";
-  kind.measures = trajectory_measures();
+  kind.measures = with_readings(trajectory_measures());
   kind.format.keys = {keys::step(),
                       keys::duration(),
                       keys::samples(),
@@ -238,8 +265,7 @@ Kind trajectory_kind() {
   kind.tables = [](StudyResults& results) {
     describe_contact(results.cases);
     collect_tables(results);
-    for (Table table : {energy_ends_table(results), energy_by_mass_table(results), energy_trends_table(results),
-                        energy_ledger_table(results), choice_worth_table(results)})
+    for (Table table : {energy_ends_table(results), energy_ledger_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
   };
   kind.curve = curves_head();

@@ -40,17 +40,13 @@ Kind work_precision_kind() {
     results.derived.push_back(errors_table(results));
     results.derived.push_back(orders_table(results));
     results.derived.push_back(order_verdicts_table(results.derived.back()));
+    results.derived.push_back(order_runs_table(answers::Compared(results)));
     results.derived.push_back(work_precision_table(results));
     results.derived.push_back(precision_targets_table(results));
     describe_contact(results.cases);
     collect_tables(results);
   };
-  kind.answers = [](const StudyResults& results) {
-    Table table = answers_head();
-    say_precision(results, table);
-    say_orders(results, table);
-    return table;
-  };
+  kind.answers = [](const StudyResults& results) { return precision_answer(answers::Compared(results)); };
   kind.curve = curves_head();
   kind.outcome = errors_text;
   kind.measures = {

@@ -6,7 +6,6 @@
 
 #include "runners/kinds/basins/page/basins.hpp"
 #include "runners/kinds/basins/page/page.hpp"
-#include "runners/kinds/bifurcation/bifurcation_answers.hpp"
 #include "runners/kinds/bifurcation/page/orbit_data.hpp"
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
@@ -204,17 +203,9 @@ TEST_CASE("what the script knows of an orbit is its row of values", "[report]") 
   CHECK(one["columns"]["attractor"][0] == "1");
 }
 
-TEST_CASE("the answer tells verdicts, regimes, grazing and viscosity by their numbers", "[report]") {
+TEST_CASE("the tables of methods tell regimes, grazing and viscosity by their numbers", "[report]") {
   const StudyResults results = synthetic::dynamics();
   const std::string html = dynamics_answer_html(CaseView(results));
-  const Table answers = bifurcation_answers(results);
-  const TableReader said(answers);
-  REQUIRE(said.size() > 2);
-  CHECK_THAT(said.text(0, "sentence"), Contains("robust in 1 (50 % of the range)"));
-  CHECK_THAT(said.text(0, "sentence"), Contains("depends on time.beta in 1"));
-  std::string sentences;
-  for (size_t row = 1; row < said.size(); ++row) sentences += said.text(row, "sentence");
-  CHECK_THAT(sentences, Contains("2 of 2 <differ>."));
   CHECK_THAT(html, Contains("Grazing, start rest: 0.0792"));
   // α = 1e-4: 5e-5 is half of it, 2e-9 a fifty-thousandth.
   CHECK_THAT(html, Contains("▲ 5e-5: 50 % of α</td>") && Contains(">2e-9: 0.002 % of α</td>"));
@@ -223,21 +214,6 @@ TEST_CASE("the answer tells verdicts, regimes, grazing and viscosity by their nu
   size_t orbits = 0;
   for (const CaseRecord& record : results.cases) orbits += orbits_of(record).size();
   CHECK_THAT(html, Contains("Regimes of " + std::to_string(orbits) + " orbits"));
-}
-
-TEST_CASE("an answer tells the widest intervals of a verdict, and counts the others", "[report]") {
-  StudyResults results = synthetic::dynamics();
-  Table& verdicts = *find_table(results.derived, "verdicts");
-  verdicts.rows.clear();
-  for (int k = 0; k < 8; ++k)
-    verdicts.rows.push_back(
-        {0.07 + k, 0.07 + k + 0.01 * k, "depends", "time.beta", "Interval " + std::to_string(k) + "."});
-  const Table answers = bifurcation_answers(results);
-  const TableReader said(answers);
-  std::string sentences;
-  for (size_t row = 0; row < said.size(); ++row) sentences += said.text(row, "sentence");
-  CHECK_THAT(sentences, Contains("Interval 5.Interval 6.Interval 7.5 intervals are told in verdicts.csv alone"));
-  CHECK(sentences.find("Interval 4.") == std::string::npos);
 }
 
 TEST_CASE("tables of attractors, agreement, shifts and changes", "[report]") {

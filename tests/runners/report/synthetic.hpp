@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runners/kinds/trajectory/energy_tables.hpp"
+#include "runners/run/answers_table.hpp"
 #include "runners/store/record.hpp"
 
 /// \file
@@ -103,8 +104,9 @@ inline CaseRecord make_case(const std::string& mass, const std::string& velocity
 
 /// The tables that the answer of a study of trajectories speaks of, from the measures that its cases have now.
 inline void derive_energies(StudyResults& out) {
-  out.derived = {energy_ends_table(out), energy_by_mass_table(out), energy_trends_table(out), energy_ledger_table(out),
-                 choice_worth_table(out)};
+  out.derived = {energy_ends_table(out), energy_ledger_table(out)};
+  for (Table& table : evidence_tables(out)) out.derived.push_back(std::move(table));
+  out.derived.push_back(answers_table(out));
 }
 
 /// Masses × time methods × steps, some refused, some diverged.

@@ -1,8 +1,11 @@
-// What a study of trajectories answers: each choice against what step and mesh leave open.
+// What a study of trajectories answers: tiers of methods, choices by what they move, cases without a result.
 #include "runners/run/answers_table.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
+#include <random>
 
 #include "runners/run/choice_effects.hpp"
 #include "runners/table/table_reader.hpp"
@@ -34,13 +37,6 @@ StudyResults study(const std::function<double(int mass, int law, double step)>& 
   return results;
 }
 
-std::string verdict_of(const Table& answers, const std::string& choice) {
-  const TableReader rows(answers);
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (rows.text(row, "choice") == choice) return rows.text(row, "verdict");
-  return "";
-}
-
 std::string said(const Table& answers) {
   std::string all;
   const TableReader rows(answers);
@@ -48,62 +44,104 @@ std::string said(const Table& answers) {
   return all;
 }
 
+std::string form_of(const Table& answers) {
+  return TableReader(answers).text(0, "form");
+}
+
 }  // namespace
 
-TEST_CASE("a choice decides, does not matter, or is not resolved") {
-  const Table decided = answers_table(study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; }));
-  CHECK(verdict_of(decided, "mass") == "decides");
-  CHECK(verdict_of(decided, "contact") == "does not matter");
-  CHECK_THAT(said(decided), Catch::Contains("The mass matrix decides: energy left by 20 % against 0.01 % from the step "
-                                            "(least with light, most with heavy)."));
-  CHECK_THAT(said(decided), Catch::Contains("The contact law does not matter here: energy left 0 % against 0.01 %"));
-
-  const Table open = answers_table(study([](int mass, int, double step) { return (mass ? 0.42 : 0.4) + 200 * step; }));
-  CHECK(verdict_of(open, "mass") == "not resolved");
-  // 2 % in 1e-4 s leave 2 % open; a third of the difference is open at a third of the step.
-  CHECK_THAT(said(open), Catch::Contains("refine h to 2e-5 s"));
-}
-
-TEST_CASE("where a choice decides with some levels of another, that one is named") {
-  const Table answers =
-      answers_table(study([](int mass, int law, double step) { return 0.4 + (mass && law ? 0.2 : 0) + step; }));
-  CHECK(verdict_of(answers, "mass") == "depends");
+TEST_CASE("methods that differ by less than 1 % do not, and what step still moves is said") {
+  const Table answers = answers_table(study([](int mass, int, double step) { return 0.4 + 0.002 * mass + step; }));
+  CHECK(form_of(answers) == "none");
   CHECK_THAT(said(answers),
-             Catch::Contains("The mass matrix decides in part, as the contact law tells: energy left in 1 "
-                             "of 2 combinations by up to 20 %."));
+             Catch::Contains("No difference: the energy left is 40.") && Catch::Contains("methods differ by 0.2 %"));
 }
 
-TEST_CASE("what decides nowhere is not said to decide in part") {
-  // Within 1 % with one law, open with the other.
+TEST_CASE("methods that differ are told apart by the choice that does it") {
+  const Table answers = answers_table(study([](int mass, int, double step) { return (mass ? 0.6 : 0.4) + step; }));
+  CHECK(form_of(answers) == "differ");
+  CHECK_THAT(said(answers),
+             Catch::Contains("None keeps it; the heavy mass comes nearest with 60.01 %; the light mass keeps 40.01 %"));
+}
+
+TEST_CASE("what the step moves more than methods do cannot be told") {
   const Table answers =
-      answers_table(study([](int mass, int law, double step) { return 0.4 + 0.004 * mass + (law ? 300 : 1) * step; }));
-  CHECK(verdict_of(answers, "mass") == "not resolved");
+      answers_table(study([](int mass, int, double step) { return (mass ? 0.42 : 0.4) + 200 * std::sin(1e5 * step); }));
+  CHECK(form_of(answers) == "open");
+  CHECK_THAT(said(answers), Catch::Contains("These steps cannot tell"));
 }
 
-TEST_CASE("where a choice does not matter in most combinations, the others are told apart") {
-  // Of five laws one leaves open what the mass changes: a median over all would be neither.
-  const Table answers = answers_table(
-      study([](int mass, int law, double step) { return 0.4 + 0.004 * mass + (law == 4 ? 300 : 1) * step; },
-            {4e-4, 2e-4, 1e-4}, 5));
-  CHECK_THAT(said(answers), Catch::Contains("What the mass matrix changes is not resolved: energy left in 1 of 5 "
-                                            "combinations by 0.4 % against 3 % from the step"));
-  CHECK_THAT(said(answers), Catch::Contains("The mass matrix changes less than 1 % here: energy left in 4 of 5 "
-                                            "combinations 0.4 % against 0.01 % from the step."));
-  const TableReader rows(answers);
-  std::vector<double> combinations;
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (rows.text(row, "choice") == "mass") combinations.push_back(rows.number(row, "combinations").value());
-  CHECK(combinations == std::vector<double>{1, 4});
+TEST_CASE("with a compared choice that is spoken of first, paired over all others") {
+  StudyResults results = study([](int mass, int law, double step) { return 0.4 + (mass && law ? 0.2 : 0) + step; });
+  results.study = {{"compare", "mass"}};
+  CHECK_THAT(said(answers_table(results)),
+             Catch::StartsWith("The mass matrix matters with soft: it moves the energy left "
+                               "by 33 %") ||
+                 Catch::StartsWith("The mass matrix matters with soft"));
+  results = study([](int, int law, double step) { return 0.4 + 0.2 * law + step; });
+  results.study = {{"compare", "mass"}};
+  CHECK_THAT(said(answers_table(results)), Catch::StartsWith("The mass matrix does not matter"));
 }
 
-TEST_CASE("of what is far below any figure it is said that it is less") {
-  const Table answers = answers_table(study([](int mass, int, double step) { return 0.4 + 1e-13 * mass + step; }));
-  CHECK_THAT(said(answers), Catch::Contains("The mass matrix does not matter here: energy left less than 1e-7 %"));
-}
-
-TEST_CASE("one step tells nothing of what it leaves open") {
+TEST_CASE("one step only is said, and no difference is told as if it were known") {
   const Table answers = answers_table(study([](int mass, int, double) { return mass ? 0.6 : 0.4; }, {1e-4}));
-  CHECK(verdict_of(answers, "mass") == "not told");
+  CHECK_THAT(said(answers), Catch::Contains("the only step"));
+}
+
+TEST_CASE("the order of cases leaves the answer as it is") {
+  const StudyResults results =
+      study([](int mass, int law, double step) { return 0.4 + 0.1 * mass + 0.03 * law + 50 * step * (1 + mass); });
+  const auto numbers = [](const StudyResults& one) {
+    std::vector<std::string> out;
+    const Table table = answers_table(one);
+    const TableReader rows(table);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      out.push_back(rows.text(row, "form") + rows.text(row, "low") + rows.text(row, "high"));
+    return out;
+  };
+  std::mt19937_64 random(3);
+  for (int draw = 0; draw < 20; ++draw) {
+    StudyResults shuffled = results;
+    std::shuffle(shuffled.cases.begin(), shuffled.cases.end(), random);
+    CHECK(numbers(shuffled) == numbers(results));
+  }
+}
+
+TEST_CASE(
+    "an answer has at most five sentences before those on cases without a result, and says no number without a row") {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < 60; ++draw) {
+    const StudyResults results =
+        study([&](int, int, double) { return 0.5 + 0.1 * normal(random); }, {4e-4, 2e-4, 1e-4}, 1 + draw % 5);
+    const Table answers = answers_table(results);
+    const TableReader rows(answers);
+    std::size_t sentences = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      sentences += !rows.text(row, "sentence").empty();
+      CHECK_FALSE(rows.text(row, "form").empty());
+    }
+    CHECK(sentences >= 1);
+    CHECK(sentences <= 5);
+  }
+}
+
+TEST_CASE("removing the finest step never makes an answer surer") {
+  std::mt19937_64 random(23);
+  std::uniform_real_distribution<double> uniform;
+  for (int draw = 0; draw < 60; ++draw) {
+    const double a = uniform(random), b = uniform(random), p = 0.5 + 3 * uniform(random);
+    const auto value = [&](int mass, int, double step) { return 0.5 + 0.1 * mass * a + b * std::pow(1e3 * step, p); };
+    const auto uncertainty = [&](const std::vector<double>& steps) {
+      const std::vector<Table> tables = evidence_tables(study(value, steps, 1));
+      double most = 0;
+      const TableReader rows(tables.front());
+      for (std::size_t row = 0; row < rows.size(); ++row)
+        most = std::max(most, rows.number(row, "u").value_or(INFINITY));
+      return most;
+    };
+    CHECK(uncertainty({8e-4, 4e-4, 2e-4}) >= uncertainty({8e-4, 4e-4, 2e-4, 1e-4}));
+  }
 }
 
 TEST_CASE("the measures that a study names are those that it is answered by") {
@@ -137,7 +175,7 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
   CHECK(said(answers_table(results)).find("iverged") == std::string::npos);
   for (CaseRecord& record : results.cases)
     if (record.axes[0].second == "heavy" && record.axes[1].second == "soft") record.status = "diverged";
-  CHECK_THAT(said(answers_table(results)), Catch::Contains("Diverged: 3 of 12 cases (mass heavy; contact soft).\n"));
+  CHECK_THAT(said(answers_table(results)), Catch::Contains("Diverged: 3 of 12 cases (the heavy mass with soft).\n"));
   // Why, where cases share it; a sentence of one case among many is in reasons.csv.
   for (CaseRecord& record : results.cases)
     if (record.status == "diverged") {
@@ -145,20 +183,10 @@ TEST_CASE("cases that gave no result are told by what sets them apart, where all
       record.reason = "no impact measure";
     }
   CHECK_THAT(said(answers_table(results)),
-             Catch::Contains("Refused: 3 of 12 cases (mass heavy; contact soft). Why: no impact measure (3).\n"));
+             Catch::Contains("Not run: 3 of 12 cases (the heavy mass with soft): no impact measure.\n"));
   results.cases.back().reason = "no step";
-  CHECK_THAT(said(answers_table(results)), Catch::Contains("Why: no impact measure (2); no step (1).\n"));
-}
-
-TEST_CASE("what is told from step and mesh, and below 1 %, is small and not nothing, its spread has no shares") {
-  const StudyResults results = study([](int mass, int, double step) { return 0.5 + 0.004 * mass + 2 * step; });
-  Table effects = effects_table(results);
-  CHECK_FALSE(effects.rows.empty());
-  StudyResults with_shares = results;
-  with_shares.derived.push_back(effects);
-  const Table answers = answers_table(with_shares);
-  CHECK(verdict_of(answers, "mass") == "does not matter");
-  CHECK_THAT(said(answers),
-             Catch::Contains("The mass matrix changes less than 1 % here: energy left 0.4 % against 0.02 %"));
-  CHECK(said(answers).find("of the spread") == std::string::npos);
+  CHECK_THAT(said(answers_table(results)), Catch::Contains("no impact measure (2 of these; 1 other reason).\n"));
+  // What becomes of cases, first.
+  results.study = {{"observe", {"status", "energy_left"}}};
+  CHECK_THAT(said(answers_table(results)), Catch::StartsWith("Everything that applies runs: 9 of 12 cases"));
 }

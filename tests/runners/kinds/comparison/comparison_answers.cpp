@@ -1,11 +1,10 @@
-// What comparing studies answer: errors by words, orders that were declared and others.
+// What comparing studies answer: orders by method, the cheapest for an accuracy.
 #include "runners/kinds/comparison/comparison_answers.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
-#include "runners/kinds/comparison/comparison.hpp"
 #include "runners/kinds/comparison/comparison_tables.hpp"
-#include "runners/kinds/kind.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/table_reader.hpp"
 
@@ -27,50 +26,60 @@ StudyResults two_schemes() {
   return results;
 }
 
-std::string sentences(const Table& answers) {
-  const TableReader rows(answers);
+/// Two schemes over six steps, errors hᵖ of each, those of the second not below `level`.
+StudyResults two_orders(double p, double q, double level, std::optional<double> declared = {}) {
+  StudyResults results;
+  results.columns = {"time", "step"};
+  results.study = {{"errors", {"tip-l2"}}};
+  for (const char* scheme : {"one", "other"})
+    for (int k = 0; k < 6; ++k) {
+      const double h = std::pow(2, -k);
+      CaseRecord record;
+      record.id = scheme + std::to_string(k);
+      record.status = "done";
+      record.axes = {{"time", scheme}, {"step", h}};
+      const bool first = std::string(scheme) == "one";
+      record.measures = {{"error.tip-l2", std::max(std::pow(h, first ? p : q), first ? 0 : level)}, {"size.tip-l2", 1}};
+      if (declared) record.measures.emplace_back("declared_order", *declared);
+      results.cases.push_back(std::move(record));
+    }
+  return results;
+}
+
+std::string sentences(const answers::Answer& answer) {
   std::string out;
-  for (std::size_t row = 0; row < rows.size(); ++row) out += rows.text(row, "sentence") + "\n";
+  for (const answers::Sentence& one : answer.sentences) out += one.text + "\n";
   return out;
 }
 
 }  // namespace
 
-TEST_CASE("an answer names an error by words, never by its column") {
-  for (const std::string error : {"tip-linf", "tip-l2", "displacement-l2", "displacement-h2", "velocity-l2", "energy",
-                                  "impact-times", "impulse"}) {
-    StudyResults results = two_schemes();
-    Table targets{
-        "precision_targets",
-        "",
-        named_columns({"case", "error", "at_most", "seconds", "other_case", "other_seconds", "overlap", "share"}),
-        {}};
-    targets.rows.push_back({"one", error, 1e-3, 2e-4, "other", 3e-4, false, 0.01});
-    results.derived.push_back(std::move(targets));
-    Table answers = answers_head();
-    say_precision(results, answers);
-    const std::string text = sentences(answers);
-    CHECK_THAT(text, Contains("error of the ") && Contains("at most 1 % of the motion: one"));
-    if (error.find('-') != std::string::npos) CHECK(text.find(error) == std::string::npos);
-    CHECK(TableReader(answers).text(0, "measure") == "error." + error);
-  }
+TEST_CASE("orders are told by method, the highest first, and confirmed or contradicted where they are declared") {
+  StudyResults results = two_orders(2, 1, 0);
+  CHECK_THAT(sentences(orders_answer(answers::Compared(results))),
+             Contains("falls with order 2 (2.00) with one; order 1 (1.00) with other."));
+  results = two_orders(2, 1, 0, 2);
+  CHECK_THAT(sentences(orders_answer(answers::Compared(results))),
+             Contains("with one, as declared") && Contains("with other, which declares another"));
 }
 
-TEST_CASE("an error against a reference of the mesh is said to be that of the scheme alone") {
-  StudyResults results = two_schemes();
-  Table targets{
-      "precision_targets",
-      "",
-      named_columns({"case", "error", "at_most", "seconds", "other_case", "other_seconds", "overlap", "share"}),
-      {}};
-  targets.rows.push_back({"one", "tip-linf", 1e-3, 2e-4, "other", 3e-4, false, 0.01});
-  results.derived.push_back(std::move(targets));
-  for (const bool of_the_mesh : {false, true}) {
-    results.cases.front().measures = {{"reference_of_mesh", of_the_mesh}};
-    Table answers = answers_head();
-    say_precision(results, answers);
-    CHECK((sentences(answers).find("the same mesh and mass exact in time") != std::string::npos) == of_the_mesh);
+TEST_CASE("who stops is told at the smallest error, never above it") {
+  const StudyResults results = two_orders(2, 2, 0.05);
+  CHECK_THAT(sentences(orders_answer(answers::Compared(results))),
+             Contains("It stops at 0.05 m (5 % of the motion) with other"));
+}
+
+TEST_CASE("the cheapest method of an accuracy is named with its step, and those within its timing noise") {
+  StudyResults results = two_orders(2, 1, 0);
+  results.study = {{"errors", {"tip-l2"}}};
+  for (CaseRecord& record : results.cases) {
+    const double seconds = 1e-3 / record.axes.back().second.get<double>();
+    for (const char* name : {"timed_seconds", "timed_low", "timed_high"}) record.measures.emplace_back(name, seconds);
   }
+  const std::string text = sentences(precision_answer(answers::Compared(results)));
+  // Of order 2 an error of 0.1 % is reached at h = 1/32, which order 1 never reaches.
+  CHECK_THAT(text, Contains("For 0.1 % of the motion: one at h = 0.03125 s, 32 ms."));
+  CHECK_THAT(text, Contains("Never to 1 %: 1 of 2 methods, other"));
 }
 
 TEST_CASE("a way of marching is part of the method: both ways of one scene stand against each other") {
@@ -100,16 +109,4 @@ TEST_CASE("a way of marching is part of the method: both ways of one scene stand
     CHECK(rows.text(row, "case") == "other");
     CHECK(rows.text(row, "other_case") == "one");
   }
-}
-
-TEST_CASE("orders that nobody declares are told by their middle, and their ends") {
-  StudyResults results = two_schemes();
-  Table orders{"orders", "", named_columns({"case", "refined", "order", "declared", "verdict"}), {}};
-  for (const double order : {0.9, 1.0, 4.0}) orders.rows.push_back({"one", "step", order, nullptr, ""});
-  for (const double order : {1.9, 2.0}) orders.rows.push_back({"other", "step", order, 1, "refuted"});
-  results.derived.push_back(std::move(orders));
-  Table answers = answers_head();
-  say_orders(results, answers);
-  CHECK_THAT(sentences(answers), Contains("one (median 1.00; 0.90 to 4.00)"));
-  CHECK_THAT(sentences(answers), Contains("Do not converge as they declare: other (declared 1, found 1.90 to 2.00"));
 }

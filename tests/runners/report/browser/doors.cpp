@@ -21,7 +21,8 @@ Page reported(const std::string& name, const browser::Json& change) {
   const fs::path folder = fs::path(RICOCHET_BINARY_DIR) / "browser" / "doors" / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
-  browser::Json study = browser::Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
+  browser::Json study =
+      browser::Json::parse(read_text(RICOCHET_SOURCE_DIR "/tests/runners/report/studies/trajectory.json"));
   study.merge_patch(change);
   write_text(folder / "study.json", study.dump(1));
   const std::string command = RICOCHET_COMMAND " run '" + (folder / "study.json").string() + "' --out '" +
@@ -86,7 +87,7 @@ TEST_CASE("the film shows the state of the slider's instant, and its map where p
           "[report][browser]") {
   if (left_out()) return;
   const browser::Json said = read_back("film", {reported("mass", {{"snapshots", 150}, {"samples", 300}}),
-                                       {"beam", read_text(report_of("studies", "film"))}});
+                                                {"beam", read_text(report_of("studies", "film"))}});
   check_film(said.at("mass"));
   check_film(said.at("beam"));
   CHECK_THAT(said.at("beam").at("film").at("scale").get<std::string>(), Contains("times as large as lengths"));

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/measure/statistics/refinement.hpp>
+
+namespace ricochet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double orders_agree = 0.6, steepest_order = 4.5;
+constexpr double grows = 1.5, grown = 3;
+
+/// Orders of |e| between sizes that follow each other; nothing where one is zero.
+std::optional<double> slope(const SizedValue& coarse, const SizedValue& fine) {
+  if (coarse.value == 0 || fine.value == 0) return std::nullopt;
+  return std::log(std::abs(coarse.value / fine.value)) / std::log(coarse.size / fine.size);
+}
+
+Limit at_finest(const std::vector<SizedValue>& values) {
+  Limit out;
+  out.sizes = values.size();
+  out.value = out.low = out.high = values.back().value;
+  const std::size_t first = values.size() > 3 ? values.size() - 3 : 0;
+  double low = out.value, high = out.value;
+  for (std::size_t k = first; k < values.size(); ++k) {
+    low = std::min(low, values[k].value);
+    high = std::max(high, values[k].value);
+  }
+  out.range = high - low;
+  return out;
+}
+
+void set(Limit& limit, LimitStatus status, double uncertainty) {
+  limit.status = status;
+  limit.uncertainty = uncertainty;
+  limit.low = limit.value - uncertainty;
+  limit.high = limit.value + uncertainty;
+}
+
+/// Without a truth.
+Limit plain_limit(const std::vector<SizedValue>& values, double floor) {
+  Limit out = at_finest(values);
+  const std::size_t n = values.size();
+  if (n == 1) return out;
+  std::vector<double> d;
+  for (std::size_t k = 1; k < n; ++k) d.push_back(values[k].value - values[k - 1].value);
+  const double last = std::abs(d.back());
+  if (std::all_of(d.begin(), d.end(), [&](double move) { return std::abs(move) <= floor; })) {
+    set(out, LimitStatus::same, floor);
+    return out;
+  }
+  if (n == 2) {
+    set(out, LimitStatus::two, std::max(last, floor));
+    return out;
+  }
+  const SizedValue &v1 = values[n - 3], &v2 = values[n - 2], &v3 = values[n - 1];
+  // Falls to zero.
+  if (std::abs(v3.value) <= last && std::min({std::abs(v1.value), std::abs(v2.value), std::abs(v3.value)}) > floor) {
+    const auto before = slope(v1, v2), now = slope(v2, v3);
+    if (before && now && std::min(*before, *now) >= lowest_order) {
+      out.status = LimitStatus::vanishes;
+      out.uncertainty = std::abs(out.value);
+      out.low = std::min(0.0, out.value);
+      out.high = std::max(0.0, out.value);
+      out.order = now;
+      return out;
+    }
+  }
+  if (std::abs(v2.value) > grows * std::abs(v1.value) && std::abs(v3.value) > grows * std::abs(v2.value) &&
+      std::abs(v3.value) > grown * std::abs(values.front().value) && last > std::abs(d[d.size() - 2])) {
+    out.status = LimitStatus::blows_up;
+    out.uncertainty = infinity;
+    out.low = std::min({v1.value, v2.value, v3.value});
+    out.high = std::max({v1.value, v2.value, v3.value});
+    return out;
+  }
+  if (last <= floor) {
+    set(out, LimitStatus::settles, floor);
+    return out;
+  }
+  const double before = d[d.size() - 2];
+  const auto order = order_of(v1.size, v2.size, v3.size, before, d.back());
+  const bool one_sign = before * d.back() > 0;
+  if (order && *order >= lowest_order) {
+    // What is left of h^p after the last difference; two orders that agree are needed for less than the difference.
+    const double rest = last / (std::pow(v2.size / v3.size, *order) - 1);
+    double u = std::max(last, rest);
+    if (n >= 4 && one_sign && d[d.size() - 3] * before > 0) {
+      const auto earlier = order_of(values[n - 4].size, v1.size, v2.size, d[d.size() - 3], before);
+      if (earlier && std::abs(*order - *earlier) <= orders_agree && *order <= steepest_order) {
+        out.order = order;
+        u = std::max(0.1 * last, rest);
+      }
+    }
+    set(out, LimitStatus::settles, std::max(u, floor));
+    return out;
+  }
+  if (one_sign && (n < 5 || d[d.size() - 3] * before > 0)) {
+    out.status = LimitStatus::moves;
+    out.uncertainty = 2 * last;
+    out.trend = d.back() > 0 ? 1 : -1;
+    const double end = out.value + 2 * d.back();
+    out.low = std::min(out.value, end);
+    out.high = std::max(out.value, end);
+    return out;
+  }
+  out.status = LimitStatus::wanders;
+  out.uncertainty = out.range;
+  out.low = std::min({v1.value, v2.value, v3.value});
+  out.high = std::max({v1.value, v2.value, v3.value});
+  return out;
+}
+
+}  // namespace
+
+std::string_view word(LimitStatus status) {
+  switch (status) {
+    case LimitStatus::one:
+      return "one";
+    case LimitStatus::same:
+      return "same";
+    case LimitStatus::two:
+      return "two";
+    case LimitStatus::settles:
+      return "settles";
+    case LimitStatus::reaches_truth:
+      return "reaches truth";
+    case LimitStatus::vanishes:
+      return "vanishes";
+    case LimitStatus::moves:
+      return "moves";
+    case LimitStatus::wanders:
+      return "wanders";
+    case LimitStatus::blows_up:
+      return "blows up";
+  }
+  return "";
+}
+
+bool Limit::settled() const {
+  return status == LimitStatus::same || status == LimitStatus::settles || status == LimitStatus::reaches_truth ||
+         status == LimitStatus::vanishes;
+}
+
+std::optional<double> order_of(double h1, double h2, double h3, double d1, double d2) {
+  if (d1 == 0) return std::nullopt;
+  const double ratio = std::abs(d2 / d1);
+  constexpr double tiny = 1e-9;
+  const auto of = [&](double p) {
+    if (std::abs(p) < tiny) return std::log(h2 / h3) / std::log(h1 / h2);
+    return (std::pow(h2, p) - std::pow(h3, p)) / (std::pow(h1, p) - std::pow(h2, p));
+  };
+  double low = -3, high = 8;
+  if (ratio > of(low)) return low;
+  if (ratio < of(high)) return high;
+  constexpr int halvings = 60;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (of(middle) > ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth) {
+  if (values.empty()) return std::nullopt;
+  std::stable_sort(values.begin(), values.end(),
+                   [](const SizedValue& a, const SizedValue& b) { return a.size > b.size; });
+  Limit out = plain_limit(values, floor);
+  if (!truth || values.size() < 2) return out;
+  std::vector<SizedValue> errors = values;
+  for (SizedValue& one : errors) one.value -= *truth;
+  const double left = std::abs(errors.back().value);
+  const auto reached = [&](double uncertainty, std::optional<double> order) {
+    out.status = LimitStatus::reaches_truth;
+    out.uncertainty = uncertainty;
+    out.low = std::min(out.value, *truth);
+    out.high = std::max(out.value, *truth);
+    out.order = order;
+    out.trend = 0;
+  };
+  if (left <= floor) {
+    reached(floor, std::nullopt);
+    return out;
+  }
+  if (values.size() < 3) return out;
+  const std::size_t n = errors.size();
+  const auto before = slope(errors[n - 3], errors[n - 2]), now = slope(errors[n - 2], errors[n - 1]);
+  if (before && now && std::min(*before, *now) >= lowest_order) reached(left, now);
+  return out;
+}
+
+std::optional<Limit> combined(const std::optional<Limit>& step, const std::optional<Limit>& mesh) {
+  if (!step) return mesh;
+  if (!mesh || mesh->status == LimitStatus::one) return step;
+  if (step->status == LimitStatus::one) return mesh;
+  Limit out = *step;
+  // Statuses stand in the order from firm to restless; of a mesh alone a truth or zero is no limit.
+  const bool worse = static_cast<int>(mesh->status) > static_cast<int>(step->status);
+  if (mesh->restless() && (!step->restless() || worse)) {
+    out.status = mesh->status;
+    out.trend = mesh->trend;
+    out.order.reset();
+  } else if (mesh->status == LimitStatus::blows_up) {
+    out.status = mesh->status;
+  } else if (step->status == LimitStatus::two && mesh->settled()) {
+    out.status = LimitStatus::settles;
+  } else if (step->status == LimitStatus::same) {
+    out.status = mesh->status == LimitStatus::same  ? LimitStatus::same
+                 : mesh->status == LimitStatus::two ? LimitStatus::settles
+                                                    : mesh->status;
+    out.order = mesh->order;
+  }
+  out.uncertainty = *step->uncertainty + *mesh->uncertainty;
+  out.low = std::min(step->low, mesh->low);
+  out.high = std::max(step->high, mesh->high);
+  out.range = std::max(step->range, mesh->range);
+  return out;
+}
+
+void widen(Limit& limit, double half) {
+  if (!limit.uncertainty) return;
+  *limit.uncertainty += half;
+  limit.low -= half;
+  limit.high += half;
+}
+
+void doubt_chance(std::vector<Limit*> limits) {
+  const auto restless = std::count_if(limits.begin(), limits.end(), [](const Limit* one) { return one->restless(); });
+  if (2 * static_cast<std::size_t>(restless) <= limits.size()) return;
+  for (Limit* one : limits)
+    if (one->status == LimitStatus::settles && !one->order && one->sizes == 3)
+      set(*one, LimitStatus::moves, std::max(*one->uncertainty, one->range));
+}
+
+LimitInterval interval(const Limit& limit) {
+  if (limit.status == LimitStatus::wanders) {
+    const double half = 0.5 * limit.uncertainty.value_or(0);
+    return {limit.low - half, limit.high + half};
+  }
+  return {std::min(limit.low, limit.value), std::max(limit.high, limit.value)};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,79 @@
+#pragma once
+#include <optional>
+#include <string_view>
+#include <vector>
+
+/// \file
+/// What becomes of a value as a step or a mesh is refined.
+namespace ricochet {
+
+/// A value computed at one size of the refinement: the step h (s), or 1/N of a mesh of N elements.
+struct SizedValue {
+  double size = 0;
+  double value = 0;
+};
+
+/// What a sequence of values does.
+enum class LimitStatus {
+  one,            ///< a single size
+  same,           ///< equal within round-off at every size
+  two,            ///< two sizes: nothing tells how the difference goes on
+  settles,        ///< the last three values converge with order 0.5 or more
+  reaches_truth,  ///< the distance to the known exact value falls with order 0.5 or more, or is round-off
+  vanishes,       ///< |v| itself falls to zero with order 0.5 or more
+  moves,          ///< the last differences have one sign and do not shrink fast enough
+  wanders,        ///< none of these
+  blows_up        ///< |v| grows with every refinement
+};
+/// "one", "same", "two", "settles", "reaches truth", "vanishes", "moves", "wanders", "blows up".
+std::string_view word(LimitStatus status);
+
+/// The limit of one method along a refinement, as far as its values tell.
+struct Limit {
+  LimitStatus status = LimitStatus::one;
+  double value = 0;                   ///< of the finest size
+  std::optional<double> uncertainty;  ///< u ≥ 0; infinite of what blows up; nothing of a single size
+  double low = 0, high = 0;           ///< where the limit is expected: value ± u, towards the truth, or the last three
+  std::optional<double> order;        ///< where two orders in a row agree, or the distance to the truth shows one
+  std::size_t sizes = 1;
+  int trend = 0;     ///< of a value that moves: 1 rises, −1 falls
+  double range = 0;  ///< of the last three values
+  /// Settled, equal, at the truth, or falling to zero.
+  bool settled() const;
+  bool restless() const { return status == LimitStatus::moves || status == LimitStatus::wanders; }
+};
+
+/// The order p with (h₂ᵖ − h₃ᵖ)/(h₁ᵖ − h₂ᵖ) = |d₂/d₁| for sizes h₁ > h₂ > h₃ and differences d₁ = v₂ − v₁,
+/// d₂ = v₃ − v₂ of v = a + b hᵖ; by bisection in [−3, 8], whose ends stand for all beyond. Nothing where d₁ = 0.
+std::optional<double> order_of(double h1, double h2, double h3, double d1, double d2);
+
+/// The lowest order that counts as convergence: what a convergent scheme shows through contact.
+inline constexpr double lowest_order = 0.5;
+
+/// The limit of `values`, sizes in any order, one value of each. `floor` ≥ 0: what round-off makes of a value. `truth`:
+/// the exact value where one is known. Nothing of no values.
+///
+/// With the differences d of values from coarse to fine and the ratio r of the last sizes, the rest is |d_last|/(rᵖ −
+/// 1). u is |d_last| or the rest, the larger; where two orders p in a row agree within 0.6 the rest alone, at least a
+/// tenth of |d_last|; of two sizes |d_last|; of what moves 2 |d_last|; of what wanders the range of the last three
+/// values.
+std::optional<Limit> limit_of(std::vector<SizedValue> values, double floor, std::optional<double> truth = {});
+
+/// The limit over two refinements, at the finest of both: uncertainties are added, the status is the worse of the two.
+/// A single size says nothing. Nothing where both are absent.
+std::optional<Limit> combined(const std::optional<Limit>& step, const std::optional<Limit>& mesh);
+
+/// Adds half an interval of the value itself, as of a mean over a window.
+void widen(Limit& limit, double half);
+
+/// Three values may settle by chance: where more than half of all methods move or wander, those that settle on three
+/// values without an order are taken as moving, with the range of the three as u. Says which limits changed nothing.
+void doubt_chance(std::vector<Limit*> limits);
+
+/// Where the limit may be: what wanders is as wide as its last values and half of that on both sides.
+struct LimitInterval {
+  double low = 0, high = 0;
+};
+LimitInterval interval(const Limit& limit);
+
+}  // namespace ricochet

@@ -1,0 +1,70 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/answers/compared.hpp"
+#include "runners/table/row_type.hpp"
+
+namespace ricochet::answers {
+
+/// The form of a clause whose methods do not differ.
+inline constexpr const char* alike = "none";
+
+/// One thing that a sentence says of some methods: a row of `answers`.
+struct Clause {
+  int order = 0;  ///< of the sentence within the answer, from 1
+  std::string
+      form;  ///< keeps, gains, differ, none, open, matters, part, value, order, cheapest, limit, diagram, basin, status
+  std::string measure = {}, choice = {};
+  std::string who = {};      ///< the methods in words
+  std::string methods = {};  ///< a case of each, blanks between
+  std::optional<double> value = {}, low = {}, high = {}, uncertainty = {};
+  std::string status = {};  ///< of the limit, or the verdict on a choice
+  std::string unit = {};
+  std::optional<double> at_step = {}, at_mesh = {};  ///< the finest, s and elements
+  std::string sentence = {};                         ///< on the first clause of each sentence
+};
+const RowType<Clause>& clause_rows();
+/// `answers` without rows.
+Table answers_head();
+
+/// A sentence with what it says as numbers; at least one clause.
+struct Sentence {
+  std::string text;
+  std::vector<Clause> clauses;
+};
+
+/// What a study says, in the order in which it is read.
+struct Answer {
+  std::vector<Sentence> sentences;
+  /// Adds a sentence with one clause.
+  void say(std::string text, Clause clause);
+  void say(Sentence sentence) { sentences.push_back(std::move(sentence)); }
+  /// Leaves the first so many.
+  void keep(std::size_t most) {
+    if (sentences.size() > most) sentences.resize(most);
+  }
+  Table table() const;
+};
+
+/// Cases that gave no result, one sentence for each status: "Not run: 4 of 48 cases (…): why."
+std::vector<Sentence> ended(const Compared& study);
+/// What becomes of the cases: who runs, who does not, and why.
+std::vector<Sentence> status(const Compared& study);
+
+/// The answer of a study that observes measures: methods in tiers, or choices by what they move.
+Answer measure_answer(const Compared& study, const std::vector<std::string>& measures, bool status_first);
+
+/// What the headline measure of a study rests on, for a terminal: at most twelve lines; "" without values.
+std::string evidence_text(const Compared& study, const std::string& measure);
+
+/// The same as a table of a page: the methods best first, or what each choice moves.
+std::string evidence_html(const Compared& study);
+
+/// limits: one row per method and measure.
+Table limits_table(const Compared& study, const std::vector<std::string>& measures);
+/// differences: one row per choice, measure and combination of all other choices.
+Table differences_table(const Compared& study, const std::vector<std::string>& measures);
+
+}  // namespace ricochet::answers

@@ -1,0 +1,271 @@
+#include "runners/answers/compared.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/report/case_view.hpp"
+#include "runners/report/html.hpp"
+#include "runners/study/axis_meaning.hpp"
+
+namespace ricochet::answers {
+namespace {
+
+std::string last_part(const std::string& column) {
+  const std::size_t dot = column.rfind('.');
+  return dot == std::string::npos ? column : column.substr(dot + 1);
+}
+
+std::optional<double> as_number(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::size_t read = 0;
+  try {
+    const double value = std::stod(text, &read);
+    return read == text.size() ? std::optional(value) : std::nullopt;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Letters of the field for names of parameters.
+std::string symbol(const std::string& name) {
+  static const std::map<std::string, std::string> letters = {
+      {"alpha", "α"},         {"beta", "β"},     {"gamma", "γ"},       {"theta", "θ"},
+      {"rho_infinity", "ρ∞"}, {"rho_inf", "ρ∞"}, {"restitution", "e"}, {"splitting_ratio", "γ"}};
+  const auto found = letters.find(name);
+  return found == letters.end() ? "" : found->second;
+}
+
+/// "-100*x" as "−100 x".
+std::string formula_words(std::string text) {
+  if (text.find('*') == std::string::npos) return text;
+  std::replace(text.begin(), text.end(), '*', ' ');
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text;
+}
+
+struct AxisWords {
+  const char *column, *before, *after;
+};
+// Keys of a scene as sentences call them.
+constexpr AxisWords scene_words[] = {{"structure.damping.stiffness", "viscosity", ""},
+                                     {"structure.damping.mass", "mass damping", ""},
+                                     {"structure.damping", "damping", ""},
+                                     {"structure.length", "length", ""},
+                                     {"structure.stiffness", "stiffness", ""},
+                                     {"structure.section.EI", "EI", ""},
+                                     {"structure.section.rhoS", "ρS", ""},
+                                     {"support.amplitude", "amplitude", ""},
+                                     {"support.pulsation", "pulsation", ""},
+                                     {"stops.lower", "lower stop", ""},
+                                     {"stops.upper", "upper stop", ""},
+                                     {"stops.at", "stops at", ""},
+                                     {"initial.velocity", "initial velocity", ""},
+                                     {"initial.displacement", "initial displacement", ""},
+                                     {"initial.projection", "projection", ""},
+                                     {"elements", "", " elements"},
+                                     {"steps_per_period", "", " steps per period"},
+                                     {"march", "", ""}};
+
+/// Words of a key as they are said: "every step" of "every-step".
+std::string spaced(std::string text) {
+  std::replace(text.begin(), text.end(), '-', ' ');
+  return text;
+}
+
+}  // namespace
+
+bool is_refinement(const std::string& column) {
+  return column == "step" || column == "elements" || column == "steps_per_period";
+}
+
+Compared::Compared(const StudyResults& results) : results_(results) {
+  if (const auto found = results.study.find("compare"); found != results.study.end() && found->is_string())
+    asked_ = found->get<std::string>();
+  for (const std::string& column : results.columns) {
+    std::vector<std::string> texts;
+    for (const CaseRecord& record : results.cases) texts.push_back(report::CaseView::text(record, column));
+    std::set<double> numbers;
+    for (const std::string& one : texts)
+      if (const auto number = as_number(one)) numbers.insert(*number);
+    if (column == "step" || column == "steps_per_period") steps_ = column;
+    const bool varies = std::any_of(texts.begin(), texts.end(), [&](const auto& one) { return one != texts.front(); });
+    texts_[column] = std::move(texts);
+    numbers_[column] = {numbers.begin(), numbers.end()};
+    if (!varies) continue;
+    varying_.push_back(column);
+    if (is_refinement(column)) continue;
+    columns_.push_back(column);
+    if (const std::string choice = axis_role(column);
+        std::find(choices_.begin(), choices_.end(), choice) == choices_.end())
+      choices_.push_back(choice);
+  }
+  // A parameter tells levels apart only where cases of one method differ in it.
+  for (const std::string& column : columns_) {
+    const std::string role = axis_role(column);
+    if (role == column) continue;
+    const auto names = texts_.find(role);
+    std::map<std::string, std::string> first;
+    for (std::size_t k = 0; k < results.cases.size(); ++k) {
+      const std::string name = names == texts_.end() ? "" : names->second[k];
+      const auto [at, fresh] = first.emplace(name, texts_[column][k]);
+      if (!fresh && at->second != texts_[column][k]) differs_in_[column][name] = true;
+    }
+  }
+}
+
+bool Compared::varies(const std::string& column) const {
+  return std::find(varying_.begin(), varying_.end(), column) != varying_.end();
+}
+
+std::vector<std::string> Compared::columns_of(const std::string& choice) const {
+  std::vector<std::string> own;
+  for (const std::string& column : columns_)
+    if (axis_role(column) == choice || column == choice) own.push_back(column);
+  return own;
+}
+
+std::vector<std::string> Compared::scene_columns() const {
+  std::vector<std::string> own;
+  for (const std::string& column : columns_)
+    if (axis_role(column) == column && column != "mass" && column != "contact" && column != "time" && column != "march")
+      own.push_back(column);
+  return own;
+}
+
+const std::string& Compared::text(const CaseRecord& record, const std::string& column) const {
+  static const std::string none;
+  const auto found = texts_.find(column);
+  if (found == texts_.end()) return none;
+  return found->second[static_cast<std::size_t>(&record - results_.cases.data())];
+}
+
+std::string Compared::key(const CaseRecord& record) const {
+  return key(record, columns_);
+}
+
+std::string Compared::key(const CaseRecord& record, const std::vector<std::string>& columns) const {
+  std::string key;
+  for (const std::string& column : columns) key += text(record, column) + '\x1f';
+  return key;
+}
+
+std::string Compared::method_words(const std::string& role, const std::string& name) const {
+  const auto found = results_.method_words.find(role + " " + name);
+  return found == results_.method_words.end() ? name : found->second;
+}
+
+std::string Compared::unit_of(const std::string& column) const {
+  const std::string unit = report::shown_unit(axis_column(results_, column).unit);
+  return unit.empty() ? "" : " " + unit;
+}
+
+const std::vector<double>& Compared::numbers_of(const std::string& column) const {
+  static const std::vector<double> none;
+  const auto found = numbers_.find(column);
+  return found == numbers_.end() ? none : found->second;
+}
+
+std::string Compared::value_words(const std::string& column, const std::string& value) const {
+  const std::string role = axis_role(column);
+  if (column == role && (role == "mass" || role == "contact" || role == "time")) return method_words(role, value);
+  const auto number = as_number(value);
+  const std::string shown = number ? short_number(*number) : formula_words(value);
+  if (role != column) {
+    const std::string name = last_part(column);
+    if (const std::string letter = symbol(name); !letter.empty() && number)
+      return letter + " = " + fraction_text(*number) + unit_of(column);
+    // "implicit evaluation", "second-order start"; of a mass matrix the value says it: "P1".
+    if (!number && value != "true" && value != "false")
+      return role == "mass" ? value : value + " " + report::in_words(name);
+    return report::in_words(name) + " " + shown + unit_of(column);
+  }
+  if (column == "march") return spaced(value);
+  for (const AxisWords& words : scene_words)
+    if (column == words.column) {
+      const std::string unit = *words.after ? words.after : number ? unit_of(column) : "";
+      return std::string(words.before) + (*words.before ? " " : "") + shown + unit;
+    }
+  return report::in_words(last_part(column)) + " " + shown + (number ? unit_of(column) : "");
+}
+
+std::string Compared::level(const CaseRecord& record, const std::string& choice) const {
+  if (axis_role(choice) == choice && choice != "mass" && choice != "contact" && choice != "time")
+    return text(record, choice).empty() ? "" : value_words(choice, text(record, choice));
+  std::string out;
+  const std::string& name = text(record, axis_role(choice));
+  for (const std::string& column : columns_of(choice)) {
+    const std::string& value = text(record, column);
+    if (value.empty()) continue;
+    if (column != axis_role(column)) {
+      const auto found = differs_in_.find(column);
+      if (column != choice && (found == differs_in_.end() || found->second.count(name) == 0)) continue;
+    }
+    out += (out.empty() ? "" : " ") + value_words(column, value);
+  }
+  return out;
+}
+
+std::string Compared::label(const CaseRecord& record, const std::vector<std::string>& choices) const {
+  std::string out;
+  for (const std::string& choice : choices)
+    if (const std::string one = level(record, choice); !one.empty()) out += (out.empty() ? "" : ", ") + one;
+  return out;
+}
+
+std::string Compared::name(const CaseRecord& record, const std::vector<std::string>& choices) const {
+  std::string scheme, mass, law, rest;
+  for (const std::string& choice : choices) {
+    const std::string one = level(record, choice);
+    if (one.empty()) continue;
+    if (choice == "time")
+      scheme = one;
+    else if (choice == "mass")
+      mass = "the " + one + " mass";
+    else if (choice == "contact")
+      law = one;
+    else
+      rest += ", " + one;
+  }
+  std::string out = scheme;
+  if (!mass.empty()) out += (out.empty() ? "" : " on ") + mass;
+  if (!law.empty()) out += (out.empty() ? "" : " with ") + law;
+  out += rest;
+  if (out.starts_with(", ")) out.erase(0, 2);
+  return out.empty() ? "the one method" : out;
+}
+
+std::optional<double> Compared::step(const CaseRecord& record) const {
+  if (steps_.empty()) return std::nullopt;
+  const auto number = as_number(text(record, steps_));
+  if (!number || *number <= 0) return std::nullopt;
+  return steps_ == "step" ? *number : 1 / *number;
+}
+
+std::optional<double> Compared::elements(const CaseRecord& record) const {
+  return as_number(text(record, "elements"));
+}
+
+std::string Compared::step_words(double step) const {
+  return steps_ == "steps_per_period" ? short_number(1 / step) + " steps per period"
+                                      : "h = " + short_number(step) + " s";
+}
+
+std::string spoken(const std::string& choice) {
+  if (choice == "march") return "leaving out steps";
+  static const std::string times = " × ";
+  if (const std::size_t at = choice.find(times); at != std::string::npos) {
+    const std::string one = axis_role(choice.substr(0, at)), other = axis_role(choice.substr(at + times.size()));
+    return one == other ? spoken(one) : spoken(one) + " together with " + spoken(other);
+  }
+  const std::string known = spoken_choice(choice);
+  return known != choice ? known : report::in_words(last_part(choice));
+}
+
+std::string plural_s(bool several) {
+  return several ? "" : "s";
+}
+
+}  // namespace ricochet::answers

@@ -1,0 +1,78 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/store/record_values.hpp"
+
+/// \file
+/// The methods that a study compares, as sentences speak of them.
+namespace ricochet::answers {
+
+/// Whether a column is refined rather than chosen: step, steps_per_period, elements.
+bool is_refinement(const std::string& column);
+
+/// A study as a comparison. A *choice* is a role with its parameters ("time"), or an axis of the scene; a *method* is
+/// one level of every choice that varies; what is left of a case is its step and its mesh.
+class Compared {
+ public:
+  explicit Compared(const StudyResults& results);
+
+  const StudyResults& results() const { return results_; }
+  /// What the study asks to be compared: a choice or one of its columns; "" where it asks for none.
+  const std::string& asked() const { return asked_; }
+  bool varies(const std::string& column) const;
+  /// Columns of choices that vary, in the study's order, and the choices that they belong to.
+  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<std::string>& choices() const { return choices_; }
+  std::vector<std::string> columns_of(const std::string& choice) const;
+  /// Choices that are no methods.
+  std::vector<std::string> scene_columns() const;
+
+  /// The value of a column as text; "" where the case has none.
+  const std::string& text(const CaseRecord& record, const std::string& column) const;
+  /// Tells methods apart.
+  std::string key(const CaseRecord& record) const;
+  std::string key(const CaseRecord& record, const std::vector<std::string>& columns) const;
+
+  /// The case's level of a choice, by what tells it from the others: "singular P1", "Dumont–Paoli β = ½".
+  std::string level(const CaseRecord& record, const std::string& choice) const;
+  /// The method of the case by its levels of these choices (all): "singular P1, rigid stops"; "" where nothing varies.
+  std::string label(const CaseRecord& record) const { return label(record, choices_); }
+  std::string label(const CaseRecord& record, const std::vector<std::string>& choices) const;
+  /// The same as a sentence says it: "Dumont–Paoli β = ½ on the singular P1 mass with rigid stops"; never empty.
+  std::string name(const CaseRecord& record) const { return name(record, choices_); }
+  std::string name(const CaseRecord& record, const std::vector<std::string>& choices) const;
+
+  /// A value of a column in words: "β = ½", "stiffness 1e6 N/m", "viscosity 1e-4 s", "implicit".
+  std::string value_words(const std::string& column, const std::string& value) const;
+  /// A method's or a mass matrix's own word: "rigid stops" of "signorini".
+  std::string method_words(const std::string& role, const std::string& name) const;
+  /// The unit of a column, with a space before it; "".
+  std::string unit_of(const std::string& column) const;
+  /// Numbers of a column over all cases, ascending, each once.
+  const std::vector<double>& numbers_of(const std::string& column) const;
+
+  /// Size of the step: h (s), or the share of a period; nothing where the study refines no step.
+  std::optional<double> step(const CaseRecord& record) const;
+  std::optional<double> elements(const CaseRecord& record) const;
+  /// "h = 1e-6 s", "4000 steps per period".
+  std::string step_words(double step) const;
+
+ private:
+  const StudyResults& results_;
+  std::string asked_;
+  std::vector<std::string> varying_, columns_, choices_;
+  std::map<std::string, std::vector<std::string>> texts_;  // of a varying column, by case
+  std::map<std::string, std::vector<double>> numbers_;
+  std::string steps_;                                              // the column of steps
+  std::map<std::string, std::map<std::string, bool>> differs_in_;  // role → name\ncolumn: some cases of it differ there
+};
+
+/// A choice in a sentence: "the mass matrix", "restitution" of "time.restitution".
+std::string spoken(const std::string& choice);
+/// "the energy"; verbs agree: a choice that is several things has none.
+std::string plural_s(bool several);
+
+}  // namespace ricochet::answers

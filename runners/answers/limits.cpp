@@ -1,0 +1,277 @@
+#include "runners/answers/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/statistics/quantiles.hpp>
+
+#include "runners/answers/set_names.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet::answers {
+namespace {
+
+double elements_or_one(const Compared& study, const CaseRecord& record) {
+  return study.elements(record).value_or(1);
+}
+
+double step_or_one(const Compared& study, const CaseRecord& record) {
+  return study.step(record).value_or(1);
+}
+
+/// u of a difference along one refinement; nothing of a single size.
+std::optional<double> difference_uncertainty(std::vector<SizedValue> differences) {
+  const auto limit = limit_of(differences, 0);
+  if (!limit || !limit->uncertainty) return std::nullopt;
+  std::sort(differences.begin(), differences.end(),
+            [](const SizedValue& a, const SizedValue& b) { return a.size > b.size; });
+  const double last = std::abs(differences.back().value), before = std::abs(differences[differences.size() - 2].value);
+  constexpr double halves = 0.5;
+  // A difference that at least halves is taken to vanish.
+  return last <= halves * before ? std::min(*limit->uncertainty, last) : *limit->uncertainty;
+}
+
+}  // namespace
+
+const char* word(Matters matters) {
+  return matters == Matters::yes ? "matters" : matters == Matters::no ? "does not matter" : "open";
+}
+
+std::optional<double> Method::at(double step, double elements) const {
+  const auto found = grid.find({step, elements});
+  return found == grid.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<const Method*> MeasureLimits::with_limit() const {
+  std::vector<const Method*> out;
+  for (const Method& one : methods)
+    if (one.limit) out.push_back(&one);
+  return out;
+}
+
+std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record) {
+  const auto value = measure(record, words.measure);
+  if (!value || words.scale != "energy_brought_in") return value;
+  const auto brought = measure(record, words.scale);
+  return brought && *brought > 0 ? std::optional(*value / *brought) : std::nullopt;
+}
+
+MeasureLimits limits_of(const Compared& study, const std::string& name, bool conservative, const Cases& cases) {
+  MeasureLimits out;
+  out.words = measure_words(name);
+  if (!conservative && out.words.truth) {
+    out.words.truth.reset();
+    out.words.direction = 0;
+  }
+  const bool share = out.words.factor != 1 || out.words.scale == "1" || out.words.scale == "energy_brought_in";
+  InOrderMet<std::string, Cases> groups;
+  for (const CaseRecord* record : cases) groups[study.key(*record)].push_back(record);
+  for (auto& [key, members] : std::move(groups).list()) {
+    Method method;
+    method.cases = members;
+    for (const CaseRecord* record : members) {
+      if (record->status != "done") continue;
+      const auto value = scaled_value(out.words, *record);
+      if (!value || !std::isfinite(*value)) continue;
+      method.done.push_back({record, *value});
+      method.grid[{step_or_one(study, *record), elements_or_one(study, *record)}] = *value;
+    }
+    if (!method.done.empty()) {
+      const auto& best =
+          *std::max_element(method.done.begin(), method.done.end(), [&](const Valued& a, const Valued& b) {
+            const double mesh_a = elements_or_one(study, *a.record), mesh_b = elements_or_one(study, *b.record);
+            return mesh_a != mesh_b ? mesh_a < mesh_b : step_or_one(study, *a.record) > step_or_one(study, *b.record);
+          });
+      method.finest = best.record;
+      const double h = step_or_one(study, *best.record), N = elements_or_one(study, *best.record);
+      std::vector<SizedValue> by_step, by_mesh;
+      double largest = 0;
+      for (const auto& [size, value] : method.grid) {
+        if (size.second == N) by_step.push_back({size.first, value});
+        if (size.first == h) by_mesh.push_back({1 / size.second, value});
+        largest = std::max(largest, std::abs(value));
+      }
+      const double floor = 0x1p-52 * static_cast<double>(best.record->steps) * (share ? 1 : largest);
+      method.step = limit_of(by_step, floor, out.words.truth);
+      method.mesh = limit_of(by_mesh, floor);
+      method.limit = combined(method.step, method.mesh);
+      method.half = measure(*best.record, "confidence." + name).value_or(0);
+      if (method.limit) widen(*method.limit, method.half);
+    }
+    out.methods.push_back(std::move(method));
+  }
+  std::vector<Limit*> limits;
+  for (Method& method : out.methods)
+    if (method.limit) limits.push_back(&*method.limit);
+  doubt_chance(limits);
+  return out;
+}
+
+bool keeps_energy(const StudyResults& results) {
+  // A scheme that declares no work form leaves it open: those that do tell it for the scene that they share.
+  std::vector<std::string> scene;
+  for (const std::string& column : results.columns)
+    if (const std::string role = axis_role(column);
+        role != "mass" && role != "contact" && role != "time" && role != "step" && role != "elements")
+      scene.push_back(column);
+  for (const Cases& cases : groups_of(with_status(all_cases(results), "done"), scene)) {
+    bool told = false;
+    for (const CaseRecord* record : cases)
+      for (const char* work : {"work_of_damping", "work_of_loads"})
+        if (const auto value = measure(*record, work)) {
+          if (*value != 0) return false;
+          told = true;
+        }
+    if (!told) return false;
+  }
+  return true;
+}
+
+bool in_tiers(const Compared& study, const MeasureLimits& limits) {
+  constexpr std::size_t a_dozen = 12, many = 120;
+  const auto have = limits.with_limit();
+  if (have.size() <= 1) return true;
+  if (!study.asked().empty()) return false;
+  if (limits.words.decades) return true;
+  const std::vector<std::string> scene = study.scene_columns();
+  const std::string first = study.key(have.front()->first(), scene);
+  const bool one_scene = std::all_of(have.begin(), have.end(),
+                                     [&](const Method* method) { return study.key(method->first(), scene) == first; });
+  return one_scene && have.size() <= (limits.words.direction != 0 ? many : a_dozen);
+}
+
+double scale_of(const MeasureWords& words, const std::vector<const Method*>& methods) {
+  if (words.scale == "1" || words.scale == "energy_brought_in") return 1;
+  double scale = 0;
+  for (const Method* method : methods) {
+    const double own = std::abs(method->limit->value);
+    scale = std::max(scale, words.scale.empty() ? own : std::abs(measure(*method->finest, words.scale).value_or(0)));
+  }
+  return scale;
+}
+
+Difference paired(const Method& high, const Method& low) {
+  Difference out{&high, &low, 0, std::nullopt, 0};
+  double h = 0, N = 0;
+  for (const auto& [size, value] : high.grid) {
+    if (!low.at(size.first, size.second)) continue;
+    if (size.second > N || (size.second == N && size.first < h)) h = size.first, N = size.second;
+  }
+  if (N == 0) {
+    // No step and mesh in common.
+    out.value = std::abs(high.limit->value - low.limit->value);
+    if (high.limit->uncertainty && low.limit->uncertainty)
+      out.uncertainty = *high.limit->uncertainty + *low.limit->uncertainty;
+    return out;
+  }
+  std::vector<SizedValue> by_step, by_mesh;
+  for (const auto& [size, value] : high.grid) {
+    const auto other = low.at(size.first, size.second);
+    if (!other) continue;
+    if (size.second == N) by_step.push_back({size.first, value - *other});
+    if (size.first == h) by_mesh.push_back({1 / size.second, value - *other});
+  }
+  out.step_sizes = static_cast<int>(by_step.size());
+  out.value = std::abs(*high.at(h, N) - *low.at(h, N));
+  const auto step = difference_uncertainty(by_step), mesh = difference_uncertainty(by_mesh);
+  if (step || mesh) out.uncertainty = step.value_or(0) + mesh.value_or(0);
+  // Never surer than not at all, nor less sure than both limits together.
+  if (out.uncertainty && high.limit->uncertainty && low.limit->uncertainty)
+    out.uncertainty = std::min(*out.uncertainty, *high.limit->uncertainty + *low.limit->uncertainty);
+  if (out.uncertainty) *out.uncertainty += std::max(high.half, low.half);
+  return out;
+}
+
+Difference farthest(const std::vector<const Method*>& methods) {
+  const auto by_value = [](const Method* a, const Method* b) { return a->limit->value < b->limit->value; };
+  return paired(**std::max_element(methods.begin(), methods.end(), by_value),
+                **std::min_element(methods.begin(), methods.end(), by_value));
+}
+
+Matters ChoiceRow::matters() const {
+  const double u = uncertainty.value_or(0);
+  return difference - u > tolerance ? Matters::yes : difference + u <= tolerance ? Matters::no : Matters::open;
+}
+
+namespace {
+
+/// Names the combinations in which a choice matters; "" where they have no short name.
+std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, const std::vector<std::string>& others) {
+  if (effect.matters == 0 || effect.matters == effect.rows.size() || effect.rows.size() < 2) return "";
+  Cases combinations;
+  Members inside;
+  for (std::size_t k = 0; k < effect.rows.size(); ++k) {
+    combinations.push_back(effect.rows[k].combination);
+    if (effect.rows[k].matters() == Matters::yes) inside.push_back(k);
+  }
+  const SetNames::Name name = SetNames(study, combinations, others).found(inside);
+  if (!name.exact)
+    return name.text.starts_with("mostly ") ? ", mostly with " + name.text.substr(7, name.text.rfind(" (") - 7) : "";
+  return name.text.find(';') == std::string::npos ? " with " + name.text : "";
+}
+
+ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const std::string& choice,
+                       const std::vector<std::string>& own) {
+  ChoiceEffect out;
+  out.choice = choice;
+  std::vector<std::string> others;
+  for (const std::string& column : study.columns())
+    if (std::find(own.begin(), own.end(), column) == own.end()) others.push_back(column);
+  InOrderMet<std::string, std::vector<const Method*>> groups;
+  for (const Method* method : limits.with_limit()) groups[study.key(method->first(), others)].push_back(method);
+  std::vector<double> sizes, uncertainties;
+  InOrderMet<std::string, std::size_t> most, least;
+  for (const auto& [key, group] : groups.list()) {
+    if (group.size() < 2) continue;
+    const double scale = scale_of(limits.words, group);
+    if (scale <= 0) continue;
+    const Difference difference = farthest(group);
+    ChoiceRow row{
+        .combination = &group.front()->first(), .levels = group.size(), .difference = difference.value / scale};
+    if (difference.uncertainty) uncertainties.push_back(*(row.uncertainty = *difference.uncertainty / scale));
+    const auto level = [&](const Method* method) {
+      return own.size() == 1 && own.front() != choice
+                 ? study.value_words(own.front(), study.text(method->first(), own.front()))
+                 : study.level(method->first(), choice);
+    };
+    row.most = level(difference.high);
+    row.least = level(difference.low);
+    ++most[row.most];
+    ++least[row.least];
+    sizes.push_back(row.difference);
+    out.matters += row.matters() == Matters::yes ? 1 : 0;
+    out.matters_not += row.matters() == Matters::no ? 1 : 0;
+    out.rows.push_back(std::move(row));
+  }
+  if (sizes.empty()) return out;
+  out.typical = median(sizes);
+  out.largest = *std::max_element(sizes.begin(), sizes.end());
+  if (!uncertainties.empty()) out.typical_uncertainty = median(uncertainties);
+  constexpr double in_most = 0.8;
+  const auto usual = [&](const auto& counts) -> std::string {
+    for (const auto& [name, count] : counts.list())
+      if (static_cast<double>(count) >= in_most * static_cast<double>(out.rows.size())) return name;
+    return "";
+  };
+  out.most = usual(most);
+  out.least = usual(least);
+  out.where = place_of_effect(study, out, others);
+  return out;
+}
+
+}  // namespace
+
+std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits) {
+  std::vector<ChoiceEffect> out;
+  const auto add = [&](const std::string& choice, const std::vector<std::string>& own) {
+    ChoiceEffect effect = effect_of(study, limits, choice, own);
+    if (!effect.rows.empty()) out.push_back(std::move(effect));
+  };
+  // One column of a choice, where that is asked for.
+  const bool part = study.varies(study.asked()) && axis_role(study.asked()) != study.asked();
+  if (part) add(study.asked(), {study.asked()});
+  for (const std::string& choice : study.choices()) add(choice, study.columns_of(choice));
+  return out;
+}
+
+}  // namespace ricochet::answers

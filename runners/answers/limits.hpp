@@ -1,0 +1,99 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <ricochet/measure/statistics/refinement.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/answers/compared.hpp"
+#include "runners/answers/numbers_in_words.hpp"
+
+namespace ricochet::answers {
+
+/// Differences below this share of a measure's scale are said not to matter: T.
+inline constexpr double tolerance = 0.01;
+
+/// A case with its value over the scale of its measure.
+struct Valued {
+  const CaseRecord* record = nullptr;
+  double value = 0;
+};
+
+/// One method, what it gave at each step and mesh, and what that comes to.
+struct Method {
+  Cases cases;                                       ///< all, whatever became of them
+  std::vector<Valued> done;                          ///< those with a value
+  const CaseRecord* finest = nullptr;                ///< finest mesh, then finest step, with a value
+  std::optional<Limit> step, mesh, limit;            ///< along each refinement at the finest of the other; over both
+  double half = 0;                                   ///< half the interval of the finest value itself
+  std::map<std::pair<double, double>, double> grid;  ///< by step and elements (1 where there is none)
+
+  const CaseRecord& first() const { return *cases.front(); }
+  std::optional<double> at(double step, double elements) const;
+};
+
+/// The limits of all methods in one measure.
+struct MeasureLimits {
+  MeasureWords words;
+  std::vector<Method> methods;  ///< in the study's order
+  std::vector<const Method*> with_limit() const;
+};
+
+/// A measure over its scale where that belongs to the case: a share of 1 or of the energy that was brought in.
+std::optional<double> scaled_value(const MeasureWords& words, const CaseRecord& record);
+
+/// Of the cases given, all of one study. `conservative`: the truth of the measure and its direction hold.
+MeasureLimits limits_of(const Compared& study, const std::string& measure, bool conservative, const Cases& cases);
+
+/// Whether nothing but contact and the method changes energies: no case has loads or damping.
+bool keeps_energy(const StudyResults& results);
+
+/// Whether the methods are told in tiers: at most a dozen in one scene, or any number where one direction is better;
+/// and nothing is asked to be compared. Otherwise choices are told by what they move.
+bool in_tiers(const Compared& study, const MeasureLimits& limits);
+
+/// What differences are shares of, one number for all methods that are compared: 1 of shares, the largest of the scale
+/// measure, else of the values themselves. 0 where nothing differs from zero.
+double scale_of(const MeasureWords& words, const std::vector<const Method*>& methods);
+
+/// The difference of two methods as it goes with the refinement: what moves both alike cancels.
+struct Difference {
+  const Method *high = nullptr, *low = nullptr;
+  double value = 0;                   ///< ≥ 0, at the finest step and mesh that both have
+  std::optional<double> uncertainty;  ///< nothing at a single step and mesh
+  int step_sizes = 0;                 ///< that both have at that mesh
+};
+/// Of the two methods that are farthest apart by their limits.
+Difference farthest(const std::vector<const Method*>& methods);
+Difference paired(const Method& high, const Method& low);
+
+/// Whether a difference matters: |D| − u > T; does not: |D| + u ≤ T; is open.
+enum class Matters { yes, no, open };
+const char* word(Matters matters);
+
+/// One choice in one combination of all others.
+struct ChoiceRow {
+  const CaseRecord* combination = nullptr;  ///< a case of it
+  std::size_t levels = 0;
+  double difference = 0;                   ///< over the scale
+  std::optional<double> uncertainty = {};  ///< over the scale
+  std::string most = {}, least = {};       ///< levels at the ends
+  Matters matters() const;
+};
+
+/// One choice over all combinations.
+struct ChoiceEffect {
+  std::string choice;
+  std::vector<ChoiceRow> rows;
+  double typical = 0, largest = 0;
+  std::optional<double> typical_uncertainty;
+  std::size_t matters = 0, matters_not = 0;
+  std::string most, least;  ///< where the same level is an end in four of five combinations
+  std::string where;        ///< the combinations in which it matters, where these have a name: "with viscosity 0"
+};
+
+/// Every choice that varies, in the study's order, with those asked for by one of their columns first.
+std::vector<ChoiceEffect> choice_effects(const Compared& study, const MeasureLimits& limits);
+
+}  // namespace ricochet::answers

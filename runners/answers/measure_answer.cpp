@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/measure/statistics/quantiles.hpp>
+#include <ricochet/measure/statistics/tiers.hpp>
+
+#include "runners/answers/answer.hpp"
+#include "runners/answers/choice_sentences.hpp"
+#include "runners/answers/set_names.hpp"
+#include "runners/answers/tier_speaker.hpp"
+#include "runners/study/axis_meaning.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet::answers {
+namespace {
+
+constexpr std::size_t a_dozen = 12, sentences_at_most = 5;
+
+struct MeasureSaid {
+  std::string kind;  ///< differ, none, open, value, choices
+  std::vector<Sentence> sentences;
+  MeasureLimits limits;
+  double scale = 1;
+  std::string lead = {};  ///< of kind choices: what moves it most
+  double lead_size = 0;   ///< typically
+};
+
+bool chaotic_means(const StudyResults& results) {
+  const auto window = results.study.find("window");
+  if (window == results.study.end() || !window->is_object()) return false;
+  const auto parts = window->find("parts");
+  return parts != window->end() && parts->is_number();
+}
+
+MeasureSaid say_measure(const Compared& study, const std::string& name, bool kept) {
+  MeasureSaid out;
+  const Cases all = all_cases(study.results());
+  out.limits = limits_of(study, name, kept, all);
+  const MeasureWords& words = out.limits.words;
+  const auto have = out.limits.with_limit();
+  if (have.empty()) return out;
+  out.scale = scale_of(words, have);
+  if (out.scale <= 0) out.scale = 1;
+  const std::vector<std::string> scene = study.scene_columns();
+  InOrderMet<std::string, std::vector<const Method*>> scenes;
+  for (const Method* method : have) scenes[study.key(method->first(), scene)].push_back(method);
+  const bool asks = !study.asked().empty();
+  if (in_tiers(study, out.limits)) {
+    std::tie(out.kind, out.sentences) = TierSpeaker(study, out.limits, study.columns()).tiers();
+    return out;
+  }
+  const bool by_scene = !asks && scenes.list().size() >= 2 && scenes.list().size() <= 3 &&
+                        std::all_of(scenes.list().begin(), scenes.list().end(), [](const auto& scene_methods) {
+                          return scene_methods.second.size() >= 2 && scene_methods.second.size() <= a_dozen;
+                        });
+  if (by_scene) {
+    out.kind = "differ";
+    std::vector<std::string> rest;
+    for (const std::string& column : study.columns())
+      if (std::find(scene.begin(), scene.end(), column) == scene.end()) rest.push_back(column);
+    for (const auto& [key, methods] : scenes.list()) {
+      Cases cases;
+      for (const Method* method : methods) cases.insert(cases.end(), method->cases.begin(), method->cases.end());
+      const MeasureLimits own = limits_of(study, name, kept, cases);
+      auto [kind, said] = TierSpeaker(study, own, rest).tiers();
+      if (said.empty()) continue;
+      std::string text = said.front().text;
+      for (const char* article : {"The ", "None ", "No ", "All ", "These ", "Least "})
+        if (text.starts_with(article)) text[0] = static_cast<char>(text[0] - 'A' + 'a');
+      std::vector<std::string> where;
+      for (const std::string& column : scene) where.push_back(study.level(methods.front()->first(), column));
+      said.front().text = "With " + and_list(where) + ": " + text;
+      out.sentences.push_back(std::move(said.front()));
+    }
+    return out;
+  }
+  out.kind = "choices";
+  if (asks) out.sentences = say_levels(study, out.limits);
+  if (!out.sentences.empty()) return out;
+  const std::vector<ChoiceEffect> effects = choice_effects(study, out.limits);
+  for (const ChoiceEffect& one : effects)
+    if (one.typical > std::max(out.lead_size, tolerance) && 2 * one.matters > one.rows.size())
+      out.lead = one.choice, out.lead_size = one.typical;
+  out.sentences = say_choices(study, words, effects);
+  return out;
+}
+
+/// One sentence on the measures after the first that share a verdict.
+void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first, std::vector<Sentence>& out) {
+  const std::string& first_kind = first.kind;
+  const auto spread = [](const MeasureSaid& one) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Method* method : one.limits.with_limit())
+      low = std::min(low, method->limit->value), high = std::max(high, method->limit->value);
+    return (high - low) / one.scale;
+  };
+  const auto moved = [](const MeasureSaid& one) {
+    double u = 0;
+    for (const Method* method : one.limits.with_limit())
+      if (const double own = method->limit->uncertainty.value_or(0); std::isfinite(own)) u = std::max(u, own);
+    return u / one.scale;
+  };
+  InOrderMet<std::string, std::vector<const MeasureSaid*>> kinds;
+  for (const MeasureSaid& one : others) kinds[one.kind].push_back(&one);
+  for (const auto& [kind, all] : kinds.list()) {
+    std::vector<std::string> names;
+    Sentence said;
+    for (const MeasureSaid* one : all) {
+      Clause clause{.form = kind == alike ? alike : "open", .measure = one->limits.words.measure};
+      clause.value = 100 * (kind == alike ? spread(*one) : moved(*one));
+      clause.unit = "%";
+      said.clauses.push_back(clause);
+      names.push_back(one->limits.words.words + (kind == alike ? " (" + by_percent(spread(*one)) + ")" : ""));
+    }
+    if (kind == alike && (all.size() > 1 || first_kind == alike)) {
+      said.text = first_kind == alike
+                      ? fmt::format("{} agree{} as well.", capitalised(and_list(names)), plural_s(all.size() > 1))
+                      : fmt::format("No difference in {}.", and_list(names));
+      out.push_back(std::move(said));
+    } else if (kind == "open") {
+      std::vector<std::string> sizes;
+      for (const MeasureSaid* one : all) sizes.push_back(percent(moved(*one)));
+      said.text = fmt::format("{} {} not told: refinement still moves {} by up to {}.", capitalised(and_list(names)),
+                              all.size() > 1 ? "are" : "is", all.size() > 1 ? "them" : "it", and_list(sizes));
+      out.push_back(std::move(said));
+    } else if (kind == "choices" && first_kind == "choices") {
+      // What moves the first measure most is named once.
+      InOrderMet<std::string, std::vector<const MeasureSaid*>> leads;
+      for (const MeasureSaid* one : all) leads[one->lead].push_back(one);
+      for (const auto& [lead, same] : leads.list()) {
+        if (lead.empty()) continue;
+        Sentence moves;
+        std::vector<std::string> measures, sizes;
+        for (const MeasureSaid* one : same) {
+          measures.push_back(one->limits.words.words);
+          sizes.push_back(percent(one->lead_size));
+          Clause clause{.form = "matters", .measure = one->limits.words.measure, .choice = lead};
+          clause.value = 100 * one->lead_size;
+          clause.unit = "%";
+          clause.status = "matters";
+          moves.clauses.push_back(clause);
+        }
+        moves.text = fmt::format("{}: {}{}, by {}.", capitalised(and_list(measures)), spoken(lead),
+                                 lead == first.lead ? " again" : " most", and_list(sizes));
+        out.push_back(std::move(moves));
+      }
+    } else {
+      for (const MeasureSaid* one : all)
+        if (!one->sentences.empty()) out.push_back(one->sentences.front());
+    }
+  }
+}
+
+}  // namespace
+
+Answer measure_answer(const Compared& study, const std::vector<std::string>& measures, bool status_first) {
+  Answer answer;
+  const StudyResults& results = study.results();
+  const bool any_done = std::any_of(results.cases.begin(), results.cases.end(),
+                                    [](const CaseRecord& record) { return record.status == "done"; });
+  if (status_first)
+    for (Sentence& one : status(study)) answer.say(std::move(one));
+  if (!any_done && !results.cases.empty() && !status_first)
+    answer.say("Nothing ran.", Clause{.form = "status", .status = "none"});
+  constexpr std::size_t measures_at_most = 4, too_many_cases = 20000;
+  const bool kept = keeps_energy(results);
+  std::vector<Sentence> body;
+  std::vector<MeasureSaid> others;
+  MeasureSaid first;
+  if (any_done && results.cases.size() <= too_many_cases)
+    for (std::size_t k = 0; k < std::min(measures.size(), measures_at_most); ++k) {
+      MeasureSaid said = say_measure(study, measures[k], kept);
+      if (said.sentences.empty()) continue;
+      if (chaotic_means(results) && !measures[k].starts_with("window")) {
+        body.push_back({fmt::format("{} is not compared: the motion is chaotic, its means are.",
+                                    capitalised(said.limits.words.words)),
+                        {Clause{.form = "open", .measure = measures[k], .status = "chaotic"}}});
+        continue;
+      }
+      if (first.kind.empty()) {
+        constexpr std::size_t of_first = 3;
+        for (std::size_t s = 0; s < std::min(of_first, said.sentences.size()); ++s) body.push_back(said.sentences[s]);
+        first = std::move(said);
+        continue;
+      }
+      // Of which more than half the methods are restless nothing is told, whatever its tiers.
+      const auto have = said.limits.with_limit();
+      const auto restless = static_cast<std::size_t>(std::count_if(have.begin(), have.end(), [&](const Method* one) {
+        return one->limit->restless() && one->limit->uncertainty.value_or(0) > 2 * tolerance * said.scale;
+      }));
+      if (said.kind == "differ" && 2 * restless > have.size()) said.kind = "open";
+      others.push_back(std::move(said));
+    }
+  say_others(others, first, body);
+  const std::size_t room = status_first ? 2 : sentences_at_most;
+  for (std::size_t k = 0; k < std::min(room, body.size()); ++k) answer.say(std::move(body[k]));
+  if (!status_first)
+    for (Sentence& one : ended(study)) answer.say(std::move(one));
+  return answer;
+}
+
+}  // namespace ricochet::answers

@@ -1,0 +1,190 @@
+#include "runners/answers/numbers_in_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runners/report/html.hpp"
+
+namespace ricochet::answers {
+namespace {
+
+constexpr double smallest_percent = 1e-9;  // as a share
+constexpr double many = 1e5;
+
+double magnitude(double value) {
+  return std::pow(10, std::floor(std::log10(std::abs(value))));
+}
+
+/// Decimal places that an uncertainty leaves: to its first digit, to the second where that is a 1 and `fine`.
+int decimals(double uncertainty, bool fine) {
+  int exponent = static_cast<int>(std::floor(std::log10(uncertainty)));
+  constexpr double begins_with_one = 1.95;
+  if (fine && uncertainty / std::pow(10, exponent) < begins_with_one) --exponent;
+  constexpr int most = 8;
+  return std::clamp(-exponent, 0, most);
+}
+
+/// A minus sign as it is printed.
+std::string with_minus(std::string text) {
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text;
+}
+
+std::string fixed(double value, int places) {
+  std::string text = fmt::format("{:.{}f}", value, places);
+  if (text.find_first_not_of("-0.") == std::string::npos) return "0";
+  return with_minus(text);
+}
+
+std::string unit_after(const MeasureWords& measure) {
+  return measure.unit.empty() ? "" : " " + measure.unit;
+}
+
+}  // namespace
+
+std::string capitalised(std::string text) {
+  // A first letter beyond ASCII stays: β, θ.
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+MeasureWords measure_words(const std::string& measure) {
+  MeasureWords out;
+  out.measure = measure;
+  const MeasureInfo* info = measure_info(measure);
+  out.words = info && *info->reading.words ? info->reading.words : report::in_words(measure);
+  if (!info) return out;
+  out.scale = info->scale;
+  out.decades = info->reading.decades;
+  out.direction = info->reading.direction;
+  out.truth = info->reading.truth;
+  out.unit = std::string(info->unit) == "1" ? "" : info->unit;
+  if (out.scale == "1" || out.scale == "energy_brought_in") {
+    out.unit = out.decades ? "of the energy" : "%";
+    out.factor = out.decades ? 1 : 100;
+  }
+  return out;
+}
+
+std::string short_number(double value, int digits) {
+  if (value == 0) return "0";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  constexpr double small = 1e-3;
+  if (std::abs(value) < small) {
+    // "1e-4", not 0.0001.
+    std::string text = fmt::format("{:.{}e}", value, digits - 1);
+    const std::size_t at = text.find('e');
+    std::string mantissa = text.substr(0, at);
+    if (mantissa.find('.') != std::string::npos) {
+      mantissa.erase(mantissa.find_last_not_of('0') + 1);
+      if (mantissa.ends_with('.')) mantissa.pop_back();
+    }
+    return with_minus(fmt::format("{}e{}", mantissa, std::stoi(text.substr(at + 1))));
+  }
+  const int whole =
+      std::abs(value) >= 1 && std::abs(value) < many ? static_cast<int>(std::log10(std::abs(value))) + 1 : 0;
+  std::string text = fmt::format("{:.{}g}", value, std::max(digits, whole));
+  if (const std::size_t at = text.find('e'); at != std::string::npos) {
+    const int exponent = std::stoi(text.substr(at + 1));
+    text = fmt::format("{}e{}", text.substr(0, at), exponent);
+  }
+  return with_minus(text);
+}
+
+std::string fraction_text(double value) {
+  if (value == 0.5) return "½";
+  if (value == 0.25) return "¼";
+  if (value == 0.75) return "¾";
+  return short_number(value);
+}
+
+namespace {
+
+std::string value_to(const MeasureWords& measure, double value, std::optional<double> uncertainty, bool with_unit,
+                     bool fine) {
+  const std::string unit = with_unit ? unit_after(measure) : "";
+  const double v = value * measure.factor;
+  double u = std::isfinite(uncertainty.value_or(0)) ? measure.factor * uncertainty.value_or(0) : 0;
+  if (measure.decades) return short_number(v, 2) + unit;
+  if (v == 0 && u == 0) return "0" + unit;
+  // All of it, as far as four digits of a per cent say.
+  constexpr double all_of_it = 5e-5;
+  if (measure.unit == "%" && std::abs(v - 100) < all_of_it) return "100" + unit;
+  constexpr double negligible = 1e-3;
+  if (std::abs(v) < u && u < negligible) return "0" + unit;
+  constexpr double small = 1e-3, large = 1e5;
+  if (v != 0 && (std::abs(v) < small || std::abs(v) >= large))
+    return short_number(v, u > 0 && u < 0.1 * std::abs(v) ? 3 : 2) + unit;
+  if (u <= 0) return short_number(v) + unit;
+  u = std::min(u, std::abs(v) > 0 ? std::abs(v) : u);
+  int places = decimals(u, fine);
+  if (measure.factor == 100 && std::abs(v) < 100) {
+    // Enough digits that what is lacking of 100 % keeps two.
+    const double lacking = 100 - std::abs(v);
+    const int wanted = lacking > 0 && lacking < 1 ? 1 - static_cast<int>(std::floor(std::log10(lacking))) : 2;
+    places = std::min(places, std::max(wanted, std::abs(v) < 1 ? 3 : 2));
+  }
+  constexpr int most = 6;
+  places = std::min(places, most);
+  if (u >= 10 && std::abs(v) >= 10) {
+    const double digit = magnitude(u);
+    return fixed(std::round(v / digit) * digit, 0) + unit;
+  }
+  return fixed(v, places) + unit;
+}
+
+}  // namespace
+
+std::string value_text(const MeasureWords& measure, double value, std::optional<double> uncertainty, bool with_unit) {
+  return value_to(measure, value, uncertainty, with_unit, true);
+}
+
+std::string range_text(const MeasureWords& measure, double low, double high, std::optional<double> uncertainty) {
+  if (low > high) std::swap(low, high);
+  const double half = 0.5 * (high - low);
+  const auto bound = [&](double value, bool with_unit) {
+    return value_to(measure, value, half > 0 ? half : uncertainty, with_unit, half <= 0);
+  };
+  const std::string from = bound(low, false), to = bound(high, false);
+  if (from == to) return value_text(measure, 0.5 * (low + high), std::max(half, uncertainty.value_or(0)));
+  return from + " to " + to + unit_after(measure);
+}
+
+std::string uncertainty_text(const MeasureWords& measure, double uncertainty) {
+  const double u = measure.factor * uncertainty;
+  constexpr double begins_with_one = 1.95;
+  const int digits = u > 0 && u / magnitude(u) < begins_with_one ? 2 : 1;
+  return short_number(u, digits) + unit_after(measure);
+}
+
+std::string with_uncertainty(const MeasureWords& measure, double value, std::optional<double> uncertainty) {
+  if (!uncertainty || !(*uncertainty > 0) || !std::isfinite(*uncertainty))
+    return value_text(measure, value, uncertainty);
+  return value_text(measure, value, uncertainty, false) + " ± " + uncertainty_text(measure, *uncertainty);
+}
+
+std::string cell_text(const MeasureWords& measure, double value) {
+  const double v = measure.factor * value;
+  if (measure.factor == 100 && v > 99 && v < 100) {
+    const int places = 1 - static_cast<int>(std::floor(std::log10(std::max(100 - v, 1e-6))));
+    return fixed(v, std::max(2, places));
+  }
+  return short_number(v, 4);
+}
+
+std::string percent(double share) {
+  const double size = std::abs(share);
+  constexpr double times = 10, whole = 0.995;
+  if (size < smallest_percent) return "0 %";
+  if (size >= times) return short_number(share, 2) + " times";
+  if (size >= whole) return fmt::format("{:.0f} %", 100 * share);
+  return short_number(100 * share, 2) + " %";
+}
+
+std::string by_percent(double share) {
+  return std::abs(share) < smallest_percent ? "nothing" : percent(share);
+}
+
+}  // namespace ricochet::answers

@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "runners/store/record.hpp"
+
+/// \file
+/// Numbers as sentences say them: no digit that the uncertainty does not bear.
+namespace ricochet::answers {
+
+/// How values of a measure are said: those of a comparison are shares of a scale, or numbers with a unit.
+struct MeasureWords {
+  std::string measure;          ///< its key
+  std::string words;            ///< "energy left"
+  std::string unit;             ///< "%", "N s", …; "" of counts
+  double factor = 1;            ///< 100 of per cents
+  std::string scale;            ///< see MeasureInfo
+  bool decades = false;         ///< differences are factors
+  int direction = 0;            ///< 1: more is better, −1: less is, 0: neither
+  std::optional<double> truth;  ///< what an exact method gives, in a conservative scene
+};
+/// Of a measure that its kind declares; words of its key where it says none.
+MeasureWords measure_words(const std::string& measure);
+
+/// `digits` significant digits, at least as many as a whole number below 1e5 has; exponents short: "1.2e-5".
+std::string short_number(double value, int digits = 4);
+/// 0.5 as "½", 0.25 as "¼", 0.75 as "¾"; else short_number().
+std::string fraction_text(double value);
+
+/// A value as its uncertainty allows: to one digit of u, two where that begins with 1; near 100 % so that 100 − v keeps
+/// two digits. Without an uncertainty four digits.
+std::string value_text(const MeasureWords& measure, double value, std::optional<double> uncertainty,
+                       bool with_unit = true);
+/// "83 to 87 %": both to one digit of half the width; one value where they are equal then.
+std::string range_text(const MeasureWords& measure, double low, double high, std::optional<double> uncertainty = {});
+/// An uncertainty alone: "0.006 %".
+std::string uncertainty_text(const MeasureWords& measure, double uncertainty);
+/// "43.12 ± 0.03 %"; without an uncertainty the value alone.
+std::string with_uncertainty(const MeasureWords& measure, double value, std::optional<double> uncertainty);
+/// A value as it was computed: four digits, more near 100 %.
+std::string cell_text(const MeasureWords& measure, double value);
+
+/// A share in per cent to two digits: "0.012 %", "39 %", "the same" below 1e-7 %, "12 times" from 1000 % on.
+std::string percent(double share);
+/// Such a share after "by": "nothing" where it is the same.
+std::string by_percent(double share);
+
+/// "1 of 48 cases".
+std::string capitalised(std::string text);
+
+}  // namespace ricochet::answers

@@ -1,0 +1,256 @@
+#include "runners/answers/tier_speaker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ricochet/measure/statistics/quantiles.hpp>
+
+namespace ricochet::answers {
+namespace {
+
+constexpr double gains_above = 1.02;
+
+}  // namespace
+
+Sentence TierSpeaker::one_method() const {
+  const Limit& one = limit(0);
+  std::string text = capitalised(words_.words) + ": " + with_uncertainty(words_, one.value, one.uncertainty);
+  if (one.status == LimitStatus::one)
+    text += fmt::format(" at {}, the only step: how far a finer one would move it is not known", finest_words({0}));
+  else if (one.status == LimitStatus::wanders)
+    text += "; it wanders over the three finest steps";
+  else
+    text += mark({0});
+  return {text + ".", {clause("value", {0})}};
+}
+
+Sentence TierSpeaker::together(const Members& firm, const Difference& far, double u) const {
+  Clause said = clause("none", firm);
+  said.value = far.value / scale_;
+  said.uncertainty = far.uncertainty.value_or(0) / scale_;
+  return {fmt::format("No difference: {} differs by {} ± {} between methods, though refinement still moves all of them "
+                      "together by {}, from {}.",
+                      words_.words, percent(far.value / scale_), percent(far.uncertainty.value_or(0) / scale_),
+                      percent(u / scale_), values_of(firm)),
+          {said}};
+}
+
+Sentence TierSpeaker::no_difference(const Members& firm, std::optional<double> u, double spread) const {
+  std::vector<double> values = of(firm, [](const Limit& l) { return l.value; });
+  const double middle = median(values);
+  const std::string who = firm.size() == methods_.size() ? whichever() : "with " + names_.of(firm);
+  Clause said = clause("none", firm);
+  if (keeps_energy() && std::abs(middle - *words_.truth) <= keeps_within / 2) {
+    double farthest_value = 0;
+    std::size_t which = firm.front();
+    for (const std::size_t k : firm)
+      if (std::abs(limit(k).value - *words_.truth) > farthest_value)
+        farthest_value = std::abs(limit(k).value - *words_.truth), which = k;
+    said.form = "keeps";
+    const std::string left = farthest_value < nothing_gained
+                                 ? "all of the energy is left"
+                                 : "all of the energy is left, to " + percent(farthest_value);
+    return {fmt::format("All keep it: {} {}{}.", left, who,
+                        farthest_value < nothing_gained ? "" : " (the farthest: " + names_.label(which) + ")"),
+            {said}};
+  }
+  if (!u)
+    return {fmt::format(
+                "No difference at {}, the only step: {} is {} {}; methods differ by {}. What a finer step would "
+                "change is not known.",
+                finest_words(firm), words_.words, value_text(words_, middle, spread), who, by_percent(spread / scale_)),
+            {said}};
+  return {fmt::format("No difference: {} is {} {}; methods differ by {}, and refining {} still moves a result by {}.",
+                      words_.words, value_text(words_, middle, std::max(*u, spread)), who, by_percent(spread / scale_),
+                      refined_words(firm), by_percent(*u / scale_)),
+          {said}};
+}
+
+Sentence TierSpeaker::cannot_tell(const Members& firm, std::optional<double> u, double spread) const {
+  const std::string refined = refined_words(firm);
+  const double target = std::max(spread, tolerance * scale_) / 3;
+  return {
+      fmt::format("These steps cannot tell: {} differs by {} between methods, but {} still move{} it by up to {}{}; "
+                  "it lies in {}.",
+                  words_.words, percent(spread / scale_), refined, plural_s(refined == "step and mesh"),
+                  percent(u.value_or(0) / scale_), more_needed(firm, target), values_of(firm)),
+      {clause("open", firm)}};
+}
+
+void TierSpeaker::say_tiers(const std::vector<Members>& tiers, std::vector<Sentence>& out) const {
+  const auto form = [&](const Members& members) {
+    return keeps_energy() && std::abs(most(members) - *words_.truth) <= keeps_within ? "keeps" : "differ";
+  };
+  const SetNames::Name first = names_.found(tiers.front());
+  const std::string value = values_of(tiers.front()), after = mark(tiers.front());
+  Sentence said;
+  said.clauses.push_back(clause(form(tiers.front()), tiers.front()));
+  if (keeps_energy() && most(tiers.front()) > *words_.truth - keeps_within)
+    said.text = fmt::format("{} keep{} it: {}{}", capitalised(first.text), plural_s(first.several),
+                            kept_values(tiers.front()), after);
+  else if (keeps_energy())
+    said.text =
+        fmt::format("None keeps it; {} come{} nearest with {}{}", first.text, plural_s(first.several), value, after);
+  else if (words_.direction < 0)
+    said.text = fmt::format("{}: least, {}, with {}{}", capitalised(words_.words), value, first.text, after);
+  else
+    said.text = fmt::format("{}: {} with {}{}", capitalised(words_.words), value, first.text, after);
+  constexpr std::size_t told = 4;
+  std::vector<Members> shown(tiers.begin() + 1,
+                             tiers.begin() + static_cast<std::ptrdiff_t>(std::min(tiers.size(), told)));
+  const bool ends = words_.decades && tiers.size() > 3;
+  if (ends) shown = {tiers.back()};
+  std::size_t more = 0;
+  for (const Members& tier : tiers) more += tier.size();
+  more -= tiers.front().size();
+  for (const Members& tier : shown) {
+    more -= tier.size();
+    const SetNames::Name name = names_.found(tier);
+    if (keeps_energy())
+      said.text += fmt::format("; {} keep{} {}{}", name.text, plural_s(name.several), values_of(tier), mark(tier));
+    else
+      said.text += fmt::format("; {}{}{} with {}{}", ends ? "most, " : "", values_of(tier), ends ? "," : "", name.text,
+                               mark(tier));
+    said.clauses.push_back(clause(form(tier), tier));
+  }
+  if (more > 0) said.text += fmt::format("; {} more in the table", more);
+  said.text += ".";
+  out.push_back(std::move(said));
+}
+
+Sentence TierSpeaker::nowhere(const Members& members) const {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::optional<double> finest;
+  for (const std::size_t k : members) {
+    constexpr std::size_t last = 4;
+    std::vector<std::pair<double, double>> values;
+    for (const Valued& one : methods_[k]->done) values.emplace_back(study_.step(*one.record).value_or(0), one.value);
+    std::sort(values.begin(), values.end());
+    for (std::size_t i = 0; i < std::min(last, values.size()); ++i)
+      low = std::min(low, values[i].second), high = std::max(high, values[i].second);
+    if (const auto h = study_.step(*methods_[k]->finest)) finest = std::max(finest.value_or(*h), *h);
+  }
+  const SetNames::Name name = names_.found(members);
+  Clause said = clause("open", members);
+  said.low = low * words_.factor;
+  said.high = high * words_.factor;
+  said.status = "settles nowhere";
+  return {fmt::format("{} settle{} nowhere: {}{}.", capitalised(name.text), plural_s(name.several),
+                      range_text(words_, low, high), finest ? " down to " + study_.step_words(*finest) : ""),
+          {said}};
+}
+
+Sentence TierSpeaker::gains(const Members& members) const {
+  const SetNames::Name name = names_.found(members);
+  const double low = least(members), high = most(members);
+  bool cured = true, several = false;
+  for (const std::size_t k : members) {
+    std::vector<std::pair<double, double>> values;
+    for (const Valued& one : methods_[k]->done) values.emplace_back(study_.step(*one.record).value_or(0), one.value);
+    std::sort(values.begin(), values.end());
+    several = several || values.size() > 1;
+    if (values.size() > 1 && values[0].second >= values[1].second) cured = false;
+  }
+  const std::string times = low == high || short_number(low, 2) == short_number(high, 2)
+                                ? short_number(high, 2)
+                                : short_number(low, 2) + " to " + short_number(high, 2);
+  const std::string rest = !several ? "" : cured ? ", less with finer steps" : ", and finer steps do not cure it";
+  const std::string energy = keeps_energy() ? " energy" : " in " + words_.words;
+  return {fmt::format("{} gain{}{}: {}{} at {}{}.", capitalised(name.text), plural_s(name.several), energy, times,
+                      words_.truth          ? " times the start"
+                      : words_.unit.empty() ? ""
+                                            : " " + words_.unit,
+                      finest_words(members), rest),
+          {clause("gains", members)}};
+}
+
+/// Equal steps tell apart what limits alone do not: the tier parts where its values are farthest from each other.
+void TierSpeaker::split_at_widest_gap(std::vector<Members>& tiers) const {
+  Members sorted = tiers.front();
+  std::sort(sorted.begin(), sorted.end(),
+            [&](std::size_t a, std::size_t b) { return limit(a).value < limit(b).value; });
+  std::size_t cut = 1;
+  for (std::size_t k = 1; k < sorted.size(); ++k)
+    if (limit(sorted[k]).value - limit(sorted[k - 1]).value > limit(sorted[cut]).value - limit(sorted[cut - 1]).value)
+      cut = k;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(cut);
+  tiers = {Members(sorted.begin(), middle), Members(middle, sorted.end())};
+}
+
+/// Those that keep the energy are told from those that lose some, however small the gaps between them.
+void TierSpeaker::split_keepers(std::vector<Members>& tiers) const {
+  if (least(tiers.front()) >= *words_.truth - 2 * keeps_within) return;
+  Members keep, lose;
+  for (const std::size_t k : tiers.front()) (limit(k).value >= *words_.truth - keeps_within ? keep : lose).push_back(k);
+  if (keep.empty()) return;
+  tiers.front() = keep;
+  tiers.insert(tiers.begin() + 1, lose);
+}
+
+std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
+  std::vector<Sentence> out;
+  if (methods_.size() == 1) return {"value", {one_method()}};
+  Members blown, rest;
+  for (std::size_t k = 0; k < methods_.size(); ++k) {
+    const bool grows = (limit(k).status == LimitStatus::blows_up && !words_.decades) ||
+                       (keeps_energy() && limit(k).value > gains_above);
+    (grows ? blown : rest).push_back(k);
+  }
+  std::string kind = "none";
+  if (!rest.empty()) {
+    std::vector<Limit> limits;
+    std::vector<double> values;
+    for (const std::size_t k : rest) limits.push_back(limit(k)), values.push_back(limit(k).value);
+    const double width = tolerance * scale_;
+    Tiers found = words_.decades ? tiers_over_decades(values, nothing_gained) : tiers_of(limits, width);
+    const auto own = [&](Members& members) {
+      for (std::size_t& k : members) k = rest[k];
+    };
+    for (Members& tier : found.tiers) own(tier);
+    own(found.nowhere);
+    Members firm;
+    for (const Members& tier : found.tiers) firm.insert(firm.end(), tier.begin(), tier.end());
+    std::sort(firm.begin(), firm.end());
+    const auto u = largest_uncertainty(firm);
+    const double spread = most(firm) - least(firm);
+    const Difference far = firm.size() > 1 ? farthest(methods(firm)) : Difference{};
+    const bool move_together = firm.size() > 1 && far.uncertainty && far.value + *far.uncertainty <= width &&
+                               u.value_or(0) > 2 * width && firm.size() == rest.size();
+    if (found.tiers.size() == 1 && !found.none_firm && far.uncertainty && far.value - *far.uncertainty > width)
+      split_at_widest_gap(found.tiers);
+    if (words_.direction > 0) std::reverse(found.tiers.begin(), found.tiers.end());
+    if (keeps_energy() && !found.tiers.empty()) split_keepers(found.tiers);
+    if (move_together) {
+      out.push_back(together(firm, far, *u));
+    } else if (found.tiers.size() == 1 && firm.size() > 1 && !found.none_firm && spread <= width &&
+               (!u || *u <= 2 * width)) {
+      out.push_back(no_difference(firm, u, spread));
+    } else if (found.tiers.size() == 1 && (found.none_firm || firm.size() > 1)) {
+      kind = "open";
+      out.push_back(cannot_tell(firm, u, spread));
+    } else if (firm.size() == 1 && found.tiers.size() == 1 && found.nowhere.empty()) {
+      kind = "differ";
+      say_tiers(found.tiers, out);
+    } else {
+      kind = "differ";
+      say_tiers(found.tiers, out);
+      const bool single =
+          std::all_of(firm.begin(), firm.end(), [&](std::size_t k) { return limit(k).status == LimitStatus::one; });
+      if (single)
+        out.push_back({fmt::format("All at {}, the only step: how much of this a finer step removes is not known.",
+                                   finest_words(firm)),
+                       {clause("status", {})}});
+    }
+    if (!found.nowhere.empty() && kind != "open") out.push_back(nowhere(found.nowhere));
+  }
+  if (!blown.empty()) {
+    const auto place = out.begin() + (!rest.empty() && kind == "differ" ? 1 : 0);
+    out.insert(place, gains(blown));
+    kind = "differ";
+  }
+  return {kind, out};
+}
+
+}  // namespace ricochet::answers

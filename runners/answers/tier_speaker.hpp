@@ -1,0 +1,99 @@
+#pragma once
+#include <optional>
+#include <ricochet/measure/statistics/tiers.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/answers/answer.hpp"
+#include "runners/answers/limits.hpp"
+#include "runners/answers/set_names.hpp"
+
+namespace ricochet::answers {
+
+/// A gain below this share of the energy is round-off.
+inline constexpr double nothing_gained = 1e-11;
+/// What keeps the energy is within this share of it.
+inline constexpr double keeps_within = 0.01;
+
+/// Methods of one measure with what is needed to speak of them.
+class TierSpeaker {
+ public:
+  TierSpeaker(const Compared& study, const MeasureLimits& limits, std::vector<std::string> columns)
+      : study_(study),
+        words_(limits.words),
+        methods_(limits.with_limit()),
+        columns_(std::move(columns)),
+        names_(study, firsts(), columns_) {
+    scale_ = scale_of(words_, methods_);
+    if (scale_ <= 0) scale_ = 1;
+  }
+
+  std::pair<std::string, std::vector<Sentence>> tiers();
+  double scale() const { return scale_; }
+
+ private:
+  Cases firsts() const {
+    Cases out;
+    for (const Method* method : methods_) out.push_back(&method->first());
+    return out;
+  }
+  const Limit& limit(std::size_t k) const { return *methods_[k]->limit; }
+
+  std::vector<double> of(const Members& members, double (*read)(const Limit&)) const {
+    std::vector<double> out;
+    for (const std::size_t k : members) out.push_back(read(limit(k)));
+    return out;
+  }
+  double least(const Members& members) const {
+    const auto values = of(members, [](const Limit& l) { return l.value; });
+    return *std::min_element(values.begin(), values.end());
+  }
+  double most(const Members& members) const {
+    const auto values = of(members, [](const Limit& l) { return l.value; });
+    return *std::max_element(values.begin(), values.end());
+  }
+  std::optional<double> largest_uncertainty(const Members& members) const {
+    std::optional<double> out;
+    for (const std::size_t k : members)
+      if (const auto u = limit(k).uncertainty; u && std::isfinite(*u)) out = std::max(out.value_or(0), *u);
+    return out;
+  }
+  std::vector<const Method*> methods(const Members& members) const {
+    std::vector<const Method*> out;
+    for (const std::size_t k : members) out.push_back(methods_[k]);
+    return out;
+  }
+
+  void split_at_widest_gap(std::vector<Members>& tiers) const;
+  void split_keepers(std::vector<Members>& tiers) const;
+  Clause clause(const std::string& form, const Members& members) const;
+  std::string finest_words(const Members& members) const;
+  std::string refined_words(const Members& members) const;
+  std::string more_needed(const Members& members, double target) const;
+  std::string values_of(const Members& members) const;
+  std::string mark(const Members& members) const;
+  std::string kept_values(const Members& members) const;
+  std::string whichever() const;
+  /// The measure is a share of energy that an exact method keeps.
+  bool keeps_energy() const { return words_.truth == 1.0; }
+  std::optional<std::string> told_apart(const Members& members) const;
+  std::optional<std::string> ranges_apart(const Members& members) const;
+
+  Sentence one_method() const;
+  Sentence no_difference(const Members& firm, std::optional<double> u, double spread) const;
+  Sentence together(const Members& firm, const Difference& far, double u) const;
+  Sentence cannot_tell(const Members& firm, std::optional<double> u, double spread) const;
+  void say_tiers(const std::vector<Members>& tiers, std::vector<Sentence>& out) const;
+  Sentence nowhere(const Members& members) const;
+  Sentence gains(const Members& members) const;
+
+  const Compared& study_;
+  MeasureWords words_;
+  std::vector<const Method*> methods_;
+  std::vector<std::string> columns_;
+  SetNames names_;
+  double scale_ = 1;
+};
+
+}  // namespace ricochet::answers

@@ -1,0 +1,110 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/answers/answer.hpp"
+#include "runners/answers/numbers_in_words.hpp"
+
+namespace ricochet {
+
+/// Rows of the tables that the cases of the study came to, as far as they are read here.
+struct DistanceRow {
+  std::string id, reference;
+  std::optional<double> wasserstein;
+};
+struct AgreementRow {
+  std::string id, other;
+  int compared = 0, same = 0;
+};
+struct VerdictRow {
+  double from = 0, to = 0;
+  std::string verdict, choice;
+};
+struct ShiftRow {
+  std::string id, start, from, to;
+  std::optional<double> reference_value, shift;
+  bool found = false;
+};
+
+std::vector<DistanceRow> distances_of(const StudyResults& results);
+std::vector<AgreementRow> agreement_of(const StudyResults& results);
+std::vector<VerdictRow> verdicts_of(const StudyResults& results);
+std::vector<ShiftRow> shifts_of(const StudyResults& results);
+
+/// "period 2" of "periodic 2", "chaos" of "chaotic".
+std::string motion_words(std::string motion);
+
+/// How a case compares with the reference.
+struct Likeness {
+  const CaseRecord* record = nullptr;
+  int same = 0, decided = 0, all = 0;  ///< motions of the reference: found, decided in both, all
+  std::optional<double> distance;      ///< median over values and starts
+  double share() const { return all > 0 ? static_cast<double>(same) / all : 0; }
+  /// At least 0.9 of all motions, or 0.01 away with none contradicted.
+  bool same_diagram() const { return share() >= 0.9 || (distance && *distance <= 0.01 && same == decided); }
+};
+
+/// Values next to each other with one motion.
+struct MotionRun {
+  double from = 0, to = 0;
+  std::string motion;
+};
+
+class DiagramSpeaker {
+ public:
+  explicit DiagramSpeaker(const answers::Compared& study) : study_(study), results_(study.results()) {
+    for (const CaseRecord& record : results_.cases) by_id_[record.id] = &record;
+    find_reference();
+    if (!reference_) return;
+    compare();
+    read_motions();
+  }
+
+  void say_methods(answers::Answer& answer) const;
+  void say_steps(answers::Answer& answer) const;
+  void say_robust(answers::Answer& answer) const;
+  void say_motions(answers::Answer& answer) const;
+  void say_changes(answers::Answer& answer) const;
+  void say_speeds(answers::Answer& answer) const;
+  /// Whether every interval is the same in all cases, so that the robust part is all of the diagram.
+  bool all_robust() const {
+    const std::vector<VerdictRow> rows = verdicts_of(results_);
+    return !others_.empty() && !rows.empty() &&
+           std::all_of(rows.begin(), rows.end(), [](const VerdictRow& row) { return row.verdict == "robust"; });
+  }
+  bool known() const { return reference_ != nullptr; }
+
+ private:
+  void find_reference();
+  void compare();
+  void read_motions();
+  double steps(const CaseRecord& record) const { return axis(record, "steps_per_period").number().value_or(0); }
+  bool own_method(const CaseRecord& record) const { return study_.key(record) == study_.key(*reference_); }
+  std::string name(const CaseRecord& record, bool with_mesh) const {
+    std::string out = study_.name(record);
+    const auto elements = study_.elements(record);
+    if (with_mesh && study_.varies("elements") && elements)
+      out += fmt::format(" on {} elements", answers::short_number(*elements));
+    return out;
+  }
+  std::string told(const Likeness& one) const;
+  answers::Clause clause(const char* form, const Likeness& one, const std::string& who) const;
+  std::string parameter_unit() const { return unit_.empty() ? "" : " " + unit_; }
+  std::string runs_text(const std::vector<MotionRun>& runs) const;
+  std::map<double, double> single_impacts(const CaseRecord& record) const;
+
+  const answers::Compared& study_;
+  const StudyResults& results_;
+  std::map<std::string, const CaseRecord*> by_id_;
+  const CaseRecord* reference_ = nullptr;
+  std::vector<Likeness> others_;
+  std::string start_, parameter_, unit_;
+  std::vector<MotionRun> runs_, values_;  ///< of the reference: runs of one motion, and each value
+};
+
+}  // namespace ricochet

@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ricochet/measure/statistics/quantiles.hpp>
+
+#include "runners/answers/numbers_in_words.hpp"
+#include "runners/answers/set_names.hpp"
+#include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/table/in_order_met.hpp"
+
+namespace ricochet {
+
+using namespace answers;
+
+namespace {
+
+std::string time_words(double seconds) {
+  constexpr double thousand = 1e3, micro = 1e6;
+  if (seconds >= 1) return short_number(seconds, 2) + " s";
+  return seconds >= 1 / thousand ? short_number(thousand * seconds, 2) + " ms"
+                                 : short_number(micro * seconds, 2) + " µs";
+}
+
+/// The cheapest case of one method for an accuracy.
+struct Entry {
+  const CaseRecord* record = nullptr;
+  double seconds = 0, low = 0, high = 0;
+};
+
+struct Accuracy {
+  double share = 0;
+  std::vector<Entry> entries;  ///< the cheapest first
+  Members tied;                ///< of `methods`: those not told apart from the cheapest
+};
+
+class PrecisionSpeaker {
+ public:
+  PrecisionSpeaker(const Compared& study, std::string error) : study_(study), error_(std::move(error)) {
+    InOrderMet<std::string, Cases> methods;
+    for (const CaseRecord& record : study.results().cases)
+      if (share(record)) methods[study.key(record)].push_back(&record);
+    for (const auto& [key, cases] : methods.list()) methods_.push_back(cases);
+  }
+  void say(Answer& answer) const;
+
+ private:
+  /// The error over what a motion at rest would err by, its floor at least.
+  std::optional<double> share(const CaseRecord& record) const {
+    const auto value = measure(record, "error." + error_), size = measure(record, "size." + error_);
+    if (record.status != "done" || !value || !size || !(*size > 0)) return std::nullopt;
+    return std::max(*value, measure(record, "floor." + error_).value_or(0)) / *size;
+  }
+  std::optional<Accuracy> cheapest(double accuracy) const;
+  Sentence sentence(const std::vector<Accuracy>& same) const;
+  void say_never(Answer& answer) const;
+
+  const Compared& study_;
+  std::string error_;
+  std::vector<Cases> methods_;
+};
+
+std::optional<Accuracy> PrecisionSpeaker::cheapest(double accuracy) const {
+  Accuracy out{accuracy, {}, {}};
+  std::vector<std::pair<Entry, std::size_t>> best;
+  for (std::size_t k = 0; k < methods_.size(); ++k) {
+    Entry entry;
+    for (const CaseRecord* record : methods_[k]) {
+      const auto seconds = measure(*record, "timed_seconds");
+      if (*share(*record) > accuracy || !seconds || (entry.record && entry.seconds <= *seconds)) continue;
+      entry = {record, *seconds, measure(*record, "timed_low").value_or(*seconds),
+               measure(*record, "timed_high").value_or(*seconds)};
+    }
+    if (entry.record) best.emplace_back(entry, k);
+  }
+  if (best.empty()) return std::nullopt;
+  std::stable_sort(best.begin(), best.end(),
+                   [](const auto& a, const auto& b) { return a.first.seconds < b.first.seconds; });
+  for (const auto& [entry, k] : best) {
+    out.entries.push_back(entry);
+    if (out.tied.empty() || entry.low <= best.front().first.high) out.tied.push_back(k);
+  }
+  return out;
+}
+
+Sentence PrecisionSpeaker::sentence(const std::vector<Accuracy>& same) const {
+  const Accuracy& finest = same.back();
+  const Entry& first = finest.entries.front();
+  std::vector<std::string> shares;
+  for (const Accuracy& one : same) shares.push_back(short_number(100 * one.share, 2));
+  std::string for_what =
+      (shares.size() > 2 ? shares.front() + " to " + shares.back() : and_list(shares)) + " % of the motion";
+  std::string at = study_.varies("step") && study_.step(*first.record)
+                       ? " at " + study_.step_words(*study_.step(*first.record))
+                       : "";
+  std::string text =
+      fmt::format("For {}: {}{}, {}", for_what, study_.name(*first.record), at, time_words(first.seconds));
+  constexpr std::size_t few = 3;
+  if (finest.tied.size() > 1) {
+    Members others(finest.tied.begin() + 1, finest.tied.end());
+    Cases firsts;
+    for (const Cases& cases : methods_) firsts.push_back(cases.front());
+    const SetNames names(study_, firsts);
+    text += others.size() <= few ? fmt::format("; {} cost{} the same within the timing noise", names.of(others),
+                                               others.size() == 1 ? "s" : "")
+                                 : fmt::format("; within the timing noise of {}", names.of(others));
+  } else if (finest.entries.size() > 1) {
+    const Entry& next = finest.entries[1];
+    text += fmt::format("; next {}, {}", study_.name(*next.record), time_words(next.seconds));
+  }
+  Clause clause{
+      .form = "cheapest", .measure = "error." + error_, .who = study_.name(*first.record), .methods = first.record->id};
+  clause.value = first.seconds;
+  clause.low = first.low;
+  clause.high = first.high;
+  clause.uncertainty = finest.share;
+  clause.unit = "s";
+  clause.status = finest.tied.size() > 1 ? "tie" : "alone";
+  clause.at_step = study_.step(*first.record);
+  clause.at_mesh = study_.elements(*first.record);
+  return {text + ".", {clause}};
+}
+
+void PrecisionSpeaker::say_never(Answer& answer) const {
+  constexpr double wanted = 0.01;
+  Cases firsts;
+  Members never;
+  std::optional<double> least;
+  for (std::size_t k = 0; k < methods_.size(); ++k) {
+    firsts.push_back(methods_[k].front());
+    double best = INFINITY;
+    for (const CaseRecord* record : methods_[k]) best = std::min(best, *share(*record));
+    if (best > wanted) never.push_back(k), least = std::min(least.value_or(best), best);
+  }
+  if (never.empty() || never.size() == methods_.size()) return;
+  const SetNames names(study_, firsts);
+  Clause clause{.form = "cheapest", .measure = "error." + error_, .who = names.of(never)};
+  clause.value = 100 * *least;
+  clause.unit = "%";
+  clause.status = "never";
+  const std::string count = fmt::format("{} of {} methods", never.size(), methods_.size());
+  const std::string who = clause.who.starts_with(count) ? clause.who.substr(count.size()) : ", " + clause.who;
+  answer.say({fmt::format("Never to 1 %: {}{} (the best {}).", count, who, percent(*least)), {clause}});
+}
+
+void PrecisionSpeaker::say(Answer& answer) const {
+  if (methods_.empty()) return;
+  std::vector<std::vector<Accuracy>> told;
+  constexpr int finest = 12;
+  for (int k = 1; k <= finest; ++k) {
+    const auto one = cheapest(std::pow(10, -k));
+    if (!one) break;
+    if (!told.empty() && told.back().back().entries.front().record == one->entries.front().record)
+      told.back().push_back(*one);
+    else
+      told.push_back({*one});
+  }
+  // Three at most: the finest, then those of 1 % and 0.1 %.
+  std::reverse(told.begin(), told.end());
+  constexpr std::size_t most = 3;
+  if (told.size() > most) {
+    std::vector<std::vector<Accuracy>> kept = {told.front()};
+    const auto covers = [](const std::vector<Accuracy>& group, double share) {
+      return std::any_of(group.begin(), group.end(),
+                         [&](const Accuracy& one) { return std::abs(one.share / share - 1) < 0.1; });
+    };
+    for (std::size_t k = 1; k < told.size(); ++k)
+      if (kept.size() < most && (covers(told[k], 1e-2) || covers(told[k], 1e-3))) kept.push_back(told[k]);
+    told = std::move(kept);
+  }
+  for (const auto& group : told) answer.say(sentence(group));
+  say_never(answer);
+}
+
+/// "Flights cost 0.22 of the time of every step (median of 44 pairs, 0.03 to 1.7)": of a compared choice, or of the way
+/// of marching where that varies.
+void say_factor(const Compared& study, Answer& answer) {
+  const std::string choice = !study.asked().empty() && study.asked() != "all" ? study.asked()
+                             : study.varies("march")                          ? "march"
+                                                                              : "";
+  if (choice.empty() || !study.varies(choice)) return;
+  std::vector<std::string> others;
+  for (const std::string& column : study.columns())
+    if (column != choice) others.push_back(column);
+  InOrderMet<std::string, std::vector<std::pair<std::string, double>>> pairs;
+  InOrderMet<std::string, bool> levels;
+  for (const CaseRecord& record : study.results().cases) {
+    const auto seconds = measure(record, "timed_seconds");
+    levels[study.text(record, choice)] = true;
+    if (record.status != "done" || !seconds || !(*seconds > 0)) continue;
+    std::string key = study.key(record, others);
+    for (const char* size : {"step", "elements"}) key += study.text(record, size) + '\x1f';
+    pairs[key].emplace_back(study.text(record, choice), *seconds);
+  }
+  if (levels.list().size() != 2) return;
+  // The level that is not the first, against the first; flights against every step.
+  std::string one = levels.list()[1].first, base = levels.list()[0].first;
+  if (base == "flights") std::swap(one, base);
+  std::vector<double> factors;
+  for (const auto& [key, both] : pairs.list()) {
+    std::optional<double> a, b;
+    for (const auto& [level, seconds] : both) (level == one ? a : b) = seconds;
+    if (a && b) factors.push_back(*a / *b);
+  }
+  if (factors.empty()) return;
+  const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+  Clause clause{
+      .form = "cheapest", .measure = "timed_seconds", .choice = choice, .who = study.value_words(choice, one)};
+  clause.value = median(factors);
+  clause.low = *least;
+  clause.high = *most;
+  clause.unit = "1";
+  clause.status = "factor";
+  answer.say({fmt::format("With {} a run takes {} of the time of {} (median of {} pairs, {} to {}).", clause.who,
+                          short_number(*clause.value, 2), study.value_words(choice, base), factors.size(),
+                          short_number(*least, 2), short_number(*most, 2)),
+              {clause}});
+}
+
+}  // namespace
+
+answers::Answer precision_answer(const Compared& study) {
+  Answer answer;
+  const std::vector<std::string> errors = errors_of(study.results());
+  const bool largest = std::find(errors.begin(), errors.end(), "tip-linf") != errors.end();
+  const std::string error = largest || errors.empty() ? "tip-linf" : errors.front();
+  PrecisionSpeaker(study, error).say(answer);
+  if (answer.sentences.empty())
+    answer.say("No case has an error to speak of.", Clause{.form = "status", .status = "none"});
+  say_factor(study, answer);
+  // Against the same mesh and mass, exact in time: what these err by themselves does not show.
+  const auto& cases = study.results().cases;
+  const bool semi_discrete = std::any_of(cases.begin(), cases.end(), [](const CaseRecord& record) {
+    return record.status == "done" && measure(record, "reference_of_mesh").value_or(0) > 0;
+  });
+  if (semi_discrete && answer.sentences.size() < sentences_at_most)
+    answer.say("Errors are against the same mesh and mass: the error of the mesh is not in them.",
+               Clause{.form = "status", .measure = "error." + error, .status = "same mesh"});
+  answer.keep(sentences_at_most);
+  for (Sentence& one : ended(study)) answer.say(std::move(one));
+  return answer;
+}
+
+}  // namespace ricochet

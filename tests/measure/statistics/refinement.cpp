@@ -1,0 +1,107 @@
+// What becomes of a value as it is refined: sequences whose limit is known.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <ricochet/measure/statistics/refinement.hpp>
+
+using namespace ricochet;
+
+namespace {
+
+// v(h) = a + b hᵖ at n sizes of this ratio.
+std::vector<SizedValue> power_law(double a, double b, double p, double ratio, int n) {
+  std::vector<SizedValue> values;
+  for (int k = 0; k < n; ++k) {
+    const double h = std::pow(ratio, -k);
+    values.push_back({h, a + b * std::pow(h, p)});
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("an order is that of the power law, whatever the ratio of sizes") {
+  for (const double ratio : {2.0, 10.0})
+    for (const double p : {0.5, 1.0, 1.5, 2.0, 4.0}) {
+      INFO("ratio " << ratio << ", order " << p);
+      const auto v = power_law(3, 0.7, p, ratio, 3);
+      const auto order = order_of(v[0].size, v[1].size, v[2].size, v[1].value - v[0].value, v[2].value - v[1].value);
+      REQUIRE(order);
+      // Differences keep eight digits at the least: 4 decades of order 4 at ratio 10.
+      CHECK(*order == Approx(p).epsilon(1e-6));
+    }
+  CHECK_FALSE(order_of(1, 0.5, 0.25, 0, 1));
+}
+
+TEST_CASE("a sequence with an order settles on its limit within its uncertainty") {
+  for (const double ratio : {2.0, 10.0})
+    for (const double p : {0.6, 1.0, 2.0, 4.0}) {
+      INFO("ratio " << ratio << ", order " << p);
+      const auto limit = limit_of(power_law(3, 0.7, p, ratio, 4), 1e-15);
+      REQUIRE(limit);
+      CHECK(limit->status == LimitStatus::settles);
+      REQUIRE(limit->order);
+      CHECK(*limit->order == Approx(p).epsilon(1e-3));
+      CHECK(std::abs(limit->value - 3) <= *limit->uncertainty * (1 + 1e-6));
+    }
+}
+
+TEST_CASE("statuses: one, same, two, moves, wanders, blows up, vanishes, reaches the truth") {
+  const auto status = [](std::vector<double> values, std::optional<double> truth = {}, double floor = 1e-14) {
+    std::vector<SizedValue> sized;
+    for (std::size_t k = 0; k < values.size(); ++k) sized.push_back({std::pow(2, -static_cast<double>(k)), values[k]});
+    return limit_of(sized, floor, truth)->status;
+  };
+  CHECK(status({1}) == LimitStatus::one);
+  CHECK(status({1, 1, 1}) == LimitStatus::same);
+  CHECK(status({1, 2}) == LimitStatus::two);
+  CHECK(status({1, 2, 3}) == LimitStatus::moves);
+  CHECK(status({1, 3, 1.2}) == LimitStatus::wanders);
+  CHECK(status({1, 2, 5, 17}) == LimitStatus::blows_up);
+  CHECK(status({1, 0.25, 0.0625}) == LimitStatus::vanishes);
+  CHECK(status({0.9, 0.975, 0.99375}, 1.0) == LimitStatus::reaches_truth);
+  CHECK(status({0.9, 1}, 1.0) == LimitStatus::reaches_truth);
+  // It settles, but elsewhere.
+  CHECK(status({0.9, 0.85, 0.8375}, 1.0) == LimitStatus::settles);
+  CHECK_FALSE(limit_of({}, 0));
+}
+
+TEST_CASE("scaling values scales the limit, and changes no status") {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < 200; ++draw) {
+    std::vector<SizedValue> values, larger;
+    const int n = 1 + draw % 6;
+    for (int k = 0; k < n; ++k) {
+      const double value = normal(random);
+      values.push_back({std::pow(2, -k), value});
+      larger.push_back({std::pow(2, -k), 1024 * value});
+    }
+    const auto one = limit_of(values, 0), other = limit_of(larger, 0);
+    CHECK(one->status == other->status);
+    CHECK(1024 * one->value == other->value);
+    if (one->uncertainty && std::isfinite(*one->uncertainty)) CHECK(1024 * *one->uncertainty == *other->uncertainty);
+  }
+}
+
+TEST_CASE("over two refinements uncertainties are added, and the worse status stands") {
+  const auto step = limit_of(power_law(3, 0.1, 2, 2, 4), 0), two = limit_of({{1, 3}, {0.5, 3.1}}, 0),
+             wanders = limit_of({{1, 3}, {0.5, 4}, {0.25, 3.1}}, 0), one = limit_of({{1, 3}}, 0);
+  CHECK(*combined(step, two)->uncertainty == Approx(*step->uncertainty + *two->uncertainty));
+  CHECK(combined(step, two)->status == LimitStatus::settles);
+  CHECK(combined(step, wanders)->status == LimitStatus::wanders);
+  CHECK(combined(step, one)->uncertainty == step->uncertainty);
+  CHECK(combined(one, two)->status == LimitStatus::two);
+  CHECK_FALSE(combined({}, {}));
+}
+
+TEST_CASE("where most methods are restless, three values that settle are chance") {
+  auto settles = *limit_of({{1, 1.0}, {0.5, 1.5}, {0.25, 1.6}}, 0);
+  auto wanders = *limit_of({{1, 3}, {0.5, 4}, {0.25, 3.1}}, 0), moves = *limit_of({{1, 1}, {0.5, 2}, {0.25, 3}}, 0);
+  doubt_chance({&settles, &wanders, &moves});
+  CHECK(settles.status == LimitStatus::moves);
+  CHECK(*settles.uncertainty == Approx(0.6));
+  auto firm = *limit_of({{1, 1.0}, {0.5, 1.5}, {0.25, 1.6}}, 0), second = firm;
+  doubt_chance({&firm, &second, &wanders});
+  CHECK(firm.status == LimitStatus::settles);
+}
