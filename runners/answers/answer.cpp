@@ -4,6 +4,7 @@
 
 #include "runners/answers/limits.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/answers/tier_speaker.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::answers {
@@ -101,11 +102,20 @@ Table limits_table(const Compared& study, const std::vector<std::string>& measur
         {"step_moves", "", "What the step still moves it by, in `unit`."},
         {"mesh_moves", "", "What the mesh still moves it by, in `unit`."},
         {"steps", "1", "Steps at the finest mesh."},
-        {"meshes", "1", "Meshes at the finest step."}})
+        {"meshes", "1", "Meshes at the finest step."},
+        {"method", "", "The method in words."},
+        {"tier", "1", "Methods with one number are not told apart; 1 is best, or least where none is better."},
+        {"truth", "", "What an exact method gives, in `unit`, where that is known."}})
     table.columns.push_back(column);
   for (const std::string& measure : measures) {
     const MeasureLimits limits = limits_of(study, measure, keeps_energy(results), all_cases(results));
-    for (const Method* method : limits.with_limit()) {
+    const std::vector<const Method*> methods = limits.with_limit();
+    const std::vector<std::size_t> tiers = in_tiers(study, limits)
+                                               ? TierSpeaker(study, limits, study.columns()).places()
+                                               : std::vector<std::size_t>(methods.size(), 0);
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      const Method* method = methods[k];
+      const auto tier = tiers[k] > 0 ? std::optional(static_cast<int>(tiers[k])) : std::nullopt;
       Row row = axes_of(method->first(), study.columns());
       const double factor = limits.words.factor;
       const Limit& limit = *method->limit;
@@ -117,9 +127,39 @@ Table limits_table(const Compared& study, const std::vector<std::string>& measur
            {Cell(measure), Cell(method->finest->id), Cell(factor * limit.value),
             Cell(finite(limit.uncertainty, factor)), Cell(finite(limit.low, factor)), Cell(finite(limit.high, factor)),
             Cell(limits.words.unit), Cell(word(limit.status)), Cell(limit.order), Cell(move(method->step)),
-            Cell(move(method->mesh)), Cell(sizes(method->step)), Cell(sizes(method->mesh))})
+            Cell(move(method->mesh)), Cell(sizes(method->step)), Cell(sizes(method->mesh)),
+            Cell(study.label(method->first())), Cell(tier), Cell(finite(limits.words.truth, factor))})
         row.push_back(std::move(cell));
       table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+Table refinements_table(const Compared& study, const std::vector<std::string>& measures) {
+  const StudyResults& results = study.results();
+  Table table{"refinements",
+              "The values that limits rest on: one row per method, measure, step at the finest mesh, and mesh at the "
+              "finest step.",
+              {{"measure", "", "The measure."},
+               {"method", "", "The case that stands for the method in limits."},
+               {"refined", "", "step or mesh."},
+               {"size", "", "The step, in s or in periods, or the number of elements."},
+               {"value", "", "The value, in `unit`."},
+               {"unit", "", "Unit of the value."}},
+              {}};
+  for (const std::string& measure : measures) {
+    const MeasureLimits limits = limits_of(study, measure, keeps_energy(results), all_cases(results));
+    for (const Method* method : limits.with_limit()) {
+      const double h = study.step(*method->finest).value_or(0), N = study.elements(*method->finest).value_or(1);
+      for (const auto& [size, value] : method->grid) {
+        const bool by_step = size.second == N, by_mesh = size.first == h;
+        const double shown = limits.words.factor * value;
+        if (by_step && size.first > 0)
+          table.rows.push_back({measure, method->finest->id, "step", size.first, shown, limits.words.unit});
+        if (by_mesh && size.second > 1)
+          table.rows.push_back({measure, method->finest->id, "mesh", size.second, shown, limits.words.unit});
+      }
     }
   }
   return table;

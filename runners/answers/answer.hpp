@@ -64,6 +64,8 @@ std::string evidence_html(const Compared& study);
 
 /// limits: one row per method and measure.
 Table limits_table(const Compared& study, const std::vector<std::string>& measures);
+/// refinements: the values that limits rest on, one row per method, measure and size.
+Table refinements_table(const Compared& study, const std::vector<std::string>& measures);
 /// differences: one row per choice, measure and combination of all other choices.
 Table differences_table(const Compared& study, const std::vector<std::string>& measures);
 

@@ -246,10 +246,13 @@ std::vector<Sentence> say_levels(const Compared& study, const MeasureLimits& lim
     return out;
   };
   std::vector<Sentence> out;
-  if (!agree.empty())
-    out.push_back({fmt::format("Within {} of {} in {}: {}; the nearest differs by {}.", percent(tolerance), reference,
-                               limits.words.words, names.of(agree), percent(range(agree).first)),
+  if (!agree.empty()) {
+    // What is equal to the last digit is often the same method by another name.
+    const double nearest = range(agree).first;
+    out.push_back({fmt::format("Within {} of {} in {}: {}{}.", percent(tolerance), reference, limits.words.words,
+                               names.of(agree), nearest > 0 ? "; the nearest differs by " + percent(nearest) : ""),
                    {clause(agree, "agrees")}});
+  }
   if (agree.empty()) return say_level_values(study, limits, asked, own);
   if (!differ.empty()) {
     const auto [low, high] = range(differ);

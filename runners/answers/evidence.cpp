@@ -132,12 +132,23 @@ std::string evidence_html(const Compared& study) {
   const Evidence found = evidence(study, type.read(*limits).front().measure, most_page_rows);
   if (found.rows.empty()) return "";
   const std::string more = found.more > 0 ? fmt::format(" {} more in {}.", found.more, found.file) : "";
+  // What is concluded stands before what it rests on, which may go on out of sight, the finest first.
+  const bool concludes = found.file == "limits.csv";
+  const auto turned = [&](std::vector<std::string> cells) {
+    if (concludes) {
+      std::reverse(cells.begin() + 1, cells.end());
+      std::swap(cells[1], cells[2]);
+    }
+    return cells;
+  };
+  const std::size_t words = concludes ? 2 : found.head.size() - 1;
+  const std::vector<std::string> head = turned(found.head);
   report::HtmlTable table(report::escape(found.caption + more), {}, "matrix evidence");
-  for (std::size_t k = 0; k < found.head.size(); ++k)
-    table.add({.text = found.head[k], .number = k > 0 && k + 1 < found.head.size()});
+  for (std::size_t k = 0; k < head.size(); ++k) table.add({.text = head[k], .number = k > 0 && k != words});
   for (const auto& row : found.rows) {
-    table.row(row.front());
-    for (std::size_t k = 1; k < row.size(); ++k) k + 1 < row.size() ? table.number(row[k]) : table.text(row[k]);
+    const std::vector<std::string> cells = turned(row);
+    table.row(cells.front());
+    for (std::size_t k = 1; k < cells.size(); ++k) k == words ? table.text(cells[k]) : table.number(cells[k]);
   }
   return table.html();
 }

@@ -207,7 +207,7 @@ std::string place_of_effect(const Compared& study, const ChoiceEffect& effect, c
   const SetNames::Name name = SetNames(study, combinations, others).found(inside);
   if (!name.exact)
     return name.text.starts_with("mostly ") ? ", mostly with " + name.text.substr(7, name.text.rfind(" (") - 7) : "";
-  return name.text.find(';') == std::string::npos ? " with " + name.text : "";
+  return name.text.find(", and ") == std::string::npos ? " with " + name.text : "";
 }
 
 ChoiceEffect effect_of(const Compared& study, const MeasureLimits& limits, const std::string& choice,

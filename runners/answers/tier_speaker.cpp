@@ -189,39 +189,57 @@ void TierSpeaker::split_keepers(std::vector<Members>& tiers) const {
   tiers.insert(tiers.begin() + 1, lose);
 }
 
-std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
-  std::vector<Sentence> out;
-  if (methods_.size() == 1) return {"value", {one_method()}};
-  Members blown, rest;
+TierSpeaker::Sorted TierSpeaker::sorted() const {
+  Sorted out;
+  Members rest;
   for (std::size_t k = 0; k < methods_.size(); ++k) {
     const bool grows = (limit(k).status == LimitStatus::blows_up && !words_.decades) ||
                        (keeps_energy() && limit(k).value > gains_above);
-    (grows ? blown : rest).push_back(k);
+    (grows ? out.blown : rest).push_back(k);
   }
+  if (rest.empty()) return out;
+  std::vector<Limit> limits;
+  std::vector<double> values;
+  for (const std::size_t k : rest) limits.push_back(limit(k)), values.push_back(limit(k).value);
+  const double width = tolerance * scale_;
+  out.found = words_.decades ? tiers_over_decades(values, nothing_gained) : tiers_of(limits, width);
+  std::vector<Members>& tiers = out.found.tiers;
+  const auto own = [&](Members& members) {
+    for (std::size_t& k : members) k = rest[k];
+  };
+  for (Members& tier : tiers) own(tier);
+  own(out.found.nowhere);
+  for (const Members& tier : tiers) out.firm.insert(out.firm.end(), tier.begin(), tier.end());
+  std::sort(out.firm.begin(), out.firm.end());
+  if (out.firm.size() > 1) out.far = farthest(methods(out.firm));
+  if (tiers.size() == 1 && !out.found.none_firm && out.far.uncertainty && out.far.value - *out.far.uncertainty > width)
+    split_at_widest_gap(tiers);
+  if (words_.direction > 0) std::reverse(tiers.begin(), tiers.end());
+  if (keeps_energy() && !tiers.empty()) split_keepers(tiers);
+  return out;
+}
+
+std::vector<std::size_t> TierSpeaker::places() const {
+  std::vector<std::size_t> out(methods_.size(), 0);
+  const Sorted sets = sorted();
+  for (std::size_t tier = 0; tier < sets.found.tiers.size(); ++tier)
+    for (const std::size_t k : sets.found.tiers[tier]) out[k] = tier + 1;
+  return out;
+}
+
+std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
+  std::vector<Sentence> out;
+  if (methods_.size() == 1) return {"value", {one_method()}};
+  const Sorted sets = sorted();
+  const auto& [found, firm, blown, far] = sets;
   std::string kind = "none";
-  if (!rest.empty()) {
-    std::vector<Limit> limits;
-    std::vector<double> values;
-    for (const std::size_t k : rest) limits.push_back(limit(k)), values.push_back(limit(k).value);
-    const double width = tolerance * scale_;
-    Tiers found = words_.decades ? tiers_over_decades(values, nothing_gained) : tiers_of(limits, width);
-    const auto own = [&](Members& members) {
-      for (std::size_t& k : members) k = rest[k];
-    };
-    for (Members& tier : found.tiers) own(tier);
-    own(found.nowhere);
-    Members firm;
-    for (const Members& tier : found.tiers) firm.insert(firm.end(), tier.begin(), tier.end());
-    std::sort(firm.begin(), firm.end());
+  const double width = tolerance * scale_;
+  if (!firm.empty() || !found.nowhere.empty()) {
     const auto u = largest_uncertainty(firm);
-    const double spread = most(firm) - least(firm);
-    const Difference far = firm.size() > 1 ? farthest(methods(firm)) : Difference{};
+    const double spread = firm.empty() ? 0 : most(firm) - least(firm);
+    const std::size_t others = methods_.size() - blown.size();
     const bool move_together = firm.size() > 1 && far.uncertainty && far.value + *far.uncertainty <= width &&
-                               u.value_or(0) > 2 * width && firm.size() == rest.size();
-    if (found.tiers.size() == 1 && !found.none_firm && far.uncertainty && far.value - *far.uncertainty > width)
-      split_at_widest_gap(found.tiers);
-    if (words_.direction > 0) std::reverse(found.tiers.begin(), found.tiers.end());
-    if (keeps_energy() && !found.tiers.empty()) split_keepers(found.tiers);
+                               u.value_or(0) > 2 * width && firm.size() == others;
     if (move_together) {
       out.push_back(together(firm, far, *u));
     } else if (found.tiers.size() == 1 && firm.size() > 1 && !found.none_firm && spread <= width &&
@@ -246,7 +264,7 @@ std::pair<std::string, std::vector<Sentence>> TierSpeaker::tiers() {
     if (!found.nowhere.empty() && kind != "open") out.push_back(nowhere(found.nowhere));
   }
   if (!blown.empty()) {
-    const auto place = out.begin() + (!rest.empty() && kind == "differ" ? 1 : 0);
+    const auto place = out.begin() + (!out.empty() && kind == "differ" ? 1 : 0);
     out.insert(place, gains(blown));
     kind = "differ";
   }

@@ -31,8 +31,18 @@ class TierSpeaker {
 
   std::pair<std::string, std::vector<Sentence>> tiers();
   double scale() const { return scale_; }
+  /// The tier of each method, 1 the best or least; 0 of those that grow or belong to none.
+  std::vector<std::size_t> places() const;
 
  private:
+  /// The tiers, those of all of them, those that grow, and the two of all tiers that are farthest apart.
+  struct Sorted {
+    Tiers found = {};
+    Members firm = {}, blown = {};
+    Difference far = {};
+  };
+  Sorted sorted() const;
+
   Cases firsts() const {
     Cases out;
     for (const Method* method : methods_) out.push_back(&method->first());

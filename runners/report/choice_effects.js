@@ -11,14 +11,14 @@
 
   ricochet.answeredBy("choice-effects");
   ricochet.figure("choice-effects", (data) => {
-    const { spaced, percent } = ricochet.format, all = data.rows("differences");
+    const { percent } = ricochet.format, all = data.rows("differences");
     if (!all.length) return [];
     const choice = (name) => ({ mass: "mass matrix", contact: "contact law", time: "time scheme" }[name] || ricochet.shorten(name));
     const pairs = ricochet.distinct(all.map((row) => row.measure)).flatMap((measure) => ricochet.distinct(all.filter((row) => row.measure === measure).map((row) => row.choice)).map((name) => [measure, name]));
     const ordered = pairs.map(([measure, name]) => {
       const rows = all.filter((row) => row.measure === measure && row.choice === name), sizes = rows.map((row) => row.difference), open = rows.map((row) => row.u).filter((u) => u !== null), verdict = verdictOf(rows);
       const effect = median(sizes), largest = Math.max(...sizes), rest = open.length ? median(open) : null;
-      return { name: spaced(measure) + ": " + choice(name), verdict, effect, largest, left: rest > 0 ? rest : null,
+      return { name: data.measureWords(measure) + ": " + choice(name), verdict, effect, largest, left: rest > 0 ? rest : null,
         text: verdict + ": " + percent(effect / 100) + (rows.length > 1 ? " (median of " + rows.length + " combinations, up to " + percent(largest / 100) + ")" : "") + (rest > 0 ? "; step and mesh leave " + percent(rest / 100) : "") };
     });
     const rows = ordered.slice(0, mostRows);

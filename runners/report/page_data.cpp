@@ -104,7 +104,38 @@ PageJson cases_json(const CaseView& view) {
 
 PageJson measures_json(const PageJson& cases) {
   PageJson out = PageJson::array();
-  for (const auto& [name, column] : cases["measures"].items()) out.push_back(column_json(measure_column(name)));
+  for (const auto& [name, column] : cases["measures"].items()) {
+    PageJson one = column_json(measure_column(name));
+    if (const MeasureInfo* info = measure_info(name); info && *info->reading.words != 0)
+      one["words"] = info->reading.words;
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+/// The measure that the answer speaks of first; "" where it speaks of none.
+std::string answered_measure(const StudyResults& results) {
+  const Table* answers = find_table(results.derived, "answers");
+  if (!answers || answers->rows.empty()) return "";
+  const TableReader rows(*answers);
+  return rows.text(0, "measure");
+}
+
+/// Rows of the table that are of this measure, without the axes: the case has them.
+Table of_measure(const Table& table, const std::string& measure, const std::vector<std::string>& axes) {
+  std::vector<std::size_t> kept;
+  Table out{table.name, table.text, {}, {}};
+  for (std::size_t k = 0; k < table.columns.size(); ++k)
+    if (std::find(axes.begin(), axes.end(), table.columns[k].name) == axes.end()) {
+      kept.push_back(k);
+      out.columns.push_back(table.columns[k]);
+    }
+  const TableReader rows(table);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (rows.text(row, "measure") != measure) continue;
+    Row& one = out.rows.emplace_back();
+    for (const std::size_t k : kept) one.push_back(table.rows[row][k]);
+  }
   return out;
 }
 
@@ -114,6 +145,11 @@ PageJson tables_json(const CaseView& view, const KindPage& kind) {
   names.insert(names.end(), {"answers", "differences", "effects", "effects_said"});
   for (const std::string_view name : names)
     if (const Table* table = find_table(view.results().derived, name)) out[table->name] = table_json(*table);
+  // Of what the answer rests on, the measure that it speaks of first.
+  const std::string measure = answered_measure(view.results());
+  for (const std::string_view name : {"limits", "refinements"})
+    if (const Table* table = find_table(view.results().derived, name))
+      out[table->name] = table_json(of_measure(*table, measure, view.results().columns));
   return out;
 }
 
@@ -162,6 +198,7 @@ PageData page_data(const CaseView& view, const KindPage& kind, const StudyResult
   CurveData curves(sample_limit(series));
   PageJson out = {{"study", {{"name", results.name}, {"kind", results.kind}, {"resolved", results.study}}}};
   out["axes"] = axes_json(view);
+  out["words"] = results.method_words;
   out["cases"] = cases_json(view);
   out["measures"] = measures_json(out["cases"]);
   out["tables"] = tables_json(view, kind);
@@ -182,14 +219,6 @@ PageData page_data(const CaseView& view, const KindPage& kind, const StudyResult
 namespace {
 
 constexpr std::size_t most_curve_rows = 24, most_curve_cases = 96, at_an_end = 8;
-
-/// The measure that the answer speaks of first; "" where it speaks of none.
-std::string answered_measure(const StudyResults& results) {
-  const Table* answers = find_table(results.derived, "answers");
-  if (!answers || answers->rows.empty()) return "";
-  const TableReader rows(*answers);
-  return rows.text(0, "measure");
-}
 
 /// Places of `count` groups: both ends of what is measured, then evenly over all.
 std::set<std::size_t> chosen(const std::vector<CaseGroup>& groups, const std::string& name) {

@@ -65,7 +65,7 @@ std::string page_program(const KindPage& kind) {
   const auto add = [&](const std::string& name) { out += asset(name); };
   for (const char* name : shared_scripts) add(fmt::format("script/{}.js", name));
   for (const std::string_view script : kind.scripts) out += script;
-  for (const char* name : {"effects", "shares", "choice_effects"}) add(fmt::format("{}.js", name));
+  for (const char* name : {"effects", "shares", "choice_effects", "refined"}) add(fmt::format("{}.js", name));
   for (const char* name : page_scripts) add(fmt::format("script/{}.js", name));
   return out;
 }
@@ -80,7 +80,9 @@ std::string emphasised(const std::string& sentence) {
                            unit = "(?:%|times|N s|m/s|rad/s|N/m|ms|µs|s|m|N|J|W)";
   static const std::regex number("(^|[ (])(" + digits + "(?: ± " + digits + ")?(?: to " + digits + ")?(?: " + unit +
                                  "(?![A-Za-z/]))?)(?=[ ,.;:)]|$)");
-  return std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>");
+  // The numbers of orders and parameters are no results.
+  static const std::regex plain("(order |= )<strong>([^<]*)</strong>");
+  return std::regex_replace(std::regex_replace(escape(sentence), number, "$1<strong>$2</strong>"), plain, "$1$2");
 }
 
 /// The answer: its first sentence large, the others below it; more of them fold.

@@ -47,7 +47,8 @@ std::vector<Table> evidence_tables(const StudyResults& results) {
   if (answers_itself(results)) return {};
   const answers::Compared study(results);
   const std::vector<std::string> measures = observed_measures(results);
-  return {answers::limits_table(study, measures), answers::differences_table(study, measures)};
+  return {answers::limits_table(study, measures), answers::refinements_table(study, measures),
+          answers::differences_table(study, measures)};
 }
 
 std::string evidence_text(const StudyResults& results) {

@@ -22,6 +22,8 @@
       return { index, id: cases.id[index], status: cases.status[index], reason: cases.reason[index], partial: cases.partial[index], values, measures };
     }
 
+    // How answers call a measure: "energy lost at the stops".
+    measureWords(name) { return (this.page.measures.find((one) => one.name === name) || {}).words || ricochet.format.spaced(name); }
     // Rows of a derived table as objects; none where the results have no such table.
     rows(name) {
       if (!this.tables.has(name)) this.tables.set(name, rowsOf((this.page.tables || {})[name]));

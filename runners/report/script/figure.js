@@ -144,7 +144,7 @@
   // Names figures that show a kind's answer, the best first: the first that a study has stands beside its answer.
   const answers = [];
   ricochet.answeredBy = (...ids) => { answers.push(...ids.filter((id) => !answers.includes(id))); };
-  // Before all others: for a figure that knows the answer.
+  // Before all others: for the figure of what the answer says.
   ricochet.answeredFirst = (id) => { answers.unshift(id); };
   ricochet.answerAmong = (figures) => answers.map((id) => figures.find((figure) => figure.id === id)).find(Boolean);
   ricochet.makeFigures = (data) => makers.flatMap(([, make]) => make(data));

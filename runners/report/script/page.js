@@ -69,7 +69,7 @@
     data.view = new ricochet.Cases(data);
     ricochet.data = data;
     const all = ricochet.bounded(ricochet.makeFigures(data)), answer = ricochet.answerAmong(all), beside = document.getElementById("answer-figure");
-    let after = place, link = document.querySelector('nav a[href="#answer"]');
+    let after = place, link = document.getElementById("figure-links");
     for (const description of all) {
       const answers = beside && description === answer, put = (fresh) => (answers ? beside.append(fresh) : after.after(fresh));
       const figure = ricochet.mount(description, put), { section } = figure, entry = Object.assign(document.createElement("a"), { href: "#" + section.id, textContent: description.title });

@@ -11,17 +11,14 @@
   };
   // A word of everyday language is a name where a value or another choice follows it, and no article stands before it.
   const named = (full) => full.replace(/\./g, "\\.") + (/^[a-z]+$/.test(full) ? "(?=$|[,)]| ×| ·| \\([^)]{1,6}\\)| [\\d−])" : "");
-  // A scheme of several words goes by their initials, where no other of the study has these.
-  function initials(schemes) {
-    const several = schemes.filter((name) => /^[a-z]+(-[a-z]+)+$/.test(name)), first = (name) => name.split("-").map((word) => word[0].toUpperCase()).join("");
-    return several.filter((name) => several.every((other) => other === name || first(other) !== first(name))).map((name) => [name, first(name)]);
-  }
+  // Methods go by the words that their plugins give: [name, words]; those of mass matrices stay, which are words.
+  const methods = (words) => Object.entries(words || {}).map(([key, said]) => [key.slice(key.indexOf(" ") + 1), said, key]).filter(([name, said, key]) => name !== said && !key.startsWith("mass "));
   // The names of the page's study; before its data are read those that every study has.
   let known = null;
   function table() {
     if (known && (known.whole || !ricochet.data)) return known;
-    const schemes = ricochet.data ? initials(ricochet.data.view.values("time")) : [], all = schemes.concat(names);
-    known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?<!\\bthe )(?:" + schemes.map(([full]) => full).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
+    const schemes = ricochet.data ? methods(ricochet.data.page.words) : [], all = schemes.map(([name, said]) => [name, said]).concat(names);
+    known = { whole: Boolean(ricochet.data), short: new Map(all), pattern: new RegExp("(?<![\\w.-])(?<!\\bthe )(?:" + schemes.map(([full]) => named(full)).concat(names.map(([full]) => named(full))).join("|") + ")(?![\\w-]|\\.\\w)", "g") };
     for (const [full, brief] of schemes) meanings[brief] = full;
     return known;
   }

@@ -3,6 +3,7 @@
 {
   const { numberOf, Interval, errors } = ricochet;
   const follows = 2;          // factor within which a point follows the fitted line
+  const mostBeside = 3;       // charts beside an answer
 
   // All cases; for elements, those at the smallest step of their method.
   function casesFor(view, refined) {
@@ -43,8 +44,11 @@
       const charts = curves.charts((facet) => kinds.map(({ error, range }) => this.chart(error, facet, range)));
       const caption = curves.colours() + " The pale band under a curve is its fitted order, drawn over the points that stay within a factor of " + follows +
         " of it; the number at its end is the order. Grey points are at or below the error floor, which is how far apart two references are." + (byStep ? "" : " Each method at its smallest step.");
+      // The answer on orders is shown by the error that it speaks of.
+      const [first] = this.data.rows("answers"), said = first && first.form === "order" ? kinds.findIndex(({ error }) => "error." + error === first.measure) : -1;
+      if (said >= 0 && charts.length <= mostBeside && (byStep || !this.data.view.varies("step"))) ricochet.answeredFirst("error-" + this.refined);
       return {
-        id: "error-" + this.refined, title: byStep ? "Errors against the step" : "Errors against the number of elements", caption, views: kinds.map(({ error }) => error), charts,
+        atFirst: Math.max(0, said), id: "error-" + this.refined, title: byStep ? "Errors against the step" : "Errors against the number of elements", caption, views: kinds.map(({ error }) => error), charts,
         legend: curves.legend().concat(ricochet.drawnNames(charts).has(errors.floorName) ? [errors.floorEntry] : []),
         measured: { key: "errors", along: this.refined, values: errors.measured(kinds, (one, error) => this.error(one, [error])) },
       };

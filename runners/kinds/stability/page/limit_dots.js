@@ -1,6 +1,6 @@
 // The largest step of each method, predicted and observed.
 {
-  const mostRows = 22, looks = { open: "#0072B2", closed: "#D55E00" };
+  const mostRows = 22, none = "no limit", looks = { open: "#0072B2", closed: "#D55E00" };
 
   ricochet.figure("limit-dots", (data) => {
     const { view } = data, { text } = ricochet.format, found = data.rows("step_limits").filter((row) => row.counted && data.byId.has(row.case) && (row.expected !== null || row.observed !== null));
@@ -10,7 +10,10 @@
       const one = data.byId.get(row.case), contact = row.closed ? "closed" : "open", said = [["predicted", row.expected], ["observed", row.observed]].filter(([, value]) => value !== null);
       return { name: label(one), contact, predicted: row.expected, observed: row.observed, text: (view.label(one) || "the one method") + ", " + contact + ": " + said.map(([what, value]) => what + " " + text(value, 4) + " s").join(", ") };
     });
-    const names = ricochet.distinct(rows.map((row) => row.name)), range = new ricochet.Interval().include(...rows.flatMap((row) => [row.predicted, row.observed]).filter((value) => value > 0));
+    const counted = ricochet.distinct(data.rows("step_limits").filter((row) => row.counted && data.byId.has(row.case)).map((row) => data.byId.get(row.case))), without = counted.filter((one) => !cases.includes(one));
+    // Only where each row is one method.
+    const limited = ricochet.distinct(rows.map((row) => row.name)), arrows = view.group(cases.concat(without), view.varying).length <= mostRows, unlimited = arrows ? ricochet.distinct(without.map(label)) : [];
+    const names = arrows ? unlimited.concat(limited) : limited, range = new ricochet.Interval().include(...rows.flatMap((row) => [row.predicted, row.observed]).filter((value) => value > 0));
     if (range.empty) return [];
     const x = ["largest step h", "s"], out = ricochet.namedRows(names, x, ricochet.logAxis(x, range, false), names.length > 12 ? 19 : 26), legend = [];
     for (const [contact, colour] of Object.entries(looks))
@@ -20,8 +23,11 @@
         ricochet.draw(out, own, { x: what, y: "name" }, { ...draw(name), symbolOffset: [0, contact === "open" ? -4 : 4] });
         legend.push(ricochet.swatch(name, what === "predicted" ? ricochet.lighten(colour, 0.6) : colour, "circle"));
       }
-    const counted = ricochet.distinct(data.rows("step_limits").filter((row) => row.counted && data.byId.has(row.case)).map((row) => data.byId.get(row.case))), without = counted.filter((one) => !cases.includes(one));
-    if (without.length) out.notes.push("No limit within the steps of the study: " + view.describe(without, counted) + ".");
+    if (arrows && unlimited.length) {
+      ricochet.draw(out, unlimited.map((name) => ({ name, end: out.option.xAxis.max, text: name + ": no limit within the steps of the study" })), { x: "end", y: "name" }, { ...ricochet.dot(none, "#009E73", "triangle", 10, 4), symbolRotate: -90 });
+      legend.push(ricochet.swatch(none, "#009E73", "triangle"));
+    }
+    if (without.length && !arrows) out.notes.push("No limit within the steps of the study: " + view.describe(without, counted) + ".");
     return [{
       id: "limit-dots", title: "Largest step of each method", views: ["step"], legend, charts: [{ title: "all cases", height: out.height, views: [out], notes: [] }],
       caption: "Ring: predicted by the spectrum of one step. Dot: observed by marching. Where the dot is in its ring, both agree. Open: the structure alone; closed: with contact.",

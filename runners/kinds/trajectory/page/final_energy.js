@@ -10,13 +10,8 @@ ricochet.energyValues = (data) => {
   if (data.rows("energy_changes").some((row) => !row.conservative)) values.unshift(...values.splice(1, 1));
   return values;
 };
-ricochet.figure("final-energy", (data) => {
-  // Where methods are told by what energy they leave, the figure that shows it stands beside the answer.
-  const first = data.rows("answers")[0];
-  const told = first && ["keeps", "differ", "gains", "none", "open", "value"].includes(first.form) && /^energy_(left|ratio)$/.test(first.measure);
-  if (told) ricochet.answeredFirst("final-energy-step");
-  return ricochet.alongAxes(data, {
-    id: "final-energy", title: "Energy at the end", values: told ? ricochet.energyValues(data).sort((a, b) => (b.view === "E(T) / E_in") - (a.view === "E(T) / E_in")) : ricochet.energyValues(data),
+ricochet.figure("final-energy", (data) =>
+  ricochet.alongAxes(data, {
+    id: "final-energy", title: "Energy at the end", values: ricochet.energyValues(data),
     caption: "E_in: the energy brought in, that of the start and what loads brought in beyond what they took. One colour per mass matrix. Where the modulus of the change is shown, full marks lost energy and hollow marks gained it.",
-  });
-});
+  }));

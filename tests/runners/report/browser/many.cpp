@@ -26,7 +26,7 @@ TEST_CASE("a study of a thousand cases has a page of a few screens", "[report][b
   const StudyResults results = thousand();
   REQUIRE(results.cases.size() == 972);
   const Page page = page_of("many", results);
-  CHECK(page.html.size() < 3'000'000);  // of which the chart library is 1.1 MB
+  CHECK(page.html.size() < 3'100'000);  // of which the chart library is 1.1 MB
   const browser::Json said = read_back("many", {page}).at("many");
   CHECK(said.at("height") < 12 * 900);
   // Nearly all of it is laid out when it is come near, and takes the room that it was given.
@@ -112,7 +112,7 @@ TEST_CASE(
   CHECK(said.at("looked for").at("values").at(0) == browser::Json({0, 5, results.cases.size()}));
   const browser::Json phone = said.at("phone").at("values").at(0);
   CHECK(phone.at(0) == "more");
-  CHECK(phone.at(1) < 60);  // words of a header are not broken letter by letter
+  CHECK(phone.at(1) < 80);  // words of a header are not broken letter by letter: four lines
   CHECK(phone.at(2) == true);
   CHECK(said.at("bare").at("values").at(0) == results.cases.size());
   CHECK(said.at("printed").at("values").at(0) == opened);
