@@ -14,7 +14,9 @@ const RowType<Clause>& clause_rows() {
     RowType<Clause> type;
     type.add({"order", "1", "Number of the sentence in the answer, from 1."}, &Clause::order)
         .add({"form", "",
-              "What is said: keeps, gains, differ, none (no difference), open (not told), matters, part (matters in "
+              "What is said: keeps, gains, differ, none (no difference), open (not told), apart (how far, as a share "
+              "of the scale), needs (the step that "
+              "would tell), matters, part (matters in "
               "some "
               "combinations), value, order, cheapest, limit, diagram, basin, status."},
              &Clause::form)

@@ -61,22 +61,24 @@ Sentence TierSpeaker::no_difference(const Members& firm, std::optional<double> u
                 "No difference at {}, the only step: {} is {} {}; methods differ by {}. What a finer step would "
                 "change is not known.",
                 finest_words(firm), words_.words, value_text(words_, middle, spread), who, by_percent(spread / scale_)),
-            {said}};
+            {said, spread_clause(firm, spread)}};
   return {fmt::format("No difference: {} is {} {}; methods differ by {}, and refining {} still moves a result by {}.",
                       words_.words, value_text(words_, middle, std::max(*u, spread)), who, by_percent(spread / scale_),
                       refined_words(firm), by_percent(*u / scale_)),
-          {said}};
+          {said, spread_clause(firm, spread)}};
 }
 
 Sentence TierSpeaker::cannot_tell(const Members& firm, std::optional<double> u, double spread) const {
   const std::string refined = refined_words(firm);
   const double target = std::max(spread, tolerance * scale_) / 3;
+  std::vector<Clause> clauses = {clause("open", firm), spread_clause(firm, spread)};
+  const std::string more = more_needed(firm, target, clauses);
   return {
       fmt::format("These steps cannot tell: {} differs by {} between methods, but {} still move{} it by up to {}{}; "
                   "it lies in {}.",
                   words_.words, percent(spread / scale_), refined, plural_s(refined == "step and mesh"),
-                  percent(u.value_or(0) / scale_), more_needed(firm, target), values_of(firm)),
-      {clause("open", firm)}};
+                  percent(u.value_or(0) / scale_), more, values_of(firm)),
+      std::move(clauses)};
 }
 
 void TierSpeaker::say_tiers(const std::vector<Members>& tiers, std::vector<Sentence>& out) const {

@@ -78,9 +78,11 @@ class TierSpeaker {
   void split_at_widest_gap(std::vector<Members>& tiers) const;
   void split_keepers(std::vector<Members>& tiers) const;
   Clause clause(const std::string& form, const Members& members) const;
+  /// How far these are apart, and what refinement leaves of each, as shares of the scale.
+  Clause spread_clause(const Members& members, double spread) const;
   std::string finest_words(const Members& members) const;
   std::string refined_words(const Members& members) const;
-  std::string more_needed(const Members& members, double target) const;
+  std::string more_needed(const Members& members, double target, std::vector<Clause>& clauses) const;
   std::string values_of(const Members& members) const;
   std::string mark(const Members& members) const;
   std::string kept_values(const Members& members) const;

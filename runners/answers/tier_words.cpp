@@ -45,6 +45,15 @@ Clause TierSpeaker::clause(const std::string& form, const Members& members) cons
   return out;
 }
 
+Clause TierSpeaker::spread_clause(const Members& members, double spread) const {
+  Clause out = clause("apart", members);
+  out.value = 100 * spread / scale_;
+  out.low = out.high = std::nullopt;
+  if (const auto u = largest_uncertainty(members)) out.uncertainty = 100 * *u / scale_;
+  out.unit = "%";
+  return out;
+}
+
 std::string TierSpeaker::finest_words(const Members& members) const {
   std::optional<double> finest;
   for (const std::size_t k : members)
@@ -62,7 +71,7 @@ std::string TierSpeaker::refined_words(const Members& members) const {
 }
 
 /// "; with h = 2e-6 s it would be told", where an order is evident and that is at most a hundred times finer.
-std::string TierSpeaker::more_needed(const Members& members, double target) const {
+std::string TierSpeaker::more_needed(const Members& members, double target, std::vector<Clause>& clauses) const {
   std::optional<double> needed;
   bool evident = true, restless = false;
   for (const std::size_t k : members) {
@@ -80,8 +89,11 @@ std::string TierSpeaker::more_needed(const Members& members, double target) cons
     needed = std::min(needed.value_or(step), step);
   }
   if (evident && needed) {
-    const double unit = std::pow(10, std::floor(std::log10(*needed)));
-    return "; with " + study_.step_words(std::floor(*needed / unit) * unit) + " it would be told";
+    const double unit = std::pow(10, std::floor(std::log10(*needed))), step = std::floor(*needed / unit) * unit;
+    Clause said = clause("needs", {});
+    said.at_step = step;
+    clauses.push_back(std::move(said));
+    return "; with " + study_.step_words(step) + " it would be told";
   }
   if (restless) return "; it wanders, so no finer step is sure to tell";
   return "; one more, finer step is needed";

@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
+#include <regex>
 
 #include "runners/run/choice_effects.hpp"
 #include "runners/table/table_reader.hpp"
@@ -123,6 +125,69 @@ TEST_CASE(
     }
     CHECK(sentences >= 1);
     CHECK(sentences <= 5);
+  }
+}
+
+TEST_CASE("other names of methods change words alone") {
+  StudyResults results =
+      study([](int mass, int law, double step) { return 0.4 + 0.1 * mass + 0.03 * law + 50 * step * (1 + mass); });
+  const auto numbers = [](const StudyResults& one) {
+    std::vector<std::string> out;
+    const Table table = answers_table(one);
+    const TableReader rows(table);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      for (const char* column : {"form", "measure", "value", "low", "high", "u", "status", "methods"})
+        out.push_back(rows.text(row, column));
+    return out;
+  };
+  const auto before = numbers(results);
+  const std::map<std::string, std::string> renamed = {
+      {"light", "zinc"}, {"heavy", "air"}, {"hard", "b"}, {"soft", "a"}};
+  for (CaseRecord& record : results.cases)
+    for (auto& [axis, value] : record.axes)
+      if (const auto found = value.is_string() ? renamed.find(value.get<std::string>()) : renamed.end();
+          found != renamed.end())
+        value = found->second;
+  CHECK(numbers(results) == before);
+}
+
+TEST_CASE("each number of a sentence stands in a table") {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> uniform;
+  const std::regex number("(?:^|[ (])((?:−)?[0-9][0-9.]*(?:e-?[0-9]+)?)(?=[ ,.;:)]|$)");
+  for (int draw = 0; draw < 40; ++draw) {
+    const double a = uniform(random), b = uniform(random), c = draw % 3 ? uniform(random) : 0,
+                 p = 0.5 + 3 * uniform(random);
+    const StudyResults results = study(
+        [&](int mass, int law, double step) {
+          return 0.2 + 0.3 * a * mass + 0.1 * c * law + b * (1 + mass) * std::pow(1e3 * step, p);
+        },
+        {8e-4, 4e-4, 2e-4, 1e-4}, 1 + draw % 3);
+    std::vector<Table> tables = evidence_tables(results);
+    tables.push_back(answers_table(results));
+    std::vector<double> known;
+    for (const Table& table : tables)
+      for (const Row& row : table.rows)
+        for (const Cell& cell : row)
+          if (const auto value = cell.number()) known.push_back(std::abs(*value));
+    const std::string text = said(tables.back());
+    for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
+      std::string word = (*it)[1].str();
+      if (word.back() == '.') word.pop_back();
+      const std::string digits = word.starts_with("−") ? word.substr(std::string("−").size()) : word;
+      const std::size_t exponent = digits.find('e'), point = digits.find('.');
+      const std::size_t decimals = point == std::string::npos ? 0 : std::min(exponent, digits.size()) - point - 1;
+      // Ranges are rounded outwards: one unit of the last digit, zeros at the end of a whole number not counted.
+      const std::string mantissa = digits.substr(0, exponent);
+      const std::size_t zeros = point == std::string::npos ? mantissa.size() - 1 - mantissa.find_last_not_of('0') : 0;
+      const double power = (exponent == std::string::npos ? 0 : std::stod(digits.substr(exponent + 1))) -
+                           static_cast<double>(decimals) + static_cast<double>(zeros),
+                   unit = std::pow(10, power), value = std::stod(digits);
+      const bool there =
+          std::any_of(known.begin(), known.end(), [&](double one) { return std::abs(one - value) <= 1.001 * unit; });
+      INFO(text << word);
+      CHECK(there);
+    }
   }
 }
 
