@@ -18,17 +18,6 @@ std::string last_part(const std::string& column) {
   return dot == std::string::npos ? column : column.substr(dot + 1);
 }
 
-std::optional<double> as_number(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  std::size_t read = 0;
-  try {
-    const double value = std::stod(text, &read);
-    return read == text.size() ? std::optional(value) : std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
-}
-
 /// Letters of the field for names of parameters.
 std::string symbol(const std::string& name) {
   static const std::map<std::string, std::string> letters = {
@@ -77,6 +66,17 @@ std::string spaced(std::string text) {
 
 }  // namespace
 
+std::optional<double> as_number(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::size_t read = 0;
+  try {
+    const double value = std::stod(text, &read);
+    return read == text.size() ? std::optional(value) : std::nullopt;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
 bool is_refinement(const std::string& column) {
   return column == "step" || column == "elements" || column == "steps_per_period";
 }
@@ -96,7 +96,8 @@ Compared::Compared(const StudyResults& results) : results_(results) {
     numbers_[column] = {numbers.begin(), numbers.end()};
     if (!varies) continue;
     varying_.push_back(column);
-    if (is_refinement(column)) continue;
+    // A refinement that is asked for is a choice.
+    if (is_refinement(column) && column != asked_) continue;
     columns_.push_back(column);
     if (const std::string choice = axis_role(column);
         std::find(choices_.begin(), choices_.end(), choice) == choices_.end())

@@ -112,7 +112,8 @@ void say_others(const std::vector<MeasureSaid>& others, const MeasureSaid& first
       clause.value = 100 * (kind == alike ? spread(*one) : moved(*one));
       clause.unit = "%";
       said.clauses.push_back(clause);
-      names.push_back(one->limits.words.words + (kind == alike ? " (" + by_percent(spread(*one)) + ")" : ""));
+      const bool some = kind == alike && by_percent(spread(*one)) != by_percent(0);
+      names.push_back(one->limits.words.words + (some ? " (" + by_percent(spread(*one)) + ")" : ""));
     }
     if (kind == alike && (all.size() > 1 || first_kind == alike)) {
       said.text = first_kind == alike

@@ -108,7 +108,11 @@ std::string value_to(const MeasureWords& measure, double value, std::optional<do
   const double v = value * measure.factor;
   double u = std::isfinite(uncertainty.value_or(0)) ? measure.factor * uncertainty.value_or(0) : 0;
   if (measure.decades) return short_number(v, 2) + unit;
+  // Of a sequence that is the same within round-off the value alone is said.
+  constexpr double round_off = 1e-9;
+  if (u <= round_off * std::abs(v)) u = 0;
   if (v == 0 && u == 0) return "0" + unit;
+  if (measure.unit.empty() && u < 1 && v == std::round(v) && std::abs(v) < many) return fmt::format("{:.0f}", v);
   // All of it, as far as four digits of a per cent say.
   constexpr double all_of_it = 5e-5;
   if (measure.unit == "%" && std::abs(v - 100) < all_of_it) return "100" + unit;
@@ -160,7 +164,8 @@ std::string uncertainty_text(const MeasureWords& measure, double uncertainty) {
 }
 
 std::string with_uncertainty(const MeasureWords& measure, double value, std::optional<double> uncertainty) {
-  if (!uncertainty || !(*uncertainty > 0) || !std::isfinite(*uncertainty))
+  constexpr double round_off = 1e-9;
+  if (!uncertainty || !(*uncertainty > round_off * std::abs(value)) || !std::isfinite(*uncertainty))
     return value_text(measure, value, uncertainty);
   return value_text(measure, value, uncertainty, false) + " ± " + uncertainty_text(measure, *uncertainty);
 }

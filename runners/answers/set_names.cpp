@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -54,6 +55,26 @@ std::string and_names(const std::vector<std::string>& names) {
     out += (k == 0 ? "" : k + 1 == names.size() ? ", and " : ", ") + names[k];
   return out;
 }
+
+namespace {
+
+/// "1e3, 1e4 and 1e5": where one number has an exponent, whole thousands get one too.
+std::vector<std::string> one_notation(std::vector<std::string> values) {
+  const bool exponents = std::any_of(values.begin(), values.end(), [](const std::string& one) {
+    return one.find('e') != std::string::npos && as_number(one) && *as_number(one) >= 1;
+  });
+  if (!exponents) return values;
+  for (std::string& one : values) {
+    constexpr double thousand = 1000;
+    const auto number = as_number(one);
+    if (!number || one.find('e') != std::string::npos || std::fmod(*number, thousand) != 0 || *number == 0) continue;
+    const double power = std::floor(std::log10(*number));
+    one = fmt::format("{:g}e{:.0f}", *number / std::pow(10, power), power);
+  }
+  return values;
+}
+
+}  // namespace
 
 SetNames::SetNames(const Compared& study, Cases methods, std::vector<std::string> columns)
     : study_(study), methods_(std::move(methods)), columns_(std::move(columns)) {
@@ -148,7 +169,7 @@ std::optional<std::string> SetNames::words(const Attribute& attribute, const std
     for (const std::string& one : said)
       if (one.size() > before.size() + behind.size())
         values.push_back(one.substr(before.size(), one.size() - before.size() - behind.size()));
-    if (values.size() == said.size()) return before + and_list(values) + behind;
+    if (values.size() == said.size()) return before + and_list(one_notation(values)) + behind;
   }
   return and_list(said);
 }

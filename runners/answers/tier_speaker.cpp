@@ -56,6 +56,10 @@ Sentence TierSpeaker::no_difference(const Members& firm, std::optional<double> u
                         farthest_value < nothing_gained ? "" : " (the farthest: " + names_.label(which) + ")"),
             {said}};
   }
+  if (u && by_percent(spread / scale_) == by_percent(0) && by_percent(*u / scale_) == by_percent(0))
+    return {fmt::format("No difference: {} is {} {}, at every step and mesh.", words_.words,
+                        value_text(words_, middle, std::nullopt), who),
+            {said}};
   if (!u)
     return {fmt::format(
                 "No difference at {}, the only step: {} is {} {}; methods differ by {}. What a finer step would "

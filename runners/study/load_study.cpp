@@ -30,7 +30,6 @@ void check_compare(const Study& study) {
     if (std::find(list.begin(), list.end(), one) == list.end()) list.push_back(one);
   };
   for (const std::string& column : study.columns) {
-    if (column == "step" || column == "elements" || column == "steps_per_period") continue;
     add(known, axis_role(column));
     add(known, column);
     const auto value = [&](const StudyCase& one) {
