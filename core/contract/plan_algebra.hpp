@@ -8,15 +8,22 @@
 ///
 ///     const auto [q, v, a] = slots<3>();
 ///     const Combination next = q + h * v + (0.5 - beta) * h * h * a + beta * h * h * z;
-///     stage.matrix = M + gamma * h * C + beta * h * h * K;
-///     stage.history = -(C * (v + (1 - gamma) * h * a)) - K * (q + h * v + (0.5 - beta) * h * h * a);
-///     stage.load = (1 - theta) * at(0) + theta * at(1);
+///     const Combination next_v = v + (1 - gamma) * h * a + gamma * h * z;
+///     Stage stage = equation(M * z + C * next_v + K * next, (1 - theta) * at(0) + theta * at(1));
 ///
 /// A sum adds weights slot by slot; a factor multiplies each: the numbers are those of the formula, in its order.
 namespace ricochet {
 
 /// b of a stage: one row of weights of M, C and K per slot (step_plan.hpp, equation 3).
 using History = std::vector<OperatorWeights>;
+
+/// A sum of operators applied to combinations (N): what it weighs of each slot, and of z.
+struct Forces {
+  History slots;
+  OperatorWeights z;
+  /// b alone; what is weighed of z belongs into S.
+  operator History() const { return slots; }
+};
 
 namespace plan_algebra {
 
@@ -87,23 +94,36 @@ inline constexpr OperatorWeights operator-(const OperatorWeights& a, const Opera
   return a + -b;
 }
 
-/// An operator applied to a combination of slots; what it weighs of the unknowns belongs into S.
-inline History operator*(const OperatorWeights& o, const Combination& c) {
-  History rows;
-  for (const double weight : c.slots) rows.push_back(weight * o);
-  return rows;
+/// An operator applied to a combination.
+inline Forces operator*(const OperatorWeights& o, const Combination& c) {
+  Forces forces{{}, c.z * o};
+  for (const double weight : c.slots) forces.slots.push_back(weight * o);
+  return forces;
 }
-inline History operator+(History a, const History& b) {
-  if (a.size() < b.size()) a.resize(b.size());
-  for (std::size_t j = 0; j < b.size(); ++j) a[j] = a[j] + b[j];
-  return a;
+inline Forces operator*(double factor, Forces forces) {
+  for (OperatorWeights& row : forces.slots) row = factor * row;
+  return {std::move(forces.slots), factor * forces.z};
 }
-inline History operator-(History rows) {
-  for (OperatorWeights& row : rows) row = -row;
-  return rows;
+inline Forces operator+(Forces a, const Forces& b) {
+  if (a.slots.size() < b.slots.size()) a.slots.resize(b.slots.size());
+  for (std::size_t j = 0; j < b.slots.size(); ++j) a.slots[j] = a.slots[j] + b.slots[j];
+  return {std::move(a.slots), a.z + b.z};
 }
-inline History operator-(History a, const History& b) {
+inline Forces operator-(Forces forces) {
+  return -1.0 * std::move(forces);
+}
+inline Forces operator-(Forces a, const Forces& b) {
   return std::move(a) + -b;
+}
+
+/// The stage whose equation is forces = load + Hᵀp: S is what they weigh of z, b what they weigh of the slots,
+/// negative.
+inline Stage equation(const Forces& forces, Levels load) {
+  Stage stage;
+  stage.matrix = forces.z;
+  stage.history = -forces;
+  stage.load = std::move(load);
+  return stage;
 }
 
 inline Levels operator*(double factor, Levels levels) {

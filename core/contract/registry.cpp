@@ -53,6 +53,17 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+class PlannedScheme final : public TimeScheme {
+ public:
+  PlannedScheme(PlanFunction plan, Parameters parameters)
+      : plan_(std::move(plan)), parameters_(std::move(parameters)) {}
+  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override { return plan_(parameters_, h, facts); }
+
+ private:
+  PlanFunction plan_;
+  Parameters parameters_;
+};
+
 }  // namespace
 
 const char* role_name(Role role) {
@@ -102,6 +113,11 @@ void Registry::add_contact(PluginManual manual, Maker<ContactLaw> make) {
 }
 void Registry::add_time(PluginManual manual, Maker<TimeScheme> make) {
   add(time_, Role::time, std::move(manual), std::move(make));
+}
+void Registry::add_time(PluginManual manual, PlanFunction plan) {
+  add_time(std::move(manual), [plan = std::move(plan)](const Parameters& p) -> std::unique_ptr<TimeScheme> {
+    return std::make_unique<PlannedScheme>(plan, p);
+  });
 }
 void Registry::add_reference(PluginManual manual, Maker<ReferenceSolver> make) {
   add(reference_, Role::reference, std::move(manual), std::move(make));

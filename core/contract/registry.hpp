@@ -28,6 +28,9 @@ Maker<ContactLaw> guarded(PluginIdentity plugin, Maker<ContactLaw> make);
 Maker<TimeScheme> guarded(PluginIdentity plugin, Maker<TimeScheme> make);
 Maker<ReferenceSolver> guarded(PluginIdentity plugin, Maker<ReferenceSolver> make);
 
+/// A time scheme as one function: its plan, or a refusal, for these parameters, the step h (s) and the problem.
+using PlanFunction = std::function<PlanOrRefusal(const Parameters&, double h, const ProblemFacts&)>;
+
 enum class Role { mass, contact, time, reference };
 inline constexpr std::array all_roles = {Role::mass, Role::contact, Role::time, Role::reference};
 const char* role_name(Role role);
@@ -58,6 +61,7 @@ class Registry {
   void add_mass(PluginManual manual, Maker<MassStrategy> make);
   void add_contact(PluginManual manual, Maker<ContactLaw> make);
   void add_time(PluginManual manual, Maker<TimeScheme> make);
+  void add_time(PluginManual manual, PlanFunction plan);
   void add_reference(PluginManual manual, Maker<ReferenceSolver> make);
 
   /// Takes over a method of another registry, with its file; it must be there, and not here.

@@ -191,7 +191,7 @@ struct SchemeFacts {
   Restitution restitution = Restitution::ignored;
   bool needs_regular_mass = false;
   /// Largest stable h·ω on the undamped oscillator, none when unconditionally stable.
-  std::optional<double> stability_limit;
+  std::optional<double> stability_limit = {};
   /// Whether the scheme's own energy can never grow at a contact that rests on a fixed stop.
   bool contact_never_gains = false;
 };

@@ -60,6 +60,19 @@ TEST_CASE("operators act on combinations linearly in both") {
   }
 }
 
+TEST_CASE("an equation gives S what it weighs of z, and b the rest with its sign changed") {
+  const auto [q, v] = slots<2>();
+  const Combination next = q + 0.5 * v + 0.25 * z, rate = v + 2 * z;
+  const Stage stage = equation(8 * M * z + 0.5 * (C * rate) - K * next, 0.25 * at(0) + 0.75 * at(1));
+  CHECK(stage.matrix.M == 8);
+  CHECK(stage.matrix.C == 1);
+  CHECK(stage.matrix.K == -0.25);
+  CHECK(weights(stage.history) == weights(K * (q + 0.5 * v) - 0.5 * C * v));
+  CHECK(weights(stage.load) == weights(0.25 * at(0) + 0.75 * at(1)));
+  CHECK_FALSE(stage.impact);
+  CHECK(stage.update.empty());
+}
+
 TEST_CASE("times keep their order, and the same time twice stays twice") {
   const Levels mean = 0.25 * at(0) + 0.75 * at(1) - at(0);
   CHECK(weights(mean) == std::vector<double>{0, 0.25, 1, 0.75, 0, -1});

@@ -54,6 +54,16 @@ TEST_CASE("a method is found under its role and name only, with its manual, make
   CHECK(registry.names(Role::time) == std::vector<std::string>{"alpha", "two"});
 }
 
+TEST_CASE("a time scheme may be one function of its parameters, the step and the problem") {
+  Registry registry;
+  registry.add_time(manual("function"), [](const Parameters& p, double h, const ProblemFacts& facts) -> PlanOrRefusal {
+    return Refusal{p.word("name") + " " + std::to_string(h > 0.5) + " " + std::to_string(facts.dofs)};
+  });
+  const auto scheme = registry.time("function")->make(Parameters({{"name", std::string("mine")}}));
+  CHECK(std::get<Refusal>(scheme->plan(1, {7, 0, false, false})).sentence == "mine 1 7");
+  CHECK(std::get<Refusal>(scheme->plan(0.25, {3, 0, false, false})).sentence == "mine 0 3");
+}
+
 TEST_CASE("a name is registered once for each role") {
   Registry registry;
   add_time(registry, manual("mine"));
