@@ -1,11 +1,11 @@
 #include <cmath>
-#include <ricochet/contract/plugin.hpp>
 
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Bathe's scheme of two sub-steps, a trapezium to t + γh, then a quadrature over three accelerations. With d = γh,
 /// q₁ = (ρ+1)/(2γ(ρ−1)+4), q₂ = ½ − γq₁, q₀ = 1 − q₁ − q₂:
@@ -18,64 +18,29 @@ using namespace ricochet;
 ///
 /// Each sub-step keeps its own end between the stops, y = H q. An effort of stage 1 gives the momentum hq₁, one of
 /// stage 2 gives h(q₂ + q₀). No energy in M and K alone is known.
-class Bathe final : public TimeScheme {
- public:
-  Bathe(double rho, double split) : split_(split) {
-    if (split_ == 0) split_ = rho == 1 ? 0.5 : (2 - std::sqrt(2 + 2 * rho)) / (1 - rho);
-    q1_ = (rho + 1) / (2 * split_ * (rho - 1) + 4);
-    q2_ = 0.5 - split_ * q1_;
-    q0_ = 1 - q1_ - q2_;
-  }
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    StepPlan plan = plan_with({"q", "v", "a", "b"});
-    const double d = split_ * h;
-    plan.start = {initial_acceleration(d, split_, facts.mass_kernel_dimension > 0 ? d * d / 4 : 0)};
-    plan.start.front().update.push_back(plan_algebra::slots<4>()[3]);
-    plan.stages = {trapezium(d), quadrature(h)};
-    plan.facts.order = 2;
-    return plan;
-  }
-
- private:
-  Stage trapezium(double d) const {
-    using namespace plan_algebra;
-    const auto [q, v, a] = slots<3>();
-    Stage stage = end_of(split_, q + d * v + d * d / 4 * (a + z), v + d / 2 * (a + z));
-    stage.matrix = M + d / 2 * C + d * d / 4 * K;
-    stage.update.push_back(a);
-    return stage;
-  }
-
+PlanOrRefusal bathe(const Parameters& p, double h, const ProblemFacts& facts) {
+  const double rho = p.real("rho_inf"), given = p.real("split");
+  const double split = given != 0 ? given : rho == 1 ? 0.5 : (2 - std::sqrt(2 + 2 * rho)) / (1 - rho);
+  const double q1 = (rho + 1) / (2 * split * (rho - 1) + 4), q2 = 0.5 - split * q1, q0 = 1 - q1 - q2;
+  const double d = split * h, e = q2 * h, later = q1 * h - d / 2, earlier = q0 * h - d / 2;
+  const double shared = d * d / 4 - 0.5 * q0 * h * d;
+  const auto [q, v, a, b] = slots<4>();
+  const Stage trapezium = motion_at(split, q + d * v + d * d / 4 * (a + z), v + d / 2 * (a + z));
   // Before it q, v, a are those of t + γh, b the acceleration of t.
-  Stage quadrature(double h) const {
-    using namespace plan_algebra;
-    const auto [q, v, a, b] = slots<4>();
-    const double d = split_ * h, e = q2_ * h, later = q1_ * h - d / 2, earlier = q0_ * h - d / 2;
-    const double shared = d * d / 4 - 0.5 * q0_ * h * d;
-    Stage stage = end_of(1, q + (h - d) * v + (shared + e * later) * a + (shared + e * earlier) * b + e * e * z,
-                         v + later * a + earlier * b + e * z);
-    stage.matrix = M + e * C + e * e * K;
-    stage.update.push_back(b);
-    return stage;
-  }
-
-  // A sub-step that ends at t + c h with q and v, everything asked there. The elastic force enters as K q of that
-  // instant alone, and so does a spring: averaging is done by the scheme's own recurrence.
-  static Stage end_of(double c, const Combination& q, const Combination& v) {
-    using namespace plan_algebra;
-    Stage stage;
-    stage.history = -(C * v) - K * q;
-    stage.load = at(c);
-    stage.impact = {.value = q, .bound = at(c)};
-    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {q, at(c), v, at(c), {1}};
-    stage.at(Evaluation::explicit_start) = {known(q), at(c), known(v), at(c), {1}};
-    stage.update = {q, v, z};
-    return stage;
-  }
-
-  double split_, q0_ = 0, q1_ = 0, q2_ = 0;
-};
+  const Stage quadrature =
+      motion_at(1, q + (h - d) * v + (shared + e * later) * a + (shared + e * earlier) * b + e * e * z,
+                v + later * a + earlier * b + e * z);
+  StepPlan plan = plan_with({"q", "v", "a", "b"});
+  plan.start = {initial_acceleration(d, split, facts.mass_kernel_dimension > 0 ? d * d / 4 : 0)};
+  plan.stages = {trapezium, quadrature};
+  plan.stages[0].impact = {.value = trapezium.update[0], .bound = at(split)};
+  plan.stages[1].impact = {.value = quadrature.update[0], .bound = at(1)};
+  plan.start[0].update.push_back(b);
+  plan.stages[0].update.push_back(a);
+  plan.stages[1].update.push_back(b);
+  plan.facts.order = 2;
+  return plan;
+}
 
 void register_bathe(Registry& registry) {
   registry.add_time(
@@ -95,7 +60,7 @@ void register_bathe(Registry& registry) {
                                      R"(γ, where the first sub-step ends, in steps; 0: (2 − √(2+2ρ∞))/(1 − ρ∞), ½ at
           ρ∞ = 1, one matrix for both solves; 0.5 with ρ∞ = 0: the scheme of 2005)")},
        .words = "Bathe"},
-      [](const Parameters& p) { return std::make_unique<Bathe>(p.real("rho_inf"), p.real("split")); });
+      bathe);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// CD-Lagrange: central differences in leap-frog form, Newton's law at velocity level. The slot w is the velocity half
 /// a step ahead of q, z = w_{n+3/2} − w_{n+1/2}:
@@ -13,70 +12,43 @@ using namespace ricochet;
 ///
 /// on the points that the position q + h w, known before the solve, finds at or beyond their stop. Energy (undamped,
 /// free): ½|w|²_M + ½|q + h w/2|²_K − ⅛h²|w|²_K; test displacement h(w + z/2). Start: w = v₀ + h/2 a₀.
-class CdLagrange final : public TimeScheme {
- public:
-  explicit CdLagrange(double restitution) : e_(restitution) {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "the velocity of the next half step needs the inverse of the mass, which is singular here: use a "
-          "lumped mass, or an implicit scheme"};
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    StepPlan plan = plan_with({"q", "w"});
-    plan.start = {start(h)};
-    plan.stages = {step(h)};
-    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q + h / 2 * v),
-                   square(EnergyMatrix::K, -0.125 * h * h, v)};
-    plan.facts.order = facts.damped ? 1 : 2;
-    plan.facts.contact_order = 1;
-    plan.facts.restitution = Restitution::exact;
-    plan.facts.needs_regular_mass = true;
-    plan.facts.stability_limit = 2;
-    plan.facts.contact_never_gains = true;
-    return plan;
-  }
-
- private:
-  Stage step(double h) const {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    const Combination ahead = q + h * v, next = v + z, mean = v + 0.5 * z;
-    Stage stage;
-    stage.matrix = M / h;
-    stage.history = -(C * v) - K * ahead;
-    stage.load = at(1);
-    stage.impact = {next, at(1.5), VelocityGate{ahead, at(1), v, at(0.5), e_}};
-    // The position that the force is asked at is known before the solve; the rate it may wait for.
-    stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {ahead, at(1), mean, at(1), {1}};
-    stage.at(Evaluation::explicit_start) = {ahead, at(1), v, at(0.5), {1}};
-    stage.at(Evaluation::conserving) = {
-        q + 1.5 * h * v + h / 2 * z, 0.5 * at(1) + 0.5 * at(2), mean, at(1), {1}, q + 0.5 * h * v,
-        0.5 * at(0) + 0.5 * at(1)};
-    stage.update = {ahead, next};
-    stage.work = {.displacement = h * v + h / 2 * z, .rate = v, .load = at(1), .support = 0.5 * at(2) - 0.5 * at(0)};
-    return stage;
-  }
-
+PlanOrRefusal cd_lagrange(const Parameters& p, double h, const ProblemFacts& facts) {
+  if (facts.mass_kernel_dimension > 0)
+    return Refusal{
+        "the velocity of the next half step needs the inverse of the mass, which is singular here: use a "
+        "lumped mass, or an implicit scheme"};
+  const double e = p.real("restitution");
+  const auto [q, v] = slots<2>();
+  const Combination ahead = q + h * v, next = v + z, mean = v + 0.5 * z;
+  Stage step = equation(M / h * z + C * v + K * ahead, at(1));
+  step.impact = {next, at(1.5), VelocityGate{ahead, at(1), v, at(0.5), e}};
+  // The position that the force is asked at is known before the solve; the rate it may wait for.
+  step.at(Evaluation::implicit_end) = step.at(Evaluation::averaged) = {ahead, at(1), mean, at(1), {1}};
+  step.at(Evaluation::explicit_start) = {ahead, at(1), v, at(0.5), {1}};
+  step.at(Evaluation::conserving) = {ahead + h / 2 * next, 0.5 * at(1) + 0.5 * at(2), mean, at(1), {1},
+                                     q + 0.5 * h * v,      0.5 * at(0) + 0.5 * at(1)};
+  step.update = {ahead, next};
+  step.work = {.displacement = h * v + h / 2 * z, .rate = v, .load = at(1), .support = 0.5 * at(2) - 0.5 * at(0)};
   // 2/h M z = F(0) − C v₀ − K q₀ (+ Hᵀp where the state rests on a stop): w = v₀ + z.
-  Stage start(double h) const {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    Stage stage;
-    stage.matrix = 2 / h * M;
-    stage.history = -(K * q) - C * v;
-    stage.load = at(0);
-    stage.impact = {v + z, at(0.5), VelocityGate{q, at(0), v, at(0), e_}};
-    for (auto& compliance : stage.compliance) compliance = {q, at(0), v, at(0), {1}};
-    stage.at(Evaluation::conserving)->before = q;
-    stage.at(Evaluation::conserving)->before_bound = at(0);
-    stage.update = {q, v + z};
-    return stage;
-  }
-
-  double e_;
-};
+  Stage start = equation(2 / h * M * z + C * v + K * q, at(0));
+  start.impact = {next, at(0.5), VelocityGate{q, at(0), v, at(0), e}};
+  for (auto& compliance : start.compliance) compliance = {q, at(0), v, at(0), {1}};
+  start.at(Evaluation::conserving)->before = q;
+  start.at(Evaluation::conserving)->before_bound = at(0);
+  start.update = {q, next};
+  StepPlan plan = plan_with({"q", "w"});
+  plan.start = {start};
+  plan.stages = {step};
+  plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q + h / 2 * v),
+                 square(EnergyMatrix::K, -0.125 * h * h, v)};
+  plan.facts = {.order = facts.damped ? 1.0 : 2.0,
+                .contact_order = 1,
+                .restitution = Restitution::exact,
+                .needs_regular_mass = true,
+                .stability_limit = 2,
+                .contact_never_gains = true};
+  return plan;
+}
 
 void register_cd_lagrange(Registry& registry) {
   registry.add_time(
@@ -92,7 +64,7 @@ void register_cd_lagrange(Registry& registry) {
            real_parameter("restitution", "1", 0.0, {.low = 0, .high = 1}, "e, Newton's restitution coefficient"),
            ParameterRole::restitution)},
        .words = "CD-Lagrange"},
-      [](const Parameters& p) { return std::make_unique<CdLagrange>(p.real("restitution")); });
+      cd_lagrange);
 }
 
 }  // namespace

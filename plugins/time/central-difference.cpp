@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Central differences in velocity form, z = a_{n+1}:
 ///
@@ -13,38 +12,21 @@ using namespace ricochet;
 ///
 /// Newmark (0, ½). No effort moves the position of its own instant, so that there is no measure of impact. Energy
 /// (undamped, free): ½|v|²_M + ½|q|²_K − ⅛h²|a|²_M; test displacement h v + h²/2 a with the equations of both ends.
-class CentralDifference final : public TimeScheme {
- public:
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "an acceleration needs the inverse of the mass, which is singular here: use a lumped mass, or an "
-          "implicit scheme"};
-    using namespace plan_algebra;
-    const auto [q, v, a] = slots<3>();
-    StepPlan plan = plan_with({"q", "v", "a"});
-    const Combination end = q + h * v + h * h / 2 * a, end_rate = v + h / 2 * (a + z);
-    Stage start = initial_acceleration(h, 1, 0);
-    start.impact.reset();
-    Stage step;
-    step.matrix = M + h / 2 * C;
-    step.history = -(C * known(end_rate)) - K * end;
-    step.load = at(1);
-    step.at(Evaluation::implicit_end) = step.at(Evaluation::averaged) = {end, at(1), end_rate, at(1), {1}};
-    step.at(Evaluation::explicit_start) = {end, at(1), known(end_rate), at(1), {1}};
-    step.update = {end, end_rate, z};
-    step.work = {
-        .displacement = end - q, .rate = v + h / 4 * (a + z), .load = 0.5 * at(0) + 0.5 * at(1), .effort = {0.5, 0.5}};
-    plan.start = {start};
-    plan.stages = {step};
-    plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q),
-                   square(EnergyMatrix::M, -0.125 * h * h, a)};
-    plan.facts.order = 2;
-    plan.facts.needs_regular_mass = true;
-    plan.facts.stability_limit = 2;
-    return plan;
-  }
-};
+PlanOrRefusal central_difference(const Parameters&, double h, const ProblemFacts& facts) {
+  if (facts.mass_kernel_dimension > 0) return Refusal{acceleration_needs_mass};
+  const auto [q, v, a] = slots<3>();
+  const Combination end = q + h * v + h * h / 2 * a;
+  Stage step = motion_at(1, end, v + h / 2 * (a + z));
+  step.work = {.displacement = end - q, .rate = v + h / 4 * (a + z), .load = both_ends(), .effort = {0.5, 0.5}};
+  StepPlan plan = plan_with({"q", "v", "a"});
+  plan.start = {initial_acceleration(h, 1, 0)};
+  plan.start[0].impact.reset();
+  plan.stages = {step};
+  plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q),
+                 square(EnergyMatrix::M, -0.125 * h * h, a)};
+  plan.facts = {.order = 2, .needs_regular_mass = true, .stability_limit = 2};
+  return plan;
+}
 
 void register_central_difference(Registry& registry) {
   registry.add_time(
@@ -58,7 +40,7 @@ void register_central_difference(Registry& registry) {
           Hughes (1987), The Finite Element Method, section 9.1)",
        .parameters = {},
        .words = "central difference"},
-      [](const Parameters&) { return std::make_unique<CentralDifference>(); });
+      central_difference);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Deuflhard, Krause and Ertel's contact-stabilised Newmark (¼, ½). First the predictor is brought between the stops in
 /// the metric of the mass, then the step is made from there, with z = v_{n+1} − v_n:
@@ -16,54 +15,25 @@ using namespace ricochet;
 /// original: d moves positions alone. corrected: v gains d/h as well. Energy (undamped, free): ½|v|²_M + ½|q|²_K; at a
 /// fixed stop a step of the original changes it by pᵀ(Hq_{n+1} − Hq_n) − νᵀH(v_{n+1} − v_n) h, both ≤ 0. The second
 /// product is of two stages: no plan says it, and the balance is left open.
-class ContactStabilisedNewmark final : public TimeScheme {
- public:
-  explicit ContactStabilisedNewmark(bool corrected) : corrected_(corrected) {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "the projection of the predictor is made in the metric of the mass, which is singular here: use a regular "
-          "mass, or midpoint"};
-    StepPlan plan = mean_step_plan();
-    plan.slots.emplace_back("d");
-    plan.initial.push_back({0, 0});
-    plan.stages = {projection(h), step(h)};
-    plan.facts.needs_regular_mass = true;
-    plan.facts.contact_never_gains = !facts.damped;  // the projection moves positions past the dashpots
-    return plan;
-  }
-
- private:
-  static Stage projection(double h) {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    Stage stage;
-    stage.matrix = M / (h * h);
-    stage.impact = {.value = q + h * v + z, .bound = at(1)};
-    stage.update = {q, v, z};
-    return stage;
-  }
-
-  Stage step(double h) const {
-    using namespace plan_algebra;
-    const auto [q, v, d] = slots<3>();
-    const double pushed = corrected_ ? 1 / h : 0;
-    const Combination end = q + h * v + d + h / 2 * z, end_rate = v + pushed * d + z;
-    const Combination mean_rate = halfway(v, end_rate);
-    Stage stage;
-    stage.matrix = M / h + 0.5 * C + h / 4 * K;
-    stage.history = -(C * (v + 0.5 * pushed * d)) - K * (q + h / 2 * v + 0.5 * d);
-    stage.load = both_ends();
-    stage.impact = {.value = end, .bound = at(1)};
-    read_mean_force(stage, end, end_rate, mean_rate, q + h / 2 * v, middle());
-    conserve_mean_force(stage, end, mean_rate, middle());
-    stage.update = {end, end_rate, {}};
-    return stage;
-  }
-
-  bool corrected_;
-};
+PlanOrRefusal contact_stabilised_newmark(const Parameters& p, double h, const ProblemFacts& facts) {
+  if (facts.mass_kernel_dimension > 0)
+    return Refusal{
+        "the projection of the predictor is made in the metric of the mass, which is singular here: use a regular "
+        "mass, or midpoint"};
+  const double pushed = p.word("velocity") == "corrected" ? 1 / h : 0;
+  const auto [q, v, d] = slots<3>();
+  Stage step = mean_step(h, middle(), q + h * v + d + h / 2 * z, v + pushed * d + z);
+  step.load = both_ends();
+  step.work.reset();
+  step.update.push_back({});
+  StepPlan plan = mean_step_plan();
+  plan.slots.emplace_back("d");
+  plan.initial.push_back({0, 0});
+  plan.stages = {projection(h, q + h * v, {q, v, z}), step};
+  plan.facts.needs_regular_mass = true;
+  plan.facts.contact_never_gains = !facts.damped;  // the projection moves positions past the dashpots
+  return plan;
+}
 
 void register_contact_stabilised_newmark(Registry& registry) {
   registry.add_time(
@@ -79,9 +49,7 @@ void register_contact_stabilised_newmark(Registry& registry) {
        .parameters = {word_parameter("velocity", {"original", "corrected"}, "original",
                                      "whether the projection moves positions alone, or velocities with them")},
        .words = "contact-stabilised Newmark"},
-      [](const Parameters& p) {
-        return std::make_unique<ContactStabilisedNewmark>(p.word("velocity") == "corrected");
-      });
+      contact_stabilised_newmark);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Laursen and Chawla's conserving contact on the mid-point rule. With z = v_{n+1} − v_n:
 ///
@@ -14,24 +13,20 @@ using namespace ricochet;
 /// and on the points that have reached a stop at t_n and do not leave it, the persistency condition
 /// 0 ≤ p ⊥ v_n + v_{n+1} ≥ 0 against the stop, that is p (g_{n+1} − g_n) = 0: Newton's law with e = 1. Invariant:
 /// ½|v|²_M + ½|q|²_K, kept through contact as well; test displacement q_{n+1} − q_n.
-class LaursenChawla final : public TimeScheme {
- public:
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.contact && facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "a contact point without mass (singular mass) has no velocity that persistency could act on, and the "
-          "mid-point rule leaves the root −1 there: use a regular mass, or midpoint"};
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    StepPlan plan = mean_step_plan();
-    Stage step = mean_step(h, middle());
-    step.impact = {v + z, at(1), VelocityGate{q, at(0), v, at(0), 1}};
-    plan.stages = {step};
-    plan.facts.needs_regular_mass = true;
-    plan.facts.contact_never_gains = true;
-    return plan;
-  }
-};
+PlanOrRefusal laursen_chawla(const Parameters&, double h, const ProblemFacts& facts) {
+  if (facts.contact && facts.mass_kernel_dimension > 0)
+    return Refusal{
+        "a contact point without mass (singular mass) has no velocity that persistency could act on, and the "
+        "mid-point rule leaves the root −1 there: use a regular mass, or midpoint"};
+  const auto [q, v] = slots<2>();
+  Stage step = mean_step(h, middle());
+  step.impact = {v + z, at(1), VelocityGate{q, at(0), v, at(0), 1}};
+  StepPlan plan = mean_step_plan();
+  plan.stages = {step};
+  plan.facts.needs_regular_mass = true;
+  plan.facts.contact_never_gains = true;
+  return plan;
+}
 
 void register_laursen_chawla(Registry& registry) {
   registry.add_time(
@@ -45,7 +40,7 @@ void register_laursen_chawla(Registry& registry) {
           problems)",
        .parameters = {},
        .words = "Laursen–Chawla"},
-      [](const Parameters&) { return std::make_unique<LaursenChawla>(); });
+      laursen_chawla);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Laursen and Love's velocity update on the mid-point rule: conserving, and no penetration at the end of a step.
 ///
@@ -17,34 +16,24 @@ using namespace ricochet;
 /// the second stage: by φ' at t+h, as φ(t+3h/2) − φ(t+h/2). With g_n between the stops λ_i (g_{n+1} − g_n)_i ≤ 0, and
 /// there is one p. Invariant: ½|v|²_M + ½|q|²_K, kept through contact: both stages together do no work at any point.
 /// Test displacements h(v + z/2) of both; one massed point leaves as fast as it came.
-class LaursenLove final : public TimeScheme {
- public:
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.contact && facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "a contact point without mass (singular mass) has no velocity that could be changed alone, and the mid-point "
-          "rule leaves the root −1 there: use a regular mass, or midpoint"};
-    StepPlan plan = mean_step_plan();
-    plan.stages = {mean_step(h, middle()), velocity_update(h)};
-    plan.facts.needs_regular_mass = true;
-    plan.facts.contact_never_gains = true;
-    return plan;
-  }
-
- private:
-  static Stage velocity_update(double h) {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    const Combination way = h * v + h / 2 * z;
-    const Levels moved = at(1.5) - at(0.5);
-    Stage stage;
-    stage.matrix = M / h;
-    stage.work = {.displacement = way, .rate = {}, .load = {}, .support = moved};
-    stage.impact = {.value = way, .bound = moved, .restores = 1};
-    stage.update = {q, v + z};
-    return stage;
-  }
-};
+PlanOrRefusal laursen_love(const Parameters&, double h, const ProblemFacts& facts) {
+  if (facts.contact && facts.mass_kernel_dimension > 0)
+    return Refusal{
+        "a contact point without mass (singular mass) has no velocity that could be changed alone, and the mid-point "
+        "rule leaves the root −1 there: use a regular mass, or midpoint"};
+  const auto [q, v] = slots<2>();
+  const Combination way = h * v + h / 2 * z;
+  const Levels moved = at(1.5) - at(0.5);
+  Stage velocity_update = equation(M / h * z, {});
+  velocity_update.work = {.displacement = way, .rate = {}, .load = {}, .support = moved};
+  velocity_update.impact = {.value = way, .bound = moved, .restores = 1};
+  velocity_update.update = {q, v + z};
+  StepPlan plan = mean_step_plan();
+  plan.stages = {mean_step(h, middle()), velocity_update};
+  plan.facts.needs_regular_mass = true;
+  plan.facts.contact_never_gains = true;
+  return plan;
+}
 
 void register_laursen_love(Registry& registry) {
   registry.add_time(
@@ -60,7 +49,7 @@ void register_laursen_love(Registry& registry) {
           admissibility within the conserving framework)",
        .parameters = {},
        .words = "Laursen–Love"},
-      [](const Parameters&) { return std::make_unique<LaursenLove>(); });
+      laursen_love);
 }
 
 }  // namespace

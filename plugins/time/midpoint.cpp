@@ -1,10 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// The mid-point rule on positions and velocities. With z = v_{n+1} − v_n:
 ///
@@ -13,22 +12,16 @@ using namespace ricochet;
 ///
 /// Invariant (undamped, free): ½|v|²_M + ½|q|²_K; test displacement q_{n+1} − q_n = h(v + z/2), which the effort meets
 /// whole: with the constraint at the end contact gives p(bound − H q_n) ≤ 0.
-class Midpoint final : public TimeScheme {
- public:
-  explicit Midpoint(bool middle) : middle_(middle) {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts&) const override {
-    StepPlan plan = mean_step_plan();
-    Stage step = mean_step(h, middle());
-    if (middle_) step.impact = {.value = halfway(plan_algebra::slots<1>()[0], step.update[0]), .bound = both_ends()};
-    plan.stages = {step};
-    plan.facts.contact_never_gains = !middle_;
-    return plan;
-  }
-
- private:
-  bool middle_;
-};
+PlanOrRefusal midpoint(const Parameters& p, double h, const ProblemFacts&) {
+  const bool in_the_middle = p.word("constraint") == "middle";
+  const auto [q] = slots<1>();
+  Stage step = mean_step(h, middle());
+  if (in_the_middle) step.impact = {.value = halfway(q, step.update[0]), .bound = both_ends()};
+  StepPlan plan = mean_step_plan();
+  plan.stages = {step};
+  plan.facts.contact_never_gains = !in_the_middle;
+  return plan;
+}
 
 void register_midpoint(Registry& registry) {
   registry.add_time(
@@ -44,7 +37,7 @@ void register_midpoint(Registry& registry) {
        .parameters = {word_parameter("constraint", {"end", "middle"}, "end",
                                      "which position lies between the stops: that of the end, or the mean of both")},
        .words = "mid-point"},
-      [](const Parameters& p) { return std::make_unique<Midpoint>(p.word("constraint") == "middle"); });
+      midpoint);
 }
 
 }  // namespace

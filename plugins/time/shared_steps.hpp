@@ -16,6 +16,10 @@ inline StepPlan plan_with(std::vector<std::string> slots) {
   return plan;
 }
 
+/// Why an explicit scheme with accelerations refuses a singular mass.
+inline constexpr char acceleration_needs_mass[] =
+    "an acceleration needs the inverse of the mass, which is singular here: use a lumped mass, or an implicit scheme";
+
 /// The start stage of schemes with accelerations as their third slot,
 ///
 ///     M a₀ = F(0) − C v₀ − K q₀   (+ Hᵀp so that q₀ + d v₀ + d²/2 a₀ does not pass the stop of t + `bound` h).
@@ -25,14 +29,45 @@ inline StepPlan plan_with(std::vector<std::string> slots) {
 inline Stage initial_acceleration(double d, double bound, double stiffening) {
   using namespace plan_algebra;
   const auto [q, v] = slots<2>();
-  Stage stage;
-  stage.matrix = M + stiffening * K;
-  stage.history = -(K * q) - C * v;
-  stage.load = at(0);
+  Stage stage = equation((M + stiffening * K) * z + C * v + K * q, at(0));
   stage.impact = {.value = q + d * v + 0.5 * d * d * z, .bound = at(bound)};
   for (const auto evaluation : {Evaluation::implicit_end, Evaluation::averaged, Evaluation::explicit_start})
     stage.at(evaluation) = {q, at(0), v, at(0), {1}};
   stage.update = {q, v, z};
+  return stage;
+}
+
+/// The equation of motion at the instant t + c h, z its acceleration,
+///
+///     M z + C rate + K position = F(t + c h) + Hᵀp,   q ← position,   v ← rate,   a ← z
+///
+/// The elastic force is that of one instant, and so is a spring: implicit and averaged laws coincide.
+inline Stage motion_at(double c, const Combination& position, const Combination& rate) {
+  using namespace plan_algebra;
+  Stage stage = equation(M * z + C * rate + K * position, at(c));
+  stage.at(Evaluation::implicit_end) = stage.at(Evaluation::averaged) = {position, at(c), rate, at(c), {1}};
+  stage.at(Evaluation::explicit_start) = {known(position), at(c), known(rate), at(c), {1}};
+  stage.update = {position, rate, z};
+  return stage;
+}
+
+/// M z = F(t + c h) − C v − K q into the third of so many slots: the acceleration of the structure alone.
+template <std::size_t count>
+Stage structure_acceleration(double c) {
+  using namespace plan_algebra;
+  const auto all = slots<count>();
+  Stage stage = equation(M * z + C * all[1] + K * all[0], at(c));
+  stage.update.assign(all.begin(), all.end());
+  stage.update[2] = z;
+  return stage;
+}
+
+/// A position brought between the stops of t + h in the metric of the mass: M z/h² = Hᵀp, y = H(position + z).
+inline Stage projection(double h, const Combination& position, std::vector<Combination> update) {
+  using namespace plan_algebra;
+  Stage stage = equation(M / (h * h) * z, {});
+  stage.impact = {.value = position + z, .bound = at(1)};
+  stage.update = std::move(update);
   return stage;
 }
 
@@ -76,27 +111,31 @@ inline void balance_mean_force(Stage& stage, const Combination& end, const Combi
   stage.work = {.displacement = end - slots<1>()[0], .rate = mean_rate, .load = when, .support = at(1) - at(0)};
 }
 
-/// The mid-point rule on positions and velocities, z = v_{n+1} − v_n, with F̄ = F(t+h/2) (`middle`) or the mean of both
-/// ends, and the positions of its end between the stops:
+/// The trapezium from q, v to `end`, `end_rate`, with F̄ = F(t+h/2) (`middle`) or the mean of both ends, and the
+/// positions of its end between the stops:
 ///
-///     (M/h + ½C + h/4 K) z = F̄ − C v − K(q + h/2 v) + Hᵀp
-///     q ← q + h v + h/2 z,   v ← v + z,   y = H q_{n+1}
+///     M z/h + C (v + end_rate)/2 + K (q + end)/2 = F̄ + Hᵀp,   q ← end,   v ← end_rate,   y = H q_{n+1}
 ///
-/// Invariant (undamped, free): ½|v|²_M + ½|q|²_K; test displacement q_{n+1} − q_n = h(v + z/2).
-inline Stage mean_step(double h, const Levels& when) {
+/// Invariant (undamped, free) where z = v_{n+1} − v_n and end = q + h(v + end_rate)/2: ½|v|²_M + ½|q|²_K, with the test
+/// displacement q_{n+1} − q_n.
+inline Stage mean_step(double h, const Levels& when, const Combination& end, const Combination& end_rate) {
   using namespace plan_algebra;
   const auto [q, v] = slots<2>();
-  const Combination end = q + h * v + h / 2 * z, end_rate = v + z, mean_rate = halfway(v, end_rate);
-  Stage stage;
-  stage.matrix = M / h + 0.5 * C + h / 4 * K;
-  stage.history = -(C * v) - K * (q + h / 2 * v);
-  stage.load = when;
+  const Combination mean_rate = halfway(v, end_rate);
+  Stage stage = equation(M / h * z + C * mean_rate + K * halfway(q, end), when);
   stage.impact = {.value = end, .bound = at(1)};
   read_mean_force(stage, end, end_rate, mean_rate, q + h / 2 * v, when);
   conserve_mean_force(stage, end, mean_rate, when);
   balance_mean_force(stage, end, mean_rate, when);
   stage.update = {end, end_rate};
   return stage;
+}
+/// The mid-point rule on positions and velocities, z = v_{n+1} − v_n:
+///
+///     (M/h + ½C + h/4 K) z = F̄ − C v − K(q + h/2 v) + Hᵀp,   q ← q + h v + h/2 z,   v ← v + z
+inline Stage mean_step(double h, const Levels& when) {
+  const auto [q, v] = plan_algebra::slots<2>();
+  return mean_step(h, when, q + h * v + h / 2 * plan_algebra::z, v + plan_algebra::z);
 }
 
 /// A plan of such steps: slots q and v, energy and order; stages and other facts are the scheme's own.
@@ -106,20 +145,6 @@ inline StepPlan mean_step_plan() {
   plan.energy = {square(EnergyMatrix::M, 0.5, v), square(EnergyMatrix::K, 0.5, q)};
   plan.facts.order = 2;
   return plan;
-}
-
-/// M z = F(t + c h) − C v − K q into the third of so many slots: the acceleration of the structure alone.
-template <std::size_t count>
-Stage structure_acceleration(double c) {
-  using namespace plan_algebra;
-  const auto all = slots<count>();
-  Stage stage;
-  stage.matrix = M;
-  stage.history = -(K * all[0]) - C * all[1];
-  stage.load = at(c);
-  stage.update.assign(all.begin(), all.end());
-  stage.update[2] = z;
-  return stage;
 }
 
 }  // namespace ricochet
