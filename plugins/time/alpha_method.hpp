@@ -1,6 +1,4 @@
 #pragma once
-#include <ricochet/contract/plugin.hpp>
-
 #include "shared_steps.hpp"
 
 namespace ricochet {
@@ -29,6 +27,8 @@ struct AlphaMethod {
     method.beta = 0.25 * (1 + shift) * (1 + shift);
     return method;
   }
+
+  static AlphaMethod newmark(double beta, double gamma) { return {.beta = beta, .gamma = gamma}; }
 
   double now() const { return 1 - force; }
   /// q_{n+1} and v_{n+1} without a_{n+1}, and with it.
@@ -74,15 +74,38 @@ struct AlphaMethod {
     return stage;
   }
 
+  /// Explicit laws where the weighted forces stand, without the acceleration: that of the end would be fed back
+  /// undamped.
+  ComplianceMeasure asked_early(double h, double impulse = 1) const {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    return {q + now() * h * v, at(now()), v, at(0), {1}, std::nullopt, {}, impulse};
+  }
+
   /// The same with velocities that jump by w and positions by (h/2)w, R w = Hᵀp; q_{n+1} and v_{n+1} in the equation of
-  /// z are those after the jump.
+  /// z are those after the jump. A spring is one of the forces: no w.
   Stage jumping_step(double h, const OperatorWeights& R) const {
     using namespace plan_algebra;
     Stage stage = step(h);
     stage.impulse = {.R = R, .feed = -now() * C - now() * h / 2 * K};
     stage.update[0] = stage.update[0] + h / 2 * w;
     stage.update[1] = stage.update[1] + w;
+    for (auto& compliance : stage.compliance)
+      if (compliance) compliance->impulse = 0;
     return stage;
+  }
+
+  /// The balance of energy, with the test displacement Δq and the equations of both ends, weighted by `last` and
+  /// `before`, 1 in all. Damping of the equation before is counted at v_n.
+  void balance_both_ends(Stage& stage, double h, double last, double before) const {
+    using namespace plan_algebra;
+    const auto [q, v] = slots<2>();
+    const double f = now();
+    stage.work = {.displacement = increment(h),
+                  .rate = (last + before) * v + last * f * (ahead_rate(h) - v) + last * f * gamma * h * z,
+                  .load = (last * force + before * f) * at(0) + last * f * at(1),
+                  .effort = {last, before}};
+    if (force != 0) stage.work->load = stage.work->load + before * force * at(-1);
   }
 
   /// One more slot, kept by the start rule and by later stages, changed by the first stage.

@@ -1,46 +1,31 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "alpha_method.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Chung and Hulbert's scheme, the α-method with both weights: α_m = (2ρ−1)/(ρ+1), α_f = ρ/(ρ+1), γ = ½ − α_m + α_f,
 /// β = ¼(1 − α_m + α_f)². At ρ = 1 both weights are ½: the trapezium on accelerations, whose energy is ½|v|²_M +
 /// ½|q|²_K and whose test displacement is q_{n+1} − q_n; contact then gives p(bound − H q_n) ≤ 0. Below ρ = 1 the
 /// energy has the filtered increment σ (alpha_method.hpp), and the scheme answers a load with its past as well: no
 /// balance is known.
-class GeneralisedAlpha final : public TimeScheme {
- public:
-  GeneralisedAlpha(double rho, bool weighted) : method_(AlphaMethod::chung_hulbert(rho)) {
-    method_.weighted_contact = weighted;
-  }
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    using namespace plan_algebra;
-    const auto [q, v, a] = slots<3>();
-    StepPlan plan = method_.plan(h, facts);
-    method_.add_filtered_energy(plan, h);
-    Stage& step = plan.stages[0];
-    // Asked where the weighted forces stand, without the acceleration: that of the end would be fed back undamped.
-    const double now = method_.now();
-    step.at(Evaluation::explicit_start) = {q + now * h * v, at(now), v, at(0), {1}};
-    if (method_.force != method_.mass) return plan;
-    plan.start[0].at(Evaluation::conserving) = {q, at(0), v, at(0), {1}, q, at(0)};
-    const Combination mean_rate = v + h / 4 * a + h / 4 * z;
-    step.at(Evaluation::conserving) = {method_.end(h), at(1), mean_rate, at(0.5), {1}, q, at(0)};
-    step.work = {.displacement = method_.increment(h),
-                 .rate = mean_rate,
-                 .load = 0.5 * at(0) + 0.5 * at(1),
-                 .support = at(1) - at(0)};
-    plan.facts.contact_never_gains = !method_.weighted_contact;
-    return plan;
-  }
-
- private:
-  AlphaMethod method_;
-};
+PlanOrRefusal generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
+  AlphaMethod method = AlphaMethod::chung_hulbert(p.real("rho_inf"));
+  method.weighted_contact = p.word("contact") == "weighted";
+  const auto [q, v, a] = slots<3>();
+  StepPlan plan = method.plan(h, facts);
+  method.add_filtered_energy(plan, h);
+  Stage& step = plan.stages[0];
+  step.at(Evaluation::explicit_start) = method.asked_early(h);
+  if (method.force != method.mass) return plan;
+  plan.start[0].at(Evaluation::conserving) = {q, at(0), v, at(0), {1}, q, at(0)};
+  const Combination mean_rate = v + h / 4 * a + h / 4 * z;
+  conserve_mean_force(step, method.end(h), mean_rate, middle());
+  balance_mean_force(step, method.end(h), mean_rate);
+  plan.facts.contact_never_gains = !method.weighted_contact;
+  return plan;
+}
 
 void register_generalised_alpha(Registry& registry) {
   registry.add_time(
@@ -60,9 +45,7 @@ void register_generalised_alpha(Registry& registry) {
                                      R"(how a rigid effort enters: end, whole; weighted, as internal forces (1−α_f
           now, α_f of the one before))")},
        .words = "generalised α"},
-      [](const Parameters& p) {
-        return std::make_unique<GeneralisedAlpha>(p.real("rho_inf"), p.word("contact") == "weighted");
-      });
+      generalised_alpha);
 }
 
 }  // namespace

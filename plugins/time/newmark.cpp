@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ricochet/contract/plugin.hpp>
 
 #include "alpha_method.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Newmark's scheme in acceleration form, z = a_{n+1}:
 ///
@@ -16,48 +16,31 @@ using namespace ricochet;
 ///
 /// Energy (undamped, free): E = ½|v|²_M + ½|q|²_K + ½(β−γ/2)h²|a|²_M, of which a step takes
 /// (γ−½)(|Δq|²_K + (β−γ/2)h²|Δa|²_M); test displacement q_{n+1} − q_n with the equations of both ends, γ and 1−γ.
-class Newmark final : public TimeScheme {
- public:
-  explicit Newmark(const AlphaMethod& method) : method_(method) {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    const bool unconditional = 2 * method_.beta >= method_.gamma, damps = method_.gamma != 0.5;
-    if (facts.mass_kernel_dimension > 0 && !unconditional)
-      return Refusal{
-          fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
-                      "use beta ≥ gamma/2",
-                      method_.beta, method_.gamma / 2)};
-    using namespace plan_algebra;
-    StepPlan plan = method_.plan(h, facts);
-    plan.energy.push_back(square(EnergyMatrix::M, 0.5 * shift() * h * h, slots<3>()[2]));
-    // Explicit: no effort moves q_{n+1}, which then is no measure of impact.
-    if (method_.beta == 0) plan.stages[0].impact.reset();
-    // With β < γ/2 what γ > ½ takes is no sum of squares: the balance is not known, the energy falls all the same.
-    if (!damps || unconditional) balance(plan.stages[0], h);
-    if (damps) plan.facts.order = 1;
-    plan.facts.needs_regular_mass = !unconditional;
-    if (!unconditional) plan.facts.stability_limit = 1 / std::sqrt(-shift());
-    return plan;
-  }
-
- private:
-  double shift() const { return method_.beta - method_.gamma / 2; }
-
-  void balance(Stage& stage, double h) const {
-    using namespace plan_algebra;
-    const auto [q, v, a] = slots<3>();
-    const double gamma = method_.gamma;
-    stage.work = {method_.increment(h),
-                  v + gamma * (method_.ahead_rate(h) - v) + gamma * gamma * h * z,
-                  (1 - gamma) * at(0) + gamma * at(1),
-                  {gamma, 1 - gamma}};
-    if (gamma == 0.5) return;
-    stage.loss = {{EnergyMatrix::K, gamma - 0.5, method_.increment(h)},
-                  {EnergyMatrix::M, (gamma - 0.5) * shift() * h * h, z - a}};
-  }
-
-  AlphaMethod method_;
-};
+PlanOrRefusal newmark(const Parameters& p, double h, const ProblemFacts& facts) {
+  const double beta = p.real("beta"), gamma = p.real("gamma"), shift = beta - gamma / 2;
+  const bool unconditional = 2 * beta >= gamma, damps = gamma != 0.5;
+  if (facts.mass_kernel_dimension > 0 && !unconditional)
+    return Refusal{
+        fmt::format("beta = {:g} < gamma/2 = {:g} makes the kernel of a singular mass diverge at any step: "
+                    "use beta ≥ gamma/2",
+                    beta, gamma / 2)};
+  const auto [q, v, a] = slots<3>();
+  const AlphaMethod method = AlphaMethod::newmark(beta, gamma);
+  StepPlan plan = method.plan(h, facts);
+  Stage& step = plan.stages[0];
+  plan.energy.push_back(square(EnergyMatrix::M, 0.5 * shift * h * h, a));
+  // Explicit: no effort moves q_{n+1}, which then is no measure of impact.
+  if (beta == 0) step.impact.reset();
+  // With β < γ/2 what γ > ½ takes is no sum of squares: the balance is not known, the energy falls all the same.
+  if (!damps || unconditional) method.balance_both_ends(step, h, gamma, 1 - gamma);
+  if (damps && unconditional)
+    step.loss = {{EnergyMatrix::K, gamma - 0.5, method.increment(h)},
+                 {EnergyMatrix::M, (gamma - 0.5) * shift * h * h, z - a}};
+  if (damps) plan.facts.order = 1;
+  plan.facts.needs_regular_mass = !unconditional;
+  if (!unconditional) plan.facts.stability_limit = 1 / std::sqrt(-shift);
+  return plan;
+}
 
 void register_newmark(Registry& registry) {
   registry.add_time(
@@ -74,12 +57,7 @@ void register_newmark(Registry& registry) {
                       real_parameter("gamma", "1", 0.5, {.low = 0.5, .high = 1},
                                      "γ; above ½ it damps, at first order")},
        .words = "Newmark"},
-      [](const Parameters& p) {
-        AlphaMethod method;
-        method.beta = p.real("beta");
-        method.gamma = p.real("gamma");
-        return std::make_unique<Newmark>(method);
-      });
+      newmark);
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
-#include <ricochet/contract/plugin.hpp>
-
-#include "alpha_method.hpp"
-#include "shared_steps.hpp"
+#include "alpha_mean_force.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// The generalised-α scheme whose velocities jump, coupled: the α-method (alpha_method.hpp, with Chung and Hulbert's
 /// α_m, α_f, β, γ) carries the smooth motion, a jump w = h M⁻¹Hᵀp the contact, p the mean force of the step. With
@@ -14,114 +12,43 @@ using namespace ricochet;
 ///     v ← v + k a + γh z + w,   q ← q + h v + c a + βh² z + (h/2)w,   a ← z,   y = H v_{n+1}
 ///     (1−α_m) M z + f(C v_{n+1} + K q_{n+1}) = f F(t+h) + α_f(F(t) − C v − K q) − α_m M a
 ///
-/// `beta` moves positions by (β/γ)h w, with one unknown at a time: the true acceleration in b, its filter in a, what is
-/// known of v and q in v*, q*, κ = f/(1−α_m), μ = κγ, r = βh/γ,
-///
-///     stage 1, z = v_{n+1} − v*:   (M/h + μC + μrK) z = μ(F(t+h) − C v* − K q*) + Hᵀp,   v ← v* + z,   q ← q* + r z
-///     stage 2, z = b_{n+1}:        M z = F(t+h) − C v − K q,   a ← (α_f b + f z − α_m a)/(1−α_m),   b ← z
-///
-/// `projected` puts the positions of `beta` between the stops, M z = h²Hᵀp′, before its last stage. A side is closed
-/// where q + h v + ½h² a passes it, and rebounds by e. With `half` a jump leaves Δq = h(v_n + v_{n+1})/2 + ¼ε²h²Δa as
-/// it is in free motion: the energy of the α-method falls as there, and contact gives (h/2) p·H(v_n + v_{n+1}) ≤ 0,
-/// whatever ρ∞. At ρ∞ = 1 `half` and `beta` are the same, and their balance (½|v|²_M + ½|q|²_K, test displacement Δq)
-/// is whole; below, what a load does to the filter is left out.
-class NonsmoothGeneralisedAlpha final : public TimeScheme {
- public:
-  NonsmoothGeneralisedAlpha(double rho, double restitution, const std::string& position)
-      : method_(AlphaMethod::chung_hulbert(rho)),
-        e_(restitution),
-        half_(position == "half"),
-        projected_(position == "projected") {}
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    if (facts.mass_kernel_dimension > 0)
-      return Refusal{
-          "a velocity that jumps needs the inverse of the mass, which is singular here: use generalised-alpha, whose "
-          "stops are at position level, or a regular mass"};
-    StepPlan plan = method_.plan(h, facts);
-    plan.start[0].impact.reset();
-    if (half_)
-      jump_by_impulse(plan, h);
-    else
-      jump_coupled(plan, h);
-    method_.add_filtered_energy(plan, h);
-    const bool trapezium = method_.gamma == 0.5 && !projected_;
-    if (trapezium) balance(plan);
-    plan.facts.restitution = Restitution::exact;
-    plan.facts.needs_regular_mass = true;
-    plan.facts.contact_never_gains = half_ || trapezium;
-    return plan;
+/// `beta` moves positions by (β/γ)h w (coupled_plan); `projected` then puts them between the stops, M z = h²Hᵀp′,
+/// before its last stage. A side is closed where q + h v + ½h² a passes it, and rebounds by e. With `half` a jump
+/// leaves Δq = h(v_n + v_{n+1})/2 + ¼ε²h²Δa as it is in free motion: the energy of the α-method falls as there, and
+/// contact gives (h/2) p·H(v_n + v_{n+1}) ≤ 0, whatever ρ∞. At ρ∞ = 1 `half` and `beta` are the same, and their balance
+/// (½|v|²_M + ½|q|²_K, test displacement Δq) is whole; below, what a load does to the filter is left out.
+PlanOrRefusal nonsmooth_generalised_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
+  if (facts.mass_kernel_dimension > 0)
+    return Refusal{
+        "a velocity that jumps needs the inverse of the mass, which is singular here: use generalised-alpha, whose "
+        "stops are at position level, or a regular mass"};
+  const AlphaMethod method = AlphaMethod::chung_hulbert(p.real("rho_inf"));
+  const bool half = p.word("position") == "half", projected = p.word("position") == "projected";
+  const bool trapezium = method.gamma == 0.5 && !projected;
+  const auto [q, v, x2, x3] = slots<4>();
+  const Combination& a = half ? x2 : x3;  // coupled_plan keeps b before it
+  StepPlan plan = half ? method.plan(h, facts) : coupled_plan(method, h);
+  plan.start[0].impact.reset();
+  if (half) plan.stages = {method.jumping_step(h, M / h)};
+  if (projected) plan.stages.insert(plan.stages.begin() + 1, projection(h, q, {q + z, v, x2, x3}));
+  Stage& step = plan.stages[0];
+  const Combination next = step.update[0], next_v = step.update[1], rate = halfway(v, next_v);
+  const VelocityGate gate{q + h * v + 0.5 * h * h * a, at(1), v, at(0), p.real("restitution")};
+  step.impact = {next_v, at(1), gate, {half ? 0.0 : 1.0}};
+  if (half) step.at(Evaluation::explicit_start) = method.asked_early(h, 0);
+  if (trapezium) {
+    conserve_mean_force(step, next, rate);
+    balance_mean_force(step, next, rate);
+    step.at(Evaluation::conserving)->effort = {half ? 0.0 : 1.0};
+    step.work->impulse = half ? 1 : 0;
+    if (!half) plan.stages.back().work = {{}, v, at(1)};  // moves nothing
   }
-
- private:
-  ImpactMeasure impact(const Combination& next_v, double h, double effort) const {
-    using namespace plan_algebra;
-    const auto [q, v, a, b] = slots<4>();
-    const Combination ahead = q + h * v + 0.5 * h * h * (half_ ? a : b);
-    return {next_v, at(1), VelocityGate{ahead, at(1), v, at(0), e_}, {effort}};
-  }
-
-  void jump_by_impulse(StepPlan& plan, double h) const {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    Stage step = method_.jumping_step(h, M / h);
-    step.impact = impact(step.update[1], h, 0);
-    // A spring is one of the forces, as in generalised-alpha: no w.
-    step.at(Evaluation::explicit_start) = {q + method_.now() * h * v, at(method_.now()), v, at(0), {1}};
-    for (auto& compliance : step.compliance)
-      if (compliance) compliance->impulse = 0;
-    plan.stages = {step};
-  }
-
-  // Slots q, v, b the true acceleration, a its filter.
-  void jump_coupled(StepPlan& plan, double h) const {
-    using namespace plan_algebra;
-    const auto [q, v, b, a] = slots<4>();
-    const double m = 1 - method_.mass, f = method_.now(), beta = method_.beta, gamma = method_.gamma;
-    const double kept = method_.mass / m, past = method_.force / m, mu = gamma * f / m, r = beta * h / gamma;
-    const Combination ahead_v = v + h * gamma * past * b + h * (1 - gamma - gamma * kept) * a;
-    const Combination ahead = q + h * v + h * h * beta * past * b + h * h * (0.5 - beta - beta * kept) * a;
-    const Combination next_v = ahead_v + z, next = ahead + r * z;
-    plan.slots = {"q", "v", "b", "a"};
-    plan.initial = {{1, 0}, {0, 1}, {0, 0}, {0, 0}};
-    plan.start = {structure_acceleration<4>(0)};
-    plan.start[0].update[3] = z;
-    Stage stage;
-    stage.matrix = M / h + mu * C + mu * r * K;
-    stage.history = -(mu * C * ahead_v) - mu * K * ahead;
-    stage.load = mu * at(1);
-    stage.update = {next, next_v, b, a};
-    stage.impact = impact(next_v, h, 1);
-    // A spring too is a mean force of the step.
-    read_mean_force(stage, next, next_v, halfway(v, next_v), q + h / 2 * v);
-    plan.stages = {stage};
-    if (projected_) {
-      Stage projection;
-      projection.matrix = M / (h * h);
-      projection.impact = {.value = q + z, .bound = at(1)};
-      projection.update = {q + z, v, b, a};
-      plan.stages.push_back(projection);
-    }
-    plan.stages.push_back(structure_acceleration<4>(1));
-    plan.stages.back().update[3] = past * b - kept * a + f / m * z;
-  }
-
-  void balance(StepPlan& plan) const {
-    using namespace plan_algebra;
-    const auto [q, v] = slots<2>();
-    Stage& step = plan.stages.front();
-    const Combination rate = halfway(v, step.update[1]);
-    conserve_mean_force(step, step.update[0], rate);
-    balance_mean_force(step, step.update[0], rate);
-    step.at(Evaluation::conserving)->effort = {half_ ? 0.0 : 1.0};
-    step.work->impulse = half_ ? 1 : 0;
-    if (!half_) plan.stages.back().work = {{}, v, at(1)};  // moves nothing
-  }
-
-  AlphaMethod method_;
-  double e_;
-  bool half_, projected_;
-};
+  method.add_filtered_energy(plan, h);
+  plan.facts.restitution = Restitution::exact;
+  plan.facts.needs_regular_mass = true;
+  plan.facts.contact_never_gains = half || trapezium;
+  return plan;
+}
 
 void register_nonsmooth_generalised_alpha(Registry& registry) {
   registry.add_time(
@@ -146,10 +73,7 @@ void register_nonsmooth_generalised_alpha(Registry& registry) {
                           R"(what a jump w moves positions by: half, (h/2)w; beta, (β/γ)h w; projected, that and onto
           the stops)")},
        .words = "nonsmooth generalised α"},
-      [](const Parameters& p) {
-        return std::make_unique<NonsmoothGeneralisedAlpha>(p.real("rho_inf"), p.real("restitution"),
-                                                           p.word("position"));
-      });
+      nonsmooth_generalised_alpha);
 }
 
 }  // namespace

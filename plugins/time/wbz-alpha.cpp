@@ -1,37 +1,20 @@
-#include <ricochet/contract/plugin.hpp>
-
 #include "alpha_method.hpp"
 
 namespace {
 
 using namespace ricochet;
+using namespace plan_algebra;
 
 /// Wood, Bossak and Zienkiewicz's scheme, the α-method that weights inertia alone: α_m = (ρ−1)/(ρ+1), γ = ½ − α_m,
 /// β = ¼(1 − α_m)². At ρ = 1 it is Newmark (¼, ½).
-class WoodBossakZienkiewicz final : public TimeScheme {
- public:
-  explicit WoodBossakZienkiewicz(double rho) {
-    method_.mass = (rho - 1) / (rho + 1);
-    method_.gamma = 0.5 - method_.mass;
-    method_.beta = 0.25 * (1 - method_.mass) * (1 - method_.mass);
-  }
-
-  PlanOrRefusal plan(double h, const ProblemFacts& facts) const override {
-    StepPlan plan = method_.plan(h, facts);
-    method_.add_filtered_energy(plan, h);
-    if (method_.mass != 0) return plan;
-    using namespace plan_algebra;
-    const auto [q, v, a] = slots<3>();
-    plan.stages[0].work = {.displacement = method_.increment(h),
-                           .rate = v + h / 4 * a + h / 4 * z,
-                           .load = 0.5 * at(0) + 0.5 * at(1),
-                           .effort = {0.5, 0.5}};
-    return plan;
-  }
-
- private:
-  AlphaMethod method_;
-};
+PlanOrRefusal wbz_alpha(const Parameters& p, double h, const ProblemFacts& facts) {
+  const double rho = p.real("rho_inf"), mass = (rho - 1) / (rho + 1);
+  const AlphaMethod method{.mass = mass, .beta = 0.25 * (1 - mass) * (1 - mass), .gamma = 0.5 - mass};
+  StepPlan plan = method.plan(h, facts);
+  method.add_filtered_energy(plan, h);
+  if (mass == 0) method.balance_both_ends(plan.stages[0], h, 0.5, 0.5);
+  return plan;
+}
 
 void register_wbz_alpha(Registry& registry) {
   registry.add_time(
@@ -46,7 +29,7 @@ void register_wbz_alpha(Registry& registry) {
        .parameters = {real_parameter("rho_inf", "1", 0.8, {.low = 0, .high = 1},
                                      "ρ∞, what a step leaves of the highest frequencies; 1 is Newmark (¼, ½)")},
        .words = "WBZ"},
-      [](const Parameters& p) { return std::make_unique<WoodBossakZienkiewicz>(p.real("rho_inf")); });
+      wbz_alpha);
 }
 
 }  // namespace
