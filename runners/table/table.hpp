@@ -86,6 +86,9 @@ struct Column {
   std::string text;  ///< what the cells mean, one sentence
 };
 
+/// The column that names a case, the key of cases.csv.
+inline constexpr char case_name[] = "case";
+
 /// Columns of these names that say nothing more of themselves: what was read back and is still to be described.
 std::vector<Column> named_columns(const std::vector<std::string>& names);
 

@@ -6,9 +6,8 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/row_type.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -18,68 +17,15 @@ using say::Clause, say::Sentence, say::percent, say::short_number;
 
 constexpr double border_moves = 0.005;  // share of the cells
 
-/// Rows of the tables of basins, as far as they are read here.
-struct FractionRow {
-  std::string id, regime;
-  int attractor = 0, cells = 0;
-  std::optional<int> period;
-  double fraction = 0, low = 0, high = 0;
-  std::string motion() const {
-    if (regime == "periodic") return fmt::format("period {}", period.value_or(1));
-    return regime == "no contact" ? "no contact" : regime;
-  }
-};
-struct BasinDifferenceRow {
-  std::string id, other;
-  int cells = 0, differ = 0;
-  double share = 0;
-};
-struct UncertaintyRow {
-  std::string id;
-  std::optional<double> exponent, low, high;
-};
-
-template <class Row>
-std::vector<Row> basin_rows(const StudyResults& results, const char* table, const RowType<Row>& type) {
-  const Table* found = find_table(results.derived, table);
-  return found ? type.read(*found) : std::vector<Row>{};
-}
-
-std::vector<FractionRow> fractions_of(const StudyResults& results) {
-  RowType<FractionRow> type;
-  type.add({"case", "", ""}, &FractionRow::id)
-      .add({"attractor", "", ""}, &FractionRow::attractor)
-      .add({"class", "", ""}, &FractionRow::regime)
-      .add({"period", "", ""}, &FractionRow::period)
-      .add({"cells", "", ""}, &FractionRow::cells)
-      .add({"fraction", "", ""}, &FractionRow::fraction)
-      .add({"low", "", ""}, &FractionRow::low)
-      .add({"high", "", ""}, &FractionRow::high);
-  return basin_rows(results, "basin_fractions", type);
-}
-
-std::vector<BasinDifferenceRow> basin_differences_of(const StudyResults& results) {
-  RowType<BasinDifferenceRow> type;
-  type.add({"case", "", ""}, &BasinDifferenceRow::id)
-      .add({"other_case", "", ""}, &BasinDifferenceRow::other)
-      .add({"cells", "", ""}, &BasinDifferenceRow::cells)
-      .add({"differ", "", ""}, &BasinDifferenceRow::differ)
-      .add({"share", "", ""}, &BasinDifferenceRow::share);
-  return basin_rows(results, "basin_differences", type);
-}
-
-std::vector<UncertaintyRow> uncertainties_of(const StudyResults& results) {
-  RowType<UncertaintyRow> type;
-  type.add({"case", "", ""}, &UncertaintyRow::id)
-      .add({"exponent", "", ""}, &UncertaintyRow::exponent)
-      .add({"low", "", ""}, &UncertaintyRow::low)
-      .add({"high", "", ""}, &UncertaintyRow::high);
-  return basin_rows(results, "basin_uncertainty", type);
+std::string motion_of(const FractionRow& row) {
+  if (row.regime == "periodic") return fmt::format("period {}", row.period.value_or(1));
+  return row.regime;
 }
 
 class BasinSpeaker {
  public:
-  explicit BasinSpeaker(const say::Compared& study) : study_(study), fractions_(fractions_of(study.results())) {
+  explicit BasinSpeaker(const say::Compared& study)
+      : study_(study), fractions_(basin_fractions_type().read(study.results().derived)) {
     for (const CaseRecord& record : study.results().cases) by_id_[record.id] = &record;
   }
   void say_ends(say::Answer& answer) const;
@@ -110,7 +56,7 @@ void BasinSpeaker::say_ends(say::Answer& answer) const {
   std::vector<std::pair<int, std::vector<const FractionRow*>>> by_size = ends.list();
   const auto largest = [](const std::vector<const FractionRow*>& rows) {
     double most = 0;
-    for (const FractionRow* row : rows) most = std::max(most, row->fraction);
+    for (const FractionRow* row : rows) most = std::max(most, row->fraction.value_or(0));
     return most;
   };
   std::stable_sort(by_size.begin(), by_size.end(),
@@ -124,11 +70,11 @@ void BasinSpeaker::say_ends(say::Answer& answer) const {
     const auto& rows = by_size[k].second;
     double low = 1, high = 0, half = 0;
     for (const FractionRow* row : rows) {
-      low = std::min(low, row->fraction);
-      high = std::max(high, row->fraction);
-      half = std::max(half, 0.5 * (row->high - row->low));
+      low = std::min(low, row->fraction.value_or(0));
+      high = std::max(high, row->fraction.value_or(0));
+      half = std::max(half, 0.5 * (row->high.value_or(0) - row->low.value_or(0)));
     }
-    const std::string motion = rows.front()->motion();
+    const std::string motion = motion_of(*rows.front());
     const std::string in = motion == "no contact" ? "without contact" : "in " + motion;
     Clause one{.form = "basin", .who = motion};
     one.value = 50 * (low + high);
@@ -144,8 +90,8 @@ void BasinSpeaker::say_ends(say::Answer& answer) const {
     if (high - low > 2 * half) {
       // Methods that differ are named each.
       for (const FractionRow* row : rows)
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", say::value_text(words, row->fraction, half),
-                            name(row->id));
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ",
+                            say::value_text(words, row->fraction.value_or(0), half), name(row->id));
     } else {
       text = fmt::format("{} ± {}", say::value_text(words, 0.5 * (low + high), half, false),
                          say::uncertainty_text(words, half));
@@ -160,14 +106,15 @@ void BasinSpeaker::say_ends(say::Answer& answer) const {
 
 /// Whether the ends depend on the method, by the cells that differ.
 void BasinSpeaker::say_border(say::Answer& answer) const {
-  std::vector<BasinDifferenceRow> rows = basin_differences_of(study_.results());
+  std::vector<BasinDifferenceRow> rows = basin_differences_type().read(study_.results().derived);
   if (rows.empty()) {
     if (study_.results().cases.size() == 1)
       answer.say("One method only: whether another moves the border is not known.",
                  Clause{.form = "basin", .status = "one"});
     return;
   }
-  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.share.value_or(0) > b.share.value_or(0); });
   const BasinDifferenceRow &most = rows.front(), &least = rows.back();
   const std::string what = study_.choices().size() == 1 && study_.varies(study_.choices().front())
                                ? say::spoken(study_.choices().front())
@@ -183,12 +130,12 @@ void BasinSpeaker::say_border(say::Answer& answer) const {
     out.value = row.differ;
     out.high = row.cells;
     out.unit = "cells";
-    out.status = row.share > border_moves ? "moves" : "does not move";
+    out.status = row.share.value_or(0) > border_moves ? "moves" : "does not move";
     return out;
   };
   Sentence said;
   said.clauses.push_back(clause(most));
-  if (most.share <= border_moves)
+  if (most.share.value_or(0) <= border_moves)
     said.text = fmt::format("{} does not move the border: {}{}.", say::capitalised(what),
                             rows.size() > 1 ? "at most " : "", pair(most));
   else
@@ -200,7 +147,7 @@ void BasinSpeaker::say_border(say::Answer& answer) const {
 }
 
 void BasinSpeaker::say_fractal(say::Answer& answer) const {
-  std::vector<UncertaintyRow> rows = uncertainties_of(study_.results());
+  std::vector<UncertaintyRow> rows = basin_uncertainty_type().read(study_.results().derived);
   std::erase_if(rows, [](const UncertaintyRow& row) { return !row.exponent || !row.low || !row.high; });
   if (rows.empty()) return;
   const auto fractal = std::find_if(rows.begin(), rows.end(), [](const UncertaintyRow& row) { return *row.high < 1; });

@@ -24,6 +24,7 @@ struct Image {
   const Table* table = nullptr;
   SectionIndex sections;
   std::vector<std::size_t> row_of;  ///< of each place, kNoRow where the case has no cell
+  std::vector<int> periods;         ///< of each row, 0 where nothing repeats
 };
 
 /// What the grid of the study goes through.
@@ -34,11 +35,6 @@ GridOf grid_of(const StudyResults& results) {
     return axis.is_object() && names_initial_state(axis.value("pointer", ""));
   });
   return states ? GridOf::initial_states : GridOf::parameters;
-}
-
-/// The class and period of an attractor, as two cells.
-std::pair<Cell, Cell> class_cells(const MotionClass& motion) {
-  return {text(motion.regime), motion.period > 0 ? Cell(motion.period) : Cell()};
 }
 
 class BasinImages {
@@ -68,17 +64,14 @@ class BasinImages {
   void read_places() {
     std::set<double> xs, ys;
     for (const CaseRecord& record : results_.cases) {
-      const Table* table = find_table(record.tables, "cells");
+      const Table* table = cells_.find(record.tables);
       if (!table) continue;
-      images_.push_back({&record, table, SectionIndex(record, "cell_points", "cell", ""), {}});
-      const TableReader rows(*table);
-      const std::size_t across = rows.column("x"), along = rows.column("y");
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        const auto x = rows.number(r, across), y = rows.number(r, along);
-        if (!x || !y) continue;
-        xs.insert(*x);
-        ys.insert(*y);
-      }
+      images_.push_back({&record, table, SectionIndex(record, "cell_points", "cell", ""), {}, {}});
+      cells_.rows.each(*table, [&](std::size_t, const CellRow& cell) {
+        if (!cell.x || !cell.y) return;
+        xs.insert(*cell.x);
+        ys.insert(*cell.y);
+      });
     }
     xs_.assign(xs.begin(), xs.end());
     ys_.assign(ys.begin(), ys.end());
@@ -87,11 +80,11 @@ class BasinImages {
     };
     for (Image& image : images_) {
       image.row_of.assign(xs_.size() * ys_.size(), kNoRow);
-      const TableReader rows(*image.table);
-      const std::size_t across = rows.column("x"), along = rows.column("y");
-      for (std::size_t r = 0; r < rows.size(); ++r)
-        if (const auto x = rows.number(r, across), y = rows.number(r, along); x && y)
-          image.row_of[index(ys_, *y) * xs_.size() + index(xs_, *x)] = r;
+      image.periods.assign(image.table->rows.size(), 0);
+      cells_.rows.each(*image.table, [&](std::size_t r, const CellRow& cell) {
+        image.periods[r] = cell.period.value_or(0);
+        if (cell.x && cell.y) image.row_of[index(ys_, *cell.y) * xs_.size() + index(xs_, *cell.x)] = r;
+      });
     }
   }
 
@@ -100,20 +93,17 @@ class BasinImages {
     grid.columns = xs_.size();
     grid.rows = ys_.size();
     grid.cells.resize(image.row_of.size());
-    const TableReader rows(*image.table);
-    const std::size_t regime = rows.column("class"), period = rows.column("period"),
-                      status = rows.column_if_any("status"), attractor = rows.column_if_any("attractor");
-    for (std::size_t place = 0; place < grid.cells.size(); ++place) {
-      const std::size_t r = image.row_of[place];
-      if (r == kNoRow) continue;
-      GridCell& cell = grid.cells[place];
+    std::vector<std::size_t> place_of(image.table->rows.size(), kNoRow);
+    for (std::size_t place = 0; place < image.row_of.size(); ++place)
+      if (image.row_of[place] != kNoRow) place_of[image.row_of[place]] = place;
+    cells_.rows.each(*image.table, [&](std::size_t r, const CellRow& row) {
+      if (place_of[r] == kNoRow) return;
+      GridCell& cell = grid.cells[place_of[r]];
       cell.present = true;
-      cell.motion = motion_of(rows.text(r, regime), rows.number(r, period),
-                              status == TableReader::absent ? "done" : rows.text(r, status));
+      cell.motion = motion_of(row.regime, row.period, row.status.value_or("done"));
       // What the case itself has told apart while it marched.
-      if (const auto end = rows.number(r, attractor); end && grid_of_ == GridOf::initial_states)
-        cell.end = static_cast<int>(*end) - 1;
-    }
+      if (row.attractor && grid_of_ == GridOf::initial_states) cell.end = *row.attractor - 1;
+    });
     return grid;
   }
 
@@ -121,18 +111,17 @@ class BasinImages {
     if (motion.regime == Regime::no_contact) return {motion, true, {}};
     const std::size_t row = image.row_of[place];
     const SectionReadings readings = image.sections.read(static_cast<double>(row), "");
-    const int cycle = cycle_of(motion, static_cast<int>(TableReader(*image.table).number(row, "period").value_or(0)));
+    const int cycle = cycle_of(motion, image.periods[row]);
     return {motion, cycle > 0, make_cloud(readings.points, readings.opposite, scale_, cycle)};
   }
 
   Table cells() const {
-    const Table head = cells_head(swept_);
-    Table table = table_of_cases(results_, head.name, head.text, {});
+    Table table = table_of_cases(results_, cells_.name, cells_.text, {});
     for (std::size_t c = 0; c < images_.size(); ++c) {
       const Image& image = images_[c];
       const std::size_t begin = table.rows.size();
       append_rows(results_, *image.record, *image.table, table);
-      const auto column = find_column(table.columns, "attractor");
+      const auto column = find_column(table.columns, attractor_column.name);
       if (!column) continue;
       for (std::size_t place = 0; place < image.row_of.size(); ++place)
         if (const int attractor = grids_[c].cells[place].attractor; image.row_of[place] != kNoRow)
@@ -142,7 +131,7 @@ class BasinImages {
   }
 
   Table attractors() const {
-    Table table = attractors_head(swept_);
+    std::vector<AttractorRow> rows;
     std::vector<const CaseRecord*> records;
     for (const Image& image : images_) records.push_back(image.record);
     const std::vector<ChoiceAxis> axes = axes_of(results_, records);
@@ -168,17 +157,27 @@ class BasinImages {
       for (const double share : shares) presence.present.push_back(share > 0 && share >= kShown * largest);
       const PresenceLabel label = label_presence(presence, axes);
       const Proportion fraction = wilson_interval(sum / static_cast<double>(cases), static_cast<double>(grid));
-      const auto [regime, period] = class_cells(attractors_[a]);
-      table.rows.push_back({a + 1, label.label, cases, nullptr, nullptr, regime, period, nullptr, fraction.value,
-                            fraction.low, fraction.high, label.presence,
-                            fmt::format("Attractor {} ({}, {} of the cells where it shows) {}", a + 1,
-                                        text(attractors_[a]), percent(fraction.value), label.sentence)});
+      rows.push_back({static_cast<int>(a) + 1,
+                      label.label,
+                      static_cast<int>(cases),
+                      {},
+                      {},
+                      text(attractors_[a].regime),
+                      period_of(attractors_[a]),
+                      {},
+                      fraction.value,
+                      fraction.low,
+                      fraction.high,
+                      label.presence,
+                      fmt::format("Attractor {} ({}, {} of the cells where it shows) {}", a + 1, text(attractors_[a]),
+                                  percent(fraction.value), label.sentence)});
     }
-    return table;
+    return attractors_type(swept_).with(rows);
   }
 
   Table fractions() const {
-    Table table = table_of_cases(results_, basin_fractions_head());
+    const TableType<FractionRow> type = basin_fractions_type();
+    Table table = table_of_cases(results_, type.head());
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::size_t decided = decided_cells(grids_[c]);
       if (decided == 0) continue;
@@ -186,41 +185,55 @@ class BasinImages {
         const std::size_t count = count_cells(grids_[c], static_cast<int>(a));
         const Proportion share =
             wilson_interval(static_cast<double>(count) / static_cast<double>(decided), static_cast<double>(decided));
-        const auto [regime, period] = class_cells(attractors_[a]);
-        add_row(table, place_of(results_, *images_[c].record),
-                {a + 1, regime, period, count, share.value, share.low, share.high});
+        const MotionClass& motion = attractors_[a];
+        const FractionRow row{images_[c].record->id,
+                              static_cast<int>(a) + 1,
+                              text(motion.regime),
+                              period_of(motion),
+                              static_cast<int>(count),
+                              share.value,
+                              share.low,
+                              share.high};
+        add_row(table, place_of(results_, *images_[c].record), type.rows.row(row));
       }
     }
     return table;
   }
 
   Table differences() const {
-    Table table = basin_differences_head();
+    std::vector<BasinDifferenceRow> rows;
     for (std::size_t a = 0; a < grids_.size(); ++a)
       for (std::size_t b = a + 1; b < grids_.size(); ++b) {
         const auto [both, differ] = compare(grids_[a], grids_[b]);
-        table.rows.push_back({images_[a].record->id, images_[b].record->id, both, differ,
-                              both > 0 ? Cell(static_cast<double>(differ) / both) : Cell()});
+        BasinDifferenceRow& row = rows.emplace_back();
+        row = {images_[a].record->id, images_[b].record->id, both, differ, {}};
+        if (both > 0) row.share = static_cast<double>(differ) / both;
       }
-    return table;
+    return basin_differences_type().with(rows);
   }
 
   Table uncertainty() const {
-    Table table = table_of_cases(results_, basin_uncertainty_head());
+    const TableType<UncertaintyRow> type = basin_uncertainty_type();
+    Table table = table_of_cases(results_, type.head());
     for (std::size_t c = 0; c < grids_.size(); ++c) {
       const std::vector<int> labels = attractors_of(grids_[c]);
       const auto exponent =
           labels.empty() ? std::nullopt
                          : uncertainty_exponent(labels, static_cast<int>(xs_.size()), static_cast<int>(ys_.size()));
-      Row row = {boundary_share(grids_[c]), nullptr, nullptr, nullptr};
-      if (exponent) row = {row.front(), exponent->value, exponent->low, exponent->high};
-      add_row(table, place_of(results_, *images_[c].record), row);
+      UncertaintyRow row{images_[c].record->id, boundary_share(grids_[c]), {}, {}, {}};
+      if (exponent) {
+        row.exponent = exponent->value;
+        row.low = exponent->low;
+        row.high = exponent->high;
+      }
+      add_row(table, place_of(results_, *images_[c].record), type.rows.row(row));
     }
     return table;
   }
 
   StudyResults& results_;
   const SweptColumns swept_ = swept_columns(results_);
+  const TableType<CellRow> cells_ = cells_type(swept_);
   GridOf grid_of_;
   std::vector<double> xs_, ys_;
   CloudPoint scale_ = {1, 1};

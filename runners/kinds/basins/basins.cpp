@@ -107,23 +107,25 @@ int march_cell_again(const StudyResults& results, const PointRequest& asked, std
   const StudyCase& study_case = stored.find(record.id);
   const std::vector<GridAxis> axes = grid_axes(study_case.settings);
   const std::size_t column = find_place(axes[0], x), line = find_place(axes[1], y);
-  const TableReader cells(stored_table(record, "cells"));
-  const std::size_t across = cells.column("x"), along = cells.column("y");
-  std::size_t row = 0;
-  while (row < cells.size() &&
-         !(cells.number(row, across) == axes[0].values[column] && cells.number(row, along) == axes[1].values[line]))
-    ++row;
+  const TableType<CellRow> type = cells_type();
+  std::optional<std::size_t> row;
+  CellRow cell;
+  type.rows.each(stored_table(record, type.name), [&](std::size_t r, CellRow&& one) {
+    if (row || one.x != axes[0].values[column] || one.y != axes[1].values[line]) return;
+    row = r;
+    cell = std::move(one);
+  });
 
   SamplePrinter print(out);
   const CellEnd end = march_cell(study_case, stored.registry, {column, line}, wanted_count(asked), std::ref(print));
   std::cerr << text_of(end);
-  if (row == cells.size()) {
+  if (!row) {
     std::cerr << "; the run has not come to this cell";
-  } else if (cells.truth(row, "marched") == false) {
+  } else if (cell.marched == false) {
     std::cerr << fmt::format("; the run filled this cell from a marched one of its basin ({})",
-                             regime_text(cells.text(row, "class"), cells.number(row, "period")));
+                             regime_text(cell.regime, cell.period));
   } else {
-    const std::vector<SectionPoint> section = stored_section(record, row);
+    const std::vector<SectionPoint> section = stored_section(record, *row);
     std::size_t equal = 0;
     for (std::size_t i = 0; i < std::min(section.size(), end.section.size()); ++i)
       equal += section[i].displacement == end.section[i].displacement && section[i].velocity == end.section[i].velocity;

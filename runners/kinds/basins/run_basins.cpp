@@ -197,7 +197,8 @@ class BasinsRun {
   // Of a complete one the sections of the ends are given up on the way: those of millions of cells need not be there
   // twice.
   void write_tables(CaseRecord& record, bool complete) {
-    Table cells = cells_head();
+    const TableType<CellRow> type = cells_type();
+    Table cells = type.head();
     NumberTable points = cell_points_head();
     const std::vector<std::size_t> sources = refinement_.sources();
     std::size_t count = 0;
@@ -218,14 +219,19 @@ class BasinsRun {
       if (sources[cell] == sources.size()) {
         if (complete)
           cells.rows.push_back(
-              {x, y, text(Regime::failed), nullptr, nullptr, false, nullptr, "failed", unmarched().reason});
+              type.rows.row({"", x, y, text(Regime::failed), {}, {}, false, {}, "failed", unmarched().reason}));
         continue;
       }
       const CellEnd& end = ends_[sources[cell]];
       const int told = end_of_[sources[cell]];
-      cells.rows.push_back({x, y, end.status == no_start ? no_start : text(end.motion.regime),
-                            end.period > 0 ? Cell(end.period) : Cell(), told >= 0 ? Cell(told + 1) : Cell(),
-                            sources[cell] == cell, row_of[sources[cell]], end.status, end.reason});
+      CellRow row{"", x, y, end.status == no_start ? no_start : text(end.motion.regime)};
+      if (end.period > 0) row.period = end.period;
+      if (told >= 0) row.attractor = told + 1;
+      row.marched = sources[cell] == cell;
+      row.source = row_of[sources[cell]];
+      row.status = end.status;
+      row.reason = end.reason;
+      cells.rows.push_back(type.rows.row(row));
       for (std::size_t i = 0; i < end.section.size(); ++i) {
         const SectionPoint& point = end.section[i];
         points.add({static_cast<double>(row_of[cell]), static_cast<double>(i), point.displacement, point.velocity,

@@ -12,8 +12,6 @@
 #include "runners/kinds/sweep/with_parameter.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/row_type.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 
@@ -24,54 +22,10 @@ namespace {
 
 constexpr std::size_t most_listed = 5;
 
-template <class Row>
-std::vector<Row> rows_of(const StudyResults& results, const char* table, const RowType<Row>& type) {
-  const Table* found = find_table(results.derived, table);
-  return found ? type.read(*found) : std::vector<Row>{};
-}
-
 }  // namespace
 
-std::vector<DistanceRow> distances_of(const StudyResults& results) {
-  RowType<DistanceRow> type;
-  type.add({"case", "", ""}, &DistanceRow::id)
-      .add({"reference_case", "", ""}, &DistanceRow::reference)
-      .add({"wasserstein", "", ""}, &DistanceRow::wasserstein);
-  return rows_of(results, "distances", type);
-}
-
-std::vector<AgreementRow> agreement_of(const StudyResults& results) {
-  RowType<AgreementRow> type;
-  type.add({"case", "", ""}, &AgreementRow::id)
-      .add({"other_case", "", ""}, &AgreementRow::other)
-      .add({"compared", "", ""}, &AgreementRow::compared)
-      .add({"same_class", "", ""}, &AgreementRow::same);
-  return rows_of(results, "agreement", type);
-}
-
-std::vector<VerdictRow> verdicts_of(const StudyResults& results) {
-  RowType<VerdictRow> type;
-  type.add({"from", "", ""}, &VerdictRow::from)
-      .add({"to", "", ""}, &VerdictRow::to)
-      .add({"verdict", "", ""}, &VerdictRow::verdict)
-      .add({"choice", "", ""}, &VerdictRow::choice);
-  return rows_of(results, "verdicts", type);
-}
-
-std::vector<ShiftRow> shifts_of(const StudyResults& results) {
-  RowType<ShiftRow> type;
-  type.add({"case", "", ""}, &ShiftRow::id)
-      .add({"start", "", ""}, &ShiftRow::start)
-      .add({"from", "", ""}, &ShiftRow::from)
-      .add({"to", "", ""}, &ShiftRow::to)
-      .add({"reference_value", "", ""}, &ShiftRow::reference_value)
-      .add({"shift", "", ""}, &ShiftRow::shift)
-      .add({"found", "", ""}, &ShiftRow::found);
-  return rows_of(results, "shifts", type);
-}
-
 void DiagramSpeaker::find_reference() {
-  for (const DistanceRow& row : distances_of(results_))
+  for (const DistanceRow& row : distances_type().read(results_.derived))
     if (const auto found = by_id_.find(row.reference); found != by_id_.end()) reference_ = found->second;
   if (reference_) return;
   for (const CaseRecord& record : results_.cases)
@@ -80,10 +34,10 @@ void DiagramSpeaker::find_reference() {
 
 void DiagramSpeaker::compare() {
   std::map<std::string, std::vector<double>> distances;
-  for (const DistanceRow& row : distances_of(results_))
+  for (const DistanceRow& row : distances_type().read(results_.derived))
     if (row.wasserstein) distances[row.id].push_back(*row.wasserstein);
   int all = 0;
-  const std::vector<AgreementRow> rows = agreement_of(results_);
+  const std::vector<AgreementRow> rows = agreement_type().read(results_.derived);
   for (const AgreementRow& row : rows)
     if (row.id == reference_->id && row.other == reference_->id) all = row.compared;
   for (const AgreementRow& row : rows) {

@@ -43,7 +43,7 @@ std::string DiagramSpeaker::runs_text(const std::vector<MotionRun>& runs) const 
 /// Over how much of the range the motion is the same whatever the numerics, which it is there, and what decides
 /// elsewhere.
 void DiagramSpeaker::say_robust(say::Answer& answer) const {
-  const std::vector<VerdictRow> rows = verdicts_of(results_);
+  const std::vector<VerdictRow> rows = verdicts_type().read(results_.derived);
   if (rows.empty() || others_.empty()) return;
   double robust = 0, open = 0, total = 0;
   InOrderMet<std::string, double> deciding;
@@ -130,7 +130,7 @@ void DiagramSpeaker::say_motions(say::Answer& answer) const {
 void DiagramSpeaker::say_changes(say::Answer& answer) const {
   std::vector<ChangeRow> changes = changes_of(*reference_);
   // Where methods differ in them they are no property of the motion.
-  const std::vector<VerdictRow> verdicts = verdicts_of(results_);
+  const std::vector<VerdictRow> verdicts = verdicts_type().read(results_.derived);
   const auto robust_at = [&](double value) {
     return verdicts.empty() || std::any_of(verdicts.begin(), verdicts.end(), [&](const VerdictRow& row) {
              return row.verdict == "robust" && row.from <= value && value <= row.to;
@@ -142,7 +142,7 @@ void DiagramSpeaker::say_changes(say::Answer& answer) const {
            (!start_.empty() && one.start != start_);
   });
   if (changes.empty()) return;
-  const std::vector<ShiftRow> shifts = shifts_of(results_);
+  const std::vector<ShiftRow> shifts = shifts_type().read(results_.derived);
   constexpr std::size_t most_changes = 3;
   Sentence said;
   for (std::size_t k = 0; k < std::min(most_changes, changes.size()); ++k) {
@@ -154,7 +154,7 @@ void DiagramSpeaker::say_changes(say::Answer& answer) const {
           shift.reference_value != one.value)
         continue;
       ++expected;
-      if (!shift.found || !shift.shift) continue;
+      if (shift.found != true || !shift.shift) continue;
       ++found;
       largest = std::max(largest, std::abs(*shift.shift));
     }

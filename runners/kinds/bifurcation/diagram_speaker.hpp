@@ -9,32 +9,9 @@
 
 #include "runners/answers/answer.hpp"
 #include "runners/answers/numbers_in_words.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 
 namespace ricochet {
-
-/// Rows of the tables that the cases of the study came to, as far as they are read here.
-struct DistanceRow {
-  std::string id, reference;
-  std::optional<double> wasserstein;
-};
-struct AgreementRow {
-  std::string id, other;
-  int compared = 0, same = 0;
-};
-struct VerdictRow {
-  double from = 0, to = 0;
-  std::string verdict, choice;
-};
-struct ShiftRow {
-  std::string id, start, from, to;
-  std::optional<double> reference_value, shift;
-  bool found = false;
-};
-
-std::vector<DistanceRow> distances_of(const StudyResults& results);
-std::vector<AgreementRow> agreement_of(const StudyResults& results);
-std::vector<VerdictRow> verdicts_of(const StudyResults& results);
-std::vector<ShiftRow> shifts_of(const StudyResults& results);
 
 /// "period 2" of "periodic 2", "chaos" of "chaotic".
 std::string motion_words(std::string motion);
@@ -73,7 +50,7 @@ class DiagramSpeaker {
   void say_speeds(answers::Answer& answer) const;
   /// Whether every interval is the same in all cases, so that the robust part is all of the diagram.
   bool all_robust() const {
-    const std::vector<VerdictRow> rows = verdicts_of(results_);
+    const std::vector<VerdictRow> rows = verdicts_type().read(results_.derived);
     return !others_.empty() && !rows.empty() &&
            std::all_of(rows.begin(), rows.end(), [](const VerdictRow& row) { return row.verdict == "robust"; });
   }

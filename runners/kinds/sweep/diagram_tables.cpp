@@ -21,7 +21,7 @@ Table values_table(const StudyDiagram& study) {
     const DiagramSource& source = study.sources[c];
     const std::size_t first = table.rows.size();
     append_rows(results, *source.record, *source.table, table);
-    const auto column = find_column(table.columns, "attractor");
+    const auto column = find_column(table.columns, attractor_column.name);
     if (!column) continue;
     const std::vector<DiagramRun>& runs = study.diagram.cases[c].runs;
     for (std::size_t k = 0; k < runs.size(); ++k)
@@ -87,24 +87,24 @@ std::vector<DiagramChange> known_changes(const CaseRecord& record) {
 }  // namespace
 
 Table agreement_table(const StudyDiagram& study) {
-  Table table = agreement_head();
+  std::vector<AgreementRow> rows;
   const std::vector<DiagramCase>& cases = study.diagram.cases;
-  if (cases.size() < 2) return table;
-  for (std::size_t a = 0; a < cases.size(); ++a)
+  for (std::size_t a = 0; cases.size() > 1 && a < cases.size(); ++a)
     for (std::size_t b = 0; b < cases.size(); ++b) {
       const auto [compared, same_class, same_attractor] = agreement(cases[a], cases[b]);
       const auto share = [all = compared](int count) {
-        return all > 0 ? Cell(static_cast<double>(count) / all) : Cell();
+        return all > 0 ? std::optional(static_cast<double>(count) / all) : std::nullopt;
       };
-      table.rows.push_back({study.record(a).id, study.record(b).id, compared, same_class, share(same_class),
-                            same_attractor, share(same_attractor)});
+      rows.push_back({study.record(a).id, study.record(b).id, compared, same_class, share(same_class), same_attractor,
+                      share(same_attractor)});
     }
-  return table;
+  return agreement_type().with(rows);
 }
 
 Table shifts_table(const StudyDiagram& study) {
   const Diagram& diagram = study.diagram;
-  Table table = table_of_cases(*study.results, shifts_head(study.swept));
+  const TableType<ShiftRow> type = shifts_type(study.swept);
+  Table table = table_of_cases(*study.results, type.head());
   const auto reference = reference_case(diagram);
   if (!reference) return table;
   const CaseRecord& standard = study.record(*reference);
@@ -117,11 +117,16 @@ Table shifts_table(const StudyDiagram& study) {
     std::vector<char> used(here.size(), 0);
     const auto add = [&](const DiagramChange& change, const DiagramChange* standing, const DiagramChange* found) {
       const bool both = standing && found;
-      add_row(
-          table, place_of(*study.results, study.record(c)),
-          {standard.id, change.start, change.from, change.to, change.kind, standing ? Cell(standing->value) : Cell(),
-           found ? Cell(found->value) : Cell(), both ? Cell(found->value - standing->value) : Cell(),
-           both ? Cell(found->low - standing->high) : Cell(), both ? Cell(found->high - standing->low) : Cell(), both});
+      ShiftRow row{study.record(c).id, standard.id, change.start, change.from, change.to, change.kind};
+      if (standing) row.reference_value = standing->value;
+      if (found) row.value = found->value;
+      if (both) {
+        row.shift = found->value - standing->value;
+        row.low = found->low - standing->high;
+        row.high = found->high - standing->low;
+      }
+      row.found = both;
+      add_row(table, place_of(*study.results, study.record(c)), type.rows.row(row));
     };
     for (std::size_t k = 0; k < expected.size(); ++k) {
       if (match[k] >= 0) used[static_cast<std::size_t>(match[k])] = 1;
@@ -138,7 +143,7 @@ namespace {
 constexpr double kNothing = 1e-12;
 
 void add_distances(const StudyDiagram& study, const ValueSections& sections, int value, std::size_t reference,
-                   Table& table) {
+                   const TableType<DistanceRow>& type, Table& table) {
   const Diagram& diagram = study.diagram;
   for (int s = 0; s < diagram.start_count(); ++s) {
     const DiagramRun* one = diagram.run(reference, value, s);
@@ -149,21 +154,21 @@ void add_distances(const StudyDiagram& study, const ValueSections& sections, int
     for (std::size_t c = 0; c < diagram.cases.size(); ++c) {
       const DiagramRun* other = diagram.run(c, value, s);
       if (c == reference || !other) continue;
-      Row row = {study.record(reference).id, one->parameter, diagram.starts[static_cast<std::size_t>(s)].name};
+      DistanceRow row{study.record(c).id, study.record(reference).id, one->parameter,
+                      diagram.starts[static_cast<std::size_t>(s)].name};
       const auto of_other = sections.find({c, s});
-      const Cell same = one->decided() && other->decided() ? Cell(one->motion == other->motion) : Cell();
-      if (of_reference == sections.end() || of_other == sections.end() || of_reference->second.cloud.empty() ||
-          of_other->second.cloud.empty()) {
-        row.insert(row.end(), {nullptr, nullptr, nullptr, nullptr, nullptr, same, ""});
-      } else {
+      if (one->decided() && other->decided()) row.same_class = one->motion == other->motion;
+      if (of_reference != sections.end() && of_other != sections.end() && !of_reference->second.cloud.empty() &&
+          !of_other->second.cloud.empty()) {
         const SectionCloud &a = of_reference->second.cloud, &b = of_other->second.cloud;
-        const double distance = cloud_distance(a, b);
-        const bool noisy = null.wasserstein > kNothing;
-        row.insert(row.end(), {distance, cloud_hausdorff(a, b), null.wasserstein, null.hausdorff,
-                               noisy ? Cell(distance / null.wasserstein) : Cell(), same,
-                               compared_exactly(a, b) ? "exact" : "sliced"});
+        row.wasserstein = cloud_distance(a, b);
+        row.hausdorff = cloud_hausdorff(a, b);
+        row.null_wasserstein = null.wasserstein;
+        row.null_hausdorff = null.hausdorff;
+        if (null.wasserstein > kNothing) row.ratio = *row.wasserstein / null.wasserstein;
+        row.formula = compared_exactly(a, b) ? "exact" : "sliced";
       }
-      add_row(table, place_of(*study.results, study.record(c)), row);
+      add_row(table, place_of(*study.results, study.record(c)), type.rows.row(row));
     }
   }
 }
@@ -177,25 +182,25 @@ std::optional<bool> symmetric(const AttractorExtent& extent) {
 }  // namespace
 
 Table find_attractors(StudyDiagram& study) {
-  Table distances = table_of_cases(*study.results, distances_head(study.swept));
+  const TableType<DistanceRow> type = distances_type(study.swept);
+  Table distances = table_of_cases(*study.results, type.head());
   const auto reference = reference_case(study.diagram);
   ricochet::find_attractors(
       study.diagram, [&](std::size_t c, const DiagramRun& run) { return settled_section(study, c, run); },
       [&](int value, const ValueSections& sections) {
-        if (reference) add_distances(study, sections, value, *reference, distances);
+        if (reference) add_distances(study, sections, value, *reference, type, distances);
       });
   return distances;
 }
 
 Table attractors_table(const StudyDiagram& study) {
   const Diagram& diagram = study.diagram;
-  Table table = attractors_head(study.swept);
+  std::vector<AttractorRow> rows;
   const std::vector<AttractorExtent> extents = extents_of(diagram);
   for (std::size_t k = 0; k < extents.size(); ++k) {
     const AttractorExtent& extent = extents[k];
     if (extent.first < 0) continue;
     const int attractor = static_cast<int>(k) + 1;
-    const bool periodic = extent.motion.period > 0;
     const double from = diagram.values[static_cast<std::size_t>(extent.first)],
                  to = diagram.values[static_cast<std::size_t>(extent.last)];
     const PresenceLabel label = label_presence(presence_of(diagram, extent, attractor), study.axes);
@@ -204,13 +209,12 @@ Table attractors_table(const StudyDiagram& study) {
                                   ? "at " + short_number(from)
                                   : fmt::format("{} to {}, {}", short_number(from), short_number(to),
                                                 count_of(extent.values.size(), "value"));
-    table.rows.push_back(
-        {attractor, label.label, extent.cases.size(), from, to, text(extent.motion.regime),
-         periodic ? Cell(extent.motion.period) : Cell(), symmetric(extent), fraction.value, fraction.low, fraction.high,
-         label.presence,
-         fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
+    rows.push_back({attractor, label.label, static_cast<int>(extent.cases.size()), from, to, text(extent.motion.regime),
+                    period_of(extent.motion), symmetric(extent), fraction.value, fraction.low, fraction.high,
+                    label.presence,
+                    fmt::format("Attractor {} ({}, {}) {}", attractor, text(extent.motion), range, label.sentence)});
   }
-  return table;
+  return attractors_type(study.swept).with(rows);
 }
 
 }  // namespace ricochet::dynamics

@@ -8,7 +8,6 @@
 #include "runners/kinds/sweep/study_diagram.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -45,22 +44,17 @@ Table verdict_shares_table(const Table& verdicts, const SweptColumns& swept) {
                {"from", unit, "Smallest value of the parameter that is compared, the same in every row."},
                {"to", unit, "Largest such value."}},
               {}};
-  const TableReader rows(verdicts);
-  const std::size_t from = rows.column("from"), to = rows.column("to"), verdict = rows.column("verdict"),
-                    choice = rows.column("choice");
   std::map<std::tuple<int, std::string, std::string>, VerdictShare> shares;
   Bounds range;
   double total = 0;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const std::string word = rows.text(row, verdict);
-    VerdictShare& share = shares[{rank_of(word), word, rows.text(row, choice)}];
+  for (const VerdictRow& row : verdicts_type().rows.read(verdicts)) {
+    VerdictShare& share = shares[{rank_of(row.verdict), row.verdict, row.choice}];
     ++share.intervals;
-    const auto low = rows.number(row, from), high = rows.number(row, to);
-    if (!low || !high) continue;
-    range.include(*low);
-    range.include(*high);
-    share.width += *high - *low;
-    total += *high - *low;
+    if (std::isnan(row.from) || std::isnan(row.to)) continue;
+    range.include(row.from);
+    range.include(row.to);
+    share.width += row.to - row.from;
+    total += row.to - row.from;
   }
   for (const auto& [key, share] : shares)
     table.rows.push_back({std::get<1>(key), std::get<2>(key), share.intervals, share.width,
@@ -68,13 +62,19 @@ Table verdict_shares_table(const Table& verdicts, const SweptColumns& swept) {
   return table;
 }
 
+TableType<ClassCount> class_counts_type() {
+  RowType<ClassCount> rows;
+  rows.of_case(&ClassCount::id)
+      .add({"class", "", "Class of the orbits; failed where they were refused or stopped."}, &ClassCount::regime)
+      .add({"period", "1", "Forcing periods after which a periodic orbit repeats."}, &ClassCount::period)
+      .add({"orbits", "1", "Orbits (values and starts) with this class."}, &ClassCount::orbits)
+      .add({"share", "1", "Their share of the orbits of the case."}, &ClassCount::share);
+  return {"class_counts", "One class of motion in one case: how many of its orbits have it.", rows};
+}
+
 Table class_counts_table(const StudyResults& results) {
-  Table table =
-      table_of_cases(results, "class_counts", "One class of motion in one case: how many of its orbits have it.",
-                     {{"class", "", "Class of the orbits; failed where they were refused or stopped."},
-                      {"period", "1", "Forcing periods after which a periodic orbit repeats."},
-                      {"orbits", "1", "Orbits (values and starts) with this class."},
-                      {"share", "1", "Their share of the orbits of the case."}});
+  const TableType<ClassCount> type = class_counts_type();
+  Table table = table_of_cases(results, type.head());
   for (const CaseRecord& record : results.cases) {
     const std::vector<OrbitRow> orbits = orbits_of(record);
     std::vector<std::pair<std::pair<std::string, std::optional<int>>, int>> counts;  // by class and period
@@ -83,21 +83,24 @@ Table class_counts_table(const StudyResults& results) {
                                           : std::pair(std::string("failed"), std::optional<int>()));
     for (const auto& [motion, count] : counts)
       add_row(table, place_of(results, record),
-              {motion.first, motion.second, count, static_cast<double>(count) / static_cast<double>(orbits.size())});
+              type.rows.row({record.id, motion.first, motion.second, count,
+                             static_cast<double>(count) / static_cast<double>(orbits.size())}));
   }
   return table;
 }
 
-Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swept) {
+TableType<GrazingRange> grazing_ranges_type(const SweptColumns& swept) {
   const std::string& unit = swept.parameter.unit;
-  Table table{"grazing_ranges",
-              "Over all cases: where contact begins or ends, from one start.",
-              {{"start", "", "Where the orbits begin, as in values.csv."},
-               {"changes", "1", "Changes of kind grazing, over the cases."},
-               {"low", unit, "The smallest value of the parameter at which one is located."},
-               {"high", unit, "The largest such value."},
-               {"bracket", unit, "Width of the widest interval that a change is located to."}},
-              {}};
+  RowType<GrazingRange> rows;
+  rows.add({"start", "", "Where the orbits begin, as in values.csv."}, &GrazingRange::start)
+      .add({"changes", "1", "Changes of kind grazing, over the cases."}, &GrazingRange::changes)
+      .add({"low", unit, "The smallest value of the parameter at which one is located."}, &GrazingRange::low)
+      .add({"high", unit, "The largest such value."}, &GrazingRange::high)
+      .add({"bracket", unit, "Width of the widest interval that a change is located to."}, &GrazingRange::bracket);
+  return {"grazing_ranges", "Over all cases: where contact begins or ends, from one start.", rows};
+}
+
+Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swept) {
   struct Grazings {
     int changes = 0;
     Bounds values;
@@ -112,20 +115,32 @@ Table grazing_ranges_table(const StudyResults& results, const SweptColumns& swep
       one.values.include(change.value);
       if (const double bracket = change.high - change.low; bracket > one.bracket) one.bracket = bracket;
     }
+  std::vector<GrazingRange> rows;
   for (const auto& [start, one] : found)
-    table.rows.push_back({start, one.changes, one.values.low, one.values.high, one.bracket});
-  return table;
+    rows.push_back({start, one.changes, one.values.low, one.values.high, one.bracket});
+  return grazing_ranges_type(swept).with(rows);
+}
+
+TableType<NumericalViscosity> numerical_viscosity_type() {
+  RowType<NumericalViscosity> rows;
+  rows.of_case(&NumericalViscosity::id)
+      .add(
+          {"low", "s", "Smallest equivalent viscosity over values and starts; negative where the scheme feeds energy."},
+          &NumericalViscosity::low)
+      .add({"high", "s", "Largest equivalent viscosity."}, &NumericalViscosity::high)
+      .add({"physical_low", "s", "Smallest α of C = αK in the scene, over the same; empty where it is not known."},
+           &NumericalViscosity::physical_low)
+      .add({"physical_high", "s", "Largest such α."}, &NumericalViscosity::physical_high)
+      .add({"share", "1",
+            "Largest modulus of the equivalent viscosity over α; empty where there is no α to compare with."},
+           &NumericalViscosity::share)
+      .add({"small", "", "Whether that share is at most 1 %."}, &NumericalViscosity::small);
+  return {"numerical_viscosity", "One case: the stiffness viscosity that its scheme adds to that of the scene.", rows};
 }
 
 Table numerical_viscosity_table(const StudyResults& results) {
-  Table table = table_of_cases(
-      results, "numerical_viscosity", "One case: the stiffness viscosity that its scheme adds to that of the scene.",
-      {{"low", "s", "Smallest equivalent viscosity over values and starts; negative where the scheme feeds energy."},
-       {"high", "s", "Largest equivalent viscosity."},
-       {"physical_low", "s", "Smallest α of C = αK in the scene, over the same; empty where it is not known."},
-       {"physical_high", "s", "Largest such α."},
-       {"share", "1", "Largest modulus of the equivalent viscosity over α; empty where there is no α to compare with."},
-       {"small", "", "Whether that share is at most 1 %."}});
+  const TableType<NumericalViscosity> type = numerical_viscosity_type();
+  Table table = table_of_cases(results, type.head());
   for (const CaseRecord& record : results.cases) {
     Bounds numerical, physical;
     double share = 0;
@@ -145,9 +160,12 @@ Table numerical_viscosity_table(const StudyResults& results) {
     }
     if (!numerical.low) continue;
     const bool compared = physical.low && !undamped;
-    add_row(table, place_of(results, record),
-            {numerical.low, numerical.high, physical.low, physical.high, compared ? Cell(share) : Cell(),
-             compared ? Cell(share <= small_viscosity) : Cell()});
+    NumericalViscosity row{record.id, numerical.low, numerical.high, physical.low, physical.high, {}, {}};
+    if (compared) {
+      row.share = share;
+      row.small = share <= small_viscosity;
+    }
+    add_row(table, place_of(results, record), type.rows.row(row));
   }
   return table;
 }

@@ -6,6 +6,10 @@
 #include "runners/table/table_reader.hpp"
 
 namespace ricochet {
+
+const Column attractor_column{
+    "attractor", "", "Number of the attractor, the same for every case and start of the study; empty where undecided."};
+
 namespace {
 
 const Column start_column{"start", "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
@@ -14,8 +18,6 @@ const Column class_column{
     "no contact, at rest (what touches its stop never leaves it), periodic, quasi-periodic, chaotic, undecided, or "
     "failed: what the orbit is in the long run."};
 const Column period_column{"period", "1", "Forcing periods after which a periodic orbit repeats."};
-const Column attractor_column{
-    "attractor", "", "Number of the attractor, the same for every case and start of the study; empty where undecided."};
 const Column status_column{"status", "", "done, refused, diverged or failed."};
 const Column reason_column{"reason", "", "Why the orbit was refused or stopped."};
 const std::vector<Column> section_columns = {
@@ -42,7 +44,8 @@ std::string regime_text(const std::string& regime, std::optional<double> period)
 
 RowType<OrbitRow> orbit_row_type(int exponents, const SweptColumns& swept) {
   RowType<OrbitRow> type;
-  type.add(swept.parameter, &OrbitRow::parameter)
+  type.of_case(&OrbitRow::id)
+      .add(swept.parameter, &OrbitRow::parameter)
       .add(start_column, &OrbitRow::start)
       .add(class_column, &OrbitRow::regime)
       .add(period_column, &OrbitRow::period)
@@ -113,7 +116,7 @@ std::vector<OrbitRow> orbits_in(const Table& values) {
 }
 
 std::vector<OrbitRow> orbits_of(const CaseRecord& record) {
-  const Table* table = find_table(record.tables, "values");
+  const Table* table = find_table(record.tables, values_name);
   return table ? orbits_in(*table) : std::vector<OrbitRow>();
 }
 
@@ -140,7 +143,7 @@ std::vector<ChangeRow> changes_of(const CaseRecord& record) {
 }
 
 Table values_head(int exponents, const SweptColumns& swept) {
-  return {"values",
+  return {values_name,
           "One orbit of one case: a value of the parameter and a start.",
           orbit_row_type(exponents, swept).columns(),
           {}};
@@ -153,19 +156,20 @@ Table bifurcations_head(const SweptColumns& swept) {
           {}};
 }
 
-Table cells_head(const SweptColumns& swept) {
-  return {"cells",
-          "One cell of the grid of one case: a start, or a scene, and where it leads.",
-          {swept.x,
-           swept.y,
-           class_column,
-           period_column,
-           attractor_column,
-           {"marched", "", "Whether the cell was marched; otherwise it takes the end of a marched one of its basin."},
-           {"source", "1", "Row of the marched cell whose end this one has, from 0 within the case."},
-           status_column,
-           reason_column},
-          {}};
+TableType<CellRow> cells_type(const SweptColumns& swept) {
+  RowType<CellRow> rows;
+  rows.of_case(&CellRow::id)
+      .add(swept.x, &CellRow::x)
+      .add(swept.y, &CellRow::y)
+      .add(class_column, &CellRow::regime)
+      .add(period_column, &CellRow::period)
+      .add(attractor_column, &CellRow::attractor)
+      .add({"marched", "", "Whether the cell was marched; otherwise it takes the end of a marched one of its basin."},
+           &CellRow::marched)
+      .add({"source", "1", "Row of the marched cell whose end this one has, from 0 within the case."}, &CellRow::source)
+      .add(status_column, &CellRow::status)
+      .add(reason_column, &CellRow::reason);
+  return {"cells", "One cell of the grid of one case: a start, or a scene, and where it leads.", rows};
 }
 
 NumberTable points_head(const SweptColumns& swept) {
@@ -222,126 +226,142 @@ NumberTable contact_law_head() {
   return table;
 }
 
-Table attractors_head(const SweptColumns& swept) {
-  return {
-      "attractors",
-      "Over all cases: one attractor.",
-      {{"attractor", "", "Number of the attractor, as in values.csv or cells.csv."},
-       {"label", "",
-        "common to all, depends on AXIS, depends on several choices, vanishes under refinement, or not compared."},
-       {"cases", "1", "Cases that have it."},
-       in_units_of(swept.parameter, "from", "Smallest value of the parameter at which some case has it."),
-       in_units_of(swept.parameter, "to", "Largest such value."),
-       class_column,
-       period_column,
-       {"symmetric", "", "Whether its orbits are their own mirror images; empty where they differ or are not told."},
-       {"fraction", "1", "Share of the starts, or of the cells, that lead there, where a case shows it."},
-       {"fraction_low", "1", "Lower end of the 95 % interval of that share (Wilson)."},
-       {"fraction_high", "1", "Upper end of that interval."},
-       {"presence", "", "For each level of the deciding axis, how many of its cases show it."},
-       {"sentence", "", "The same in words."}},
-      {}};
+TableType<AttractorRow> attractors_type(const SweptColumns& swept) {
+  RowType<AttractorRow> rows;
+  rows.add({"attractor", "", "Number of the attractor, as in values.csv or cells.csv."}, &AttractorRow::attractor)
+      .add({"label", "",
+            "common to all, depends on AXIS, depends on several choices, vanishes under refinement, or not compared."},
+           &AttractorRow::label)
+      .add({"cases", "1", "Cases that have it."}, &AttractorRow::cases)
+      .add(in_units_of(swept.parameter, "from", "Smallest value of the parameter at which some case has it."),
+           &AttractorRow::from)
+      .add(in_units_of(swept.parameter, "to", "Largest such value."), &AttractorRow::to)
+      .add(class_column, &AttractorRow::regime)
+      .add(period_column, &AttractorRow::period)
+      .add(
+          {"symmetric", "", "Whether its orbits are their own mirror images; empty where they differ or are not told."},
+          &AttractorRow::symmetric)
+      .add({"fraction", "1", "Share of the starts, or of the cells, that lead there, where a case shows it."},
+           &AttractorRow::fraction)
+      .add({"fraction_low", "1", "Lower end of the 95 % interval of that share (Wilson)."}, &AttractorRow::fraction_low)
+      .add({"fraction_high", "1", "Upper end of that interval."}, &AttractorRow::fraction_high)
+      .add({"presence", "", "For each level of the deciding axis, how many of its cases show it."},
+           &AttractorRow::presence)
+      .add({"sentence", "", "The same in words."}, &AttractorRow::sentence);
+  return {"attractors", "Over all cases: one attractor.", rows};
 }
 
-Table agreement_head() {
-  return {"agreement",
-          "One ordered pair of cases: how often they agree, a case with itself included.",
-          {{"case", "", "One case."},
-           {"other_case", "", "The case it is compared with."},
-           {"compared", "1", "Values and starts at which both are decided."},
-           {"same_class", "1", "How many of these have the same class."},
-           {"share", "1", "same_class over compared."},
-           {"same_attractor", "1", "How many of these are on the same attractor."},
-           {"share_attractor", "1", "same_attractor over compared."}},
-          {}};
+TableType<AgreementRow> agreement_type() {
+  RowType<AgreementRow> rows;
+  rows.add({"case", "", "One case."}, &AgreementRow::id)
+      .add({"other_case", "", "The case it is compared with."}, &AgreementRow::other)
+      .add({"compared", "1", "Values and starts at which both are decided."}, &AgreementRow::compared)
+      .add({"same_class", "1", "How many of these have the same class."}, &AgreementRow::same)
+      .add({"share", "1", "same_class over compared."}, &AgreementRow::share)
+      .add({"same_attractor", "1", "How many of these are on the same attractor."}, &AgreementRow::same_attractor)
+      .add({"share_attractor", "1", "same_attractor over compared."}, &AgreementRow::share_attractor);
+  return {"agreement", "One ordered pair of cases: how often they agree, a case with itself included.", rows};
 }
 
-Table verdicts_head(const SweptColumns& swept) {
+TableType<VerdictRow> verdicts_type(const SweptColumns& swept) {
+  RowType<VerdictRow> rows;
+  rows.add(in_units_of(swept.parameter, "from", "Where the interval begins: half way to the value before."),
+           &VerdictRow::from)
+      .add(in_units_of(swept.parameter, "to", "Where it ends: half way to the value behind."), &VerdictRow::to)
+      .add({"verdict", "", "robust (same classes and branches in every case), depends, or undecided."},
+           &VerdictRow::verdict)
+      .add({"choice", "", "The axis that decides, or several choices; empty where none does."}, &VerdictRow::choice)
+      .add({"sentence", "", "The same in words, with what each choice leads to."}, &VerdictRow::sentence);
   return {"verdicts",
-          "Over all cases: one interval of the parameter, and whether its motion depends on a numerical choice.",
-          {in_units_of(swept.parameter, "from", "Where the interval begins: half way to the value before."),
-           in_units_of(swept.parameter, "to", "Where it ends: half way to the value behind."),
-           {"verdict", "", "robust (same classes and branches in every case), depends, or undecided."},
-           {"choice", "", "The axis that decides, or several choices; empty where none does."},
-           {"sentence", "", "The same in words, with what each choice leads to."}},
-          {}};
+          "Over all cases: one interval of the parameter, and whether its motion depends on a numerical choice.", rows};
 }
 
-Table distances_head(const SweptColumns& swept) {
-  return {"distances",
-          "One orbit of one case against that of the reference case at the same value and from the same start.",
-          {{"reference_case", "", "The case compared with: a rigid contact, the most steps, the most elements."},
-           swept.parameter,
-           start_column,
-           {"wasserstein", "1",
+TableType<DistanceRow> distances_type(const SweptColumns& swept) {
+  RowType<DistanceRow> rows;
+  rows.of_case(&DistanceRow::id)
+      .add({"reference_case", "", "The case compared with: a rigid contact, the most steps, the most elements."},
+           &DistanceRow::reference)
+      .add(swept.parameter, &DistanceRow::parameter)
+      .add(start_column, &DistanceRow::start)
+      .add({"wasserstein", "1",
             "Wasserstein-1 distance of the sections, displacements and velocities over their spread in the study."},
-           {"hausdorff", "1", "Hausdorff distance of the same."},
-           {"null_wasserstein", "1", "Wasserstein-1 distance between two halves of the reference orbit itself."},
-           {"null_hausdorff", "1", "Hausdorff distance between these halves."},
-           {"ratio", "1", "wasserstein over null_wasserstein; empty where an orbit repeats exactly."},
-           {"same_class", "", "Whether both have the same class; empty where one is undecided."},
-           {"formula", "", "exact, or sliced where the sections are too large for the exact distance."}},
-          {}};
+           &DistanceRow::wasserstein)
+      .add({"hausdorff", "1", "Hausdorff distance of the same."}, &DistanceRow::hausdorff)
+      .add({"null_wasserstein", "1", "Wasserstein-1 distance between two halves of the reference orbit itself."},
+           &DistanceRow::null_wasserstein)
+      .add({"null_hausdorff", "1", "Hausdorff distance between these halves."}, &DistanceRow::null_hausdorff)
+      .add({"ratio", "1", "wasserstein over null_wasserstein; empty where an orbit repeats exactly."},
+           &DistanceRow::ratio)
+      .add({"same_class", "", "Whether both have the same class; empty where one is undecided."},
+           &DistanceRow::same_class)
+      .add({"formula", "", "exact, or sliced where the sections are too large for the exact distance."},
+           &DistanceRow::formula);
+  return {"distances",
+          "One orbit of one case against that of the reference case at the same value and from the same start.", rows};
 }
 
-Table shifts_head(const SweptColumns& swept) {
+TableType<ShiftRow> shifts_type(const SweptColumns& swept) {
   const Column& of = swept.parameter;
-  return {"shifts",
-          "One change of the motion of one case against the same change in the reference case.",
-          {{"reference_case", "", "The case compared with, as in distances.csv."},
-           start_column,
-           {"from", "", "Class below the change."},
-           {"to", "", "Class above it."},
-           {"kind", "",
+  RowType<ShiftRow> rows;
+  rows.of_case(&ShiftRow::id)
+      .add({"reference_case", "", "The case compared with, as in distances.csv."}, &ShiftRow::reference)
+      .add(start_column, &ShiftRow::start)
+      .add({"from", "", "Class below the change."}, &ShiftRow::from)
+      .add({"to", "", "Class above it."}, &ShiftRow::to)
+      .add({"kind", "",
             "grazing (contact begins or ends), lift-off (a contact that never opens begins to) or change (any other)."},
-           in_units_of(of, "reference_value", "Where the reference case has the change; empty where it has none."),
-           in_units_of(of, "value", "Where this case has it; empty where it has none."),
-           in_units_of(of, "shift", "value less reference_value."),
-           in_units_of(of, "low", "Least shift that the two brackets allow."),
-           in_units_of(of, "high", "Largest shift that they allow."),
-           {"found", "", "Whether both have the change within a tenth of the range of values."}},
-          {}};
+           &ShiftRow::kind)
+      .add(in_units_of(of, "reference_value", "Where the reference case has the change; empty where it has none."),
+           &ShiftRow::reference_value)
+      .add(in_units_of(of, "value", "Where this case has it; empty where it has none."), &ShiftRow::value)
+      .add(in_units_of(of, "shift", "value less reference_value."), &ShiftRow::shift)
+      .add(in_units_of(of, "low", "Least shift that the two brackets allow."), &ShiftRow::low)
+      .add(in_units_of(of, "high", "Largest shift that they allow."), &ShiftRow::high)
+      .add({"found", "", "Whether both have the change within a tenth of the range of values."}, &ShiftRow::found);
+  return {"shifts", "One change of the motion of one case against the same change in the reference case.", rows};
 }
 
-Table basin_fractions_head() {
+TableType<FractionRow> basin_fractions_type() {
+  RowType<FractionRow> rows;
+  rows.of_case(&FractionRow::id)
+      .add({"attractor", "", "Number of the attractor, as in cells.csv."}, &FractionRow::attractor)
+      .add(class_column, &FractionRow::regime)
+      .add(period_column, &FractionRow::period)
+      .add({"cells", "1", "Cells that lead there."}, &FractionRow::cells)
+      .add({"fraction", "1", "Their share of the decided cells."}, &FractionRow::fraction)
+      .add({"low", "1", "Lower end of the 95 % interval of that share (Wilson)."}, &FractionRow::low)
+      .add({"high", "1", "Upper end of that interval."}, &FractionRow::high);
   return {"basin_fractions",
-          "One attractor in one case: its share of the grid. Cells that begin beyond a stop are no starts.",
-          {{"attractor", "", "Number of the attractor, as in cells.csv."},
-           class_column,
-           period_column,
-           {"cells", "1", "Cells that lead there."},
-           {"fraction", "1", "Their share of the decided cells."},
-           {"low", "1", "Lower end of the 95 % interval of that share (Wilson)."},
-           {"high", "1", "Upper end of that interval."}},
-          {}};
+          "One attractor in one case: its share of the grid. Cells that begin beyond a stop are no starts.", rows};
 }
 
-Table basin_differences_head() {
-  return {"basin_differences",
-          "One pair of cases: how many cells lead elsewhere.",
-          {{"case", "", "One case."},
-           {"other_case", "", "The case it is compared with."},
-           {"cells", "1", "Cells that both decide."},
-           {"differ", "1", "Those that lead to different attractors."},
-           {"share", "1", "differ over cells."}},
-          {}};
+TableType<BasinDifferenceRow> basin_differences_type() {
+  RowType<BasinDifferenceRow> rows;
+  rows.add({"case", "", "One case."}, &BasinDifferenceRow::id)
+      .add({"other_case", "", "The case it is compared with."}, &BasinDifferenceRow::other)
+      .add({"cells", "1", "Cells that both decide."}, &BasinDifferenceRow::cells)
+      .add({"differ", "1", "Those that lead to different attractors."}, &BasinDifferenceRow::differ)
+      .add({"share", "1", "differ over cells."}, &BasinDifferenceRow::share);
+  return {"basin_differences", "One pair of cases: how many cells lead elsewhere.", rows};
 }
 
-Table basin_uncertainty_head() {
-  return {"basin_uncertainty",
-          "One case: how rough the boundary of its basins is.",
-          {{"boundary_share", "1", "Share of the decided cells that have a neighbour of another basin."},
-           {"exponent", "1",
+TableType<UncertaintyRow> basin_uncertainty_type() {
+  RowType<UncertaintyRow> rows;
+  rows.of_case(&UncertaintyRow::id)
+      .add({"boundary_share", "1", "Share of the decided cells that have a neighbour of another basin."},
+           &UncertaintyRow::boundary_share)
+      .add({"exponent", "1",
             "Uncertainty exponent: f(ε) ~ ε^exponent for the share f of cells whose end an error ε may change."},
-           {"low", "1", "Lower end of its 95 % interval."},
-           {"high", "1", "Upper end of that interval."}},
-          {}};
+           &UncertaintyRow::exponent)
+      .add({"low", "1", "Lower end of its 95 % interval."}, &UncertaintyRow::low)
+      .add({"high", "1", "Upper end of that interval."}, &UncertaintyRow::high);
+  return {"basin_uncertainty", "One case: how rough the boundary of its basins is.", rows};
 }
 
 void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
   for (Table& table : record.tables) {
     const int columns = static_cast<int>(table.columns.size());
-    for (const Table& head : {values_head(columns, swept), bifurcations_head(swept), cells_head(swept)})
+    for (const Table& head : {values_head(columns, swept), bifurcations_head(swept), cells_type(swept).head()})
       if (head.name == table.name) describe(table, head);
   }
   for (NumberTable& table : record.numbers)

@@ -14,11 +14,19 @@ namespace ricochet {
 /// "periodic 3", "chaotic": a class and its period, as `values` and `cells` have them, in the words of `bifurcations`.
 std::string regime_text(const std::string& regime, std::optional<double> period);
 
+/// The period of a class as its column holds it: nothing where nothing repeats.
+inline std::optional<int> period_of(const MotionClass& motion) {
+  return motion.period > 0 ? std::optional(motion.period) : std::nullopt;
+}
+
+inline constexpr char values_name[] = "values";
+
 /// One row of `values`: what came of one value of the parameter from one start.
 struct OrbitRow {
   struct Exponent {
     std::optional<double> value, low, high;  ///< 1/s
   };
+  std::string id;  ///< of the case
   double parameter = NAN;
   std::string start, regime;
   std::optional<int> period;  ///< forcing periods
@@ -57,10 +65,89 @@ RowType<ChangeRow> change_row_type(const SweptColumns& swept = {});
 /// The changes of a case, in its order; none where it has no such table.
 std::vector<ChangeRow> changes_of(const CaseRecord& record);
 
+/// One row of `cells`: a start, or a scene, and where it leads.
+struct CellRow {
+  std::string id;
+  std::optional<double> x, y;
+  std::string regime;
+  std::optional<int> period = {}, attractor = {};
+  std::optional<bool> marched = {};
+  std::optional<std::size_t> source = {};
+  std::optional<std::string> status = {}, reason = {};
+};
+
+/// One row of `attractors`.
+struct AttractorRow {
+  std::optional<int> attractor;
+  std::string label;
+  std::optional<int> cases;
+  std::optional<double> from, to;
+  std::string regime;
+  std::optional<int> period;
+  std::optional<bool> symmetric;
+  std::optional<double> fraction, fraction_low, fraction_high;
+  std::string presence, sentence;
+};
+
+/// One row of `agreement`: an ordered pair of cases.
+struct AgreementRow {
+  std::string id, other;
+  int compared = 0, same = 0;  ///< of these, in class
+  std::optional<double> share;
+  int same_attractor = 0;
+  std::optional<double> share_attractor;
+};
+
+/// One row of `verdicts`: an interval of the parameter.
+struct VerdictRow {
+  double from = NAN, to = NAN;
+  std::string verdict, choice, sentence;
+};
+
+/// One row of `distances`: an orbit against that of the reference case.
+struct DistanceRow {
+  std::string id, reference;
+  std::optional<double> parameter;
+  std::string start;
+  std::optional<double> wasserstein = {}, hausdorff = {}, null_wasserstein = {}, null_hausdorff = {}, ratio = {};
+  std::optional<bool> same_class = {};
+  std::string formula = {};
+};
+
+/// One row of `shifts`: a change of the motion against the same of the reference case.
+struct ShiftRow {
+  std::string id, reference, start, from, to, kind;
+  std::optional<double> reference_value = {}, value = {}, shift = {}, low = {}, high = {};
+  std::optional<bool> found = {};
+};
+
+/// One row of `basin_fractions`: an attractor in one case.
+struct FractionRow {
+  std::string id;
+  int attractor = 0;
+  std::string regime;
+  std::optional<int> period;
+  int cells = 0;
+  std::optional<double> fraction, low, high;
+};
+
+/// One row of `basin_differences`: a pair of cases.
+struct BasinDifferenceRow {
+  std::string id, other;
+  int cells = 0, differ = 0;
+  std::optional<double> share;
+};
+
+/// One row of `basin_uncertainty`: a case.
+struct UncertaintyRow {
+  std::string id;
+  std::optional<double> boundary_share, exponent, low, high;
+};
+
 /// Of a case, kept in the store.
 Table values_head(int exponents, const SweptColumns& swept = {});
 Table bifurcations_head(const SweptColumns& swept = {});
-Table cells_head(const SweptColumns& swept = {});
+TableType<CellRow> cells_type(const SweptColumns& swept = {});
 NumberTable points_head(const SweptColumns& swept = {});
 NumberTable impacts_head(const SweptColumns& swept = {});
 NumberTable portraits_head(const SweptColumns& swept = {});
@@ -69,15 +156,18 @@ NumberTable cell_points_head();
 NumberTable contact_law_head();
 
 /// Over all cases, worked out of these.
-Table attractors_head(const SweptColumns& swept);
-Table agreement_head();
-Table verdicts_head(const SweptColumns& swept);
-Table basin_differences_head();
+TableType<AttractorRow> attractors_type(const SweptColumns& swept = {});
+TableType<AgreementRow> agreement_type();
+TableType<VerdictRow> verdicts_type(const SweptColumns& swept = {});
+TableType<BasinDifferenceRow> basin_differences_type();
 /// Of single cases, worked out of these: what stands behind `case` and the axes.
-Table distances_head(const SweptColumns& swept);
-Table shifts_head(const SweptColumns& swept);
-Table basin_fractions_head();
-Table basin_uncertainty_head();
+TableType<DistanceRow> distances_type(const SweptColumns& swept = {});
+TableType<ShiftRow> shifts_type(const SweptColumns& swept = {});
+TableType<FractionRow> basin_fractions_type();
+TableType<UncertaintyRow> basin_uncertainty_type();
+
+/// The column of `values` and `cells` that comparing the cases fills in.
+extern const Column attractor_column;
 
 /// Gives the tables that a case of a sweep left their units and meanings.
 void describe_sweep(CaseRecord& record, const SweptColumns& swept);

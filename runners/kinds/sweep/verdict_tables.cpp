@@ -31,17 +31,17 @@ class Verdicts {
       : study_(study), diagram_(study.diagram), classes_(attractor_classes(study.diagram)) {}
 
   Table table() const {
-    Table out = verdicts_head(study_.swept);
+    std::vector<VerdictRow> rows;
     const std::vector<Stretch> stretches = stretches_of(diagram_, study_.axes);
     for (std::size_t k = 0; k < stretches.size(); ++k) {
       const double first = value(stretches[k].front()), last = value(stretches[k].back());
       const double from = k == 0 ? first : (value(stretches[k - 1].back()) + first) / 2;
       const double to = k + 1 == stretches.size() ? last : (last + value(stretches[k + 1].front())) / 2;
       const Opinion& opinion = stretches[k].front();
-      out.rows.push_back({rounded(from), rounded(to), word(opinion.verdict), choice_name(opinion),
-                          sentence(stretches[k]) + (k == 0 ? left_out() : "")});
+      rows.push_back({rounded(from), rounded(to), word(opinion.verdict), choice_name(opinion),
+                      sentence(stretches[k]) + (k == 0 ? left_out() : "")});
     }
-    return out;
+    return verdicts_type(study_.swept).with(rows);
   }
 
  private:

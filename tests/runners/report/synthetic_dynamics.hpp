@@ -136,8 +136,8 @@ inline void derive_synthetic(StudyResults& out) {
     row.insert(row.end(), more.begin(), more.end());
     return row;
   };
-  Table distances = table_of_cases(out, distances_head({})), shifts = table_of_cases(out, shifts_head({})),
-        agreement = agreement_head(),
+  Table distances = table_of_cases(out, distances_type().head()), shifts = table_of_cases(out, shifts_type().head()),
+        agreement = agreement_type().head(),
         values = table_of_cases(out, "values", "", named_columns({"parameter", "start", "attractor"}));
   const std::string& reference = out.cases.front().id;
   for (size_t c = 0; c < out.cases.size(); ++c) {
@@ -165,7 +165,7 @@ inline void derive_synthetic(StudyResults& out) {
     }
   }
   out.derived.push_back(std::move(values));
-  out.derived.push_back(attractors_head({}));
+  out.derived.push_back(attractors_type().head());
   out.derived.back().rows = {{1, "common to all", 2, 0.07, 0.085, "periodic", 1, true, 0.66, 0.6, 0.71, "",
                               "Attractor 1 is met by all cases."},
                              {2, "depends on time.beta", 1, 0.085, 0.1, "chaotic", nullptr, nullptr, 0.34, 0.29, 0.4,
@@ -173,7 +173,7 @@ inline void derive_synthetic(StudyResults& out) {
   out.derived.push_back(std::move(distances));
   out.derived.push_back(std::move(shifts));
   out.derived.push_back(std::move(agreement));
-  out.derived.push_back(verdicts_head({}));
+  out.derived.push_back(verdicts_type().head());
   out.derived.back().rows = {
       {0.07, 0.085, "robust", "", "Between 0.07 and 0.085 all methods agree."},
       {0.085, 0.092, "depends", "time.beta", "Between 0.085 and 0.092 time.beta decides: 2 of 2 <differ>."},
@@ -242,8 +242,8 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
   out.expected_cases = 2;
   out.derived.push_back(std::move(cells));
   Table attractors{"attractors", "", named_columns({"attractor", "label", "cases", "class", "period"}), {}};
-  Table fractions = table_of_cases(out, basin_fractions_head()),
-        uncertainty = table_of_cases(out, basin_uncertainty_head());
+  Table fractions = table_of_cases(out, basin_fractions_type().head()),
+        uncertainty = table_of_cases(out, basin_uncertainty_type().head());
   for (const int k : {1, 2, 3}) attractors.rows.push_back({k, "common to all", 2, "periodic", k});
   for (const char* mass : {"full", "poor"}) {
     for (const int k : {1, 2, 3})
@@ -253,7 +253,7 @@ inline StudyResults basins(int count = 40, double shift = 0.2) {
   out.derived.push_back(std::move(attractors));
   out.derived.push_back(std::move(fractions));
   out.derived.push_back(std::move(uncertainty));
-  out.derived.push_back(basin_differences_head());
+  out.derived.push_back(basin_differences_type().head());
   out.derived.back().rows = {{"poor", "full", 1500, 150, 0.1}, {"full", "poor", 1500, 150, 0.1}};
   return out;
 }

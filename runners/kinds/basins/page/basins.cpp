@@ -13,6 +13,7 @@
 #include "runners/kinds/sweep/page/orbits.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/table/in_order_met.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -34,14 +35,13 @@ struct PlacedCell {
   bool filled = false;
 };
 
-Rank rank_of(const TableReader& rows, size_t row) {
-  if (const auto attractor = rows.number(row, rows.column_if_any("attractor"))) return {std::llround(*attractor), ""};
-  const std::string status = rows.text(row, rows.column_if_any("status")), regime = rows.text(row, "class");
-  const auto period = rows.number(row, "period");
+Rank rank_of(const CellRow& cell) {
+  if (cell.attractor) return {*cell.attractor, ""};
+  const std::string status = cell.status.value_or("");
   if (status == no_start) return {not_started, no_start};
-  if (!status.empty() && (status == "failed" || status == "refused" || status == "diverged"))
+  if ((status == "failed" || status == "refused" || status == "diverged"))
     return {no_attractor + static_cast<long long>(failed_group), regime_groups[failed_group].name};
-  const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
+  const size_t group = regime_group(cell.regime, cell.period);
   return {no_attractor + static_cast<long long>(group), regime_groups[group].name};
 }
 
@@ -49,41 +49,31 @@ std::vector<PlacedCell> cells_of(const StudyResults& results) {
   std::map<std::string, const CaseRecord*> by_id;
   for (const CaseRecord& record : results.cases) by_id[record.id] = &record;
   std::vector<PlacedCell> out;
+  const TableType<CellRow> type = cells_type();
   const auto read = [&](const Table& table, const CaseRecord* record) {
-    const TableReader rows(table);
-    for (size_t row = 0; row < rows.size(); ++row) {
+    type.rows.each(table, [&](size_t, const CellRow& cell) {
       const CaseRecord* owner = record;
       if (!owner) {
-        const auto found = by_id.find(rows.text(row, "case"));
-        if (found == by_id.end()) continue;
+        const auto found = by_id.find(cell.id);
+        if (found == by_id.end()) return;
         owner = found->second;
       }
-      const auto x = rows.number(row, "x"), y = rows.number(row, "y");
-      if (x && y)
-        out.push_back({owner, *x, *y, rank_of(rows, row), rows.text(row, rows.column_if_any("reason")),
-                       !rows.truth(row, rows.column_if_any("marched")).value_or(true)});
-    }
+      if (cell.x && cell.y)
+        out.push_back({owner, *cell.x, *cell.y, rank_of(cell), cell.reason.value_or(""), !cell.marched.value_or(true)});
+    });
   };
-  for (const Table& table : results.derived)
-    if (table.name == "cells") read(table, nullptr);
+  if (const Table* table = type.find(results.derived)) read(*table, nullptr);
   if (!out.empty()) return out;
   for (const CaseRecord& record : results.cases)
-    if (const Table* table = find_table(record.tables, "cells")) read(*table, &record);
+    if (const Table* table = type.find(record.tables)) read(*table, &record);
   return out;
 }
 
 /// "attractor 2 (periodic 3)".
 std::map<long long, std::string> attractor_names(const StudyResults& results) {
   std::map<long long, std::string> out;
-  for (const Table& table : results.derived) {
-    if (table.name != "attractors") continue;
-    const TableReader rows(table);
-    for (size_t row = 0; row < rows.size(); ++row) {
-      const auto number = rows.number(row, "attractor"), period = rows.number(row, "period");
-      if (!number) continue;
-      out[std::llround(*number)] = regime_text(rows.text(row, "class"), period);
-    }
-  }
+  for (const AttractorRow& row : attractors_type().read(results.derived))
+    if (row.attractor) out[*row.attractor] = regime_text(row.regime, row.period);
   return out;
 }
 
@@ -156,67 +146,57 @@ namespace {
 
 /// Attractors × cases: share of the cells.
 std::string fractions_html(const CaseView& view) {
-  const AxisRows rows(view.results(), "basin_fractions");
+  const std::vector<FractionRow> rows = basin_fractions_type().read(view.results().derived);
   if (rows.empty()) return "";
-  std::map<std::pair<std::string, std::string>, size_t> place;
-  std::map<std::string, std::string> classes;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    place[{rows.text(row, "attractor"), rows.text(row, "case")}] = row;
-    const auto period = rows.number(row, "period");
-    classes[rows.text(row, "attractor")] = regime_text(rows.text(row, "class"), period);
+  InOrderMet<std::string, bool> cases;
+  InOrderMet<int, std::map<std::string, const FractionRow*>> attractors;  // by case
+  for (const FractionRow& row : rows) {
+    cases[row.id] = true;
+    attractors[row.attractor][row.id] = &row;
   }
-  const std::vector<std::string> cases = rows.values("case");
   HtmlTable table("Share of the decided cells that ends in each attractor, with its 95 % interval.",
                   {{"ends in"}, {"class"}});
-  for (const std::string& one : cases) table.add({view.name_of(one)});
-  for (const std::string& attractor : rows.values("attractor")) {
-    table.row(attractor.empty() ? "none" : "attractor " + attractor).text(classes[attractor]);
-    for (const std::string& one : cases) {
-      const auto found = place.find({attractor, one});
-      const auto share = found == place.end() ? std::nullopt : rows.number(found->second, "fraction");
-      if (!share) {
+  for (const auto& [one, met] : cases.list()) table.add({view.name_of(one)});
+  for (const auto& [attractor, of_cases] : attractors.list()) {
+    const FractionRow& last = *of_cases.rbegin()->second;
+    table.row(fmt::format("attractor {}", attractor)).text(regime_text(last.regime, last.period));
+    for (const auto& [one, met] : cases.list()) {
+      const auto found = of_cases.find(one);
+      if (found == of_cases.end() || !found->second->fraction) {
         table.absent();
         continue;
       }
-      const size_t row = found->second;
-      table.number(share_text(*share, rows.number(row, "low"), rows.number(row, "high")),
-                   number_text(rows.number(row, "cells").value_or(0)) + " cells");
+      const FractionRow& row = *found->second;
+      table.number(share_text(*row.fraction, row.low, row.high), number_text(row.cells) + " cells");
     }
   }
   return table.html();
 }
 
 std::string uncertainty_html(const CaseView& view) {
-  const AxisRows rows(view.results(), "basin_uncertainty");
   HtmlTable table(
       "Uncertainty exponent s: the share of cells with an uncertain end falls as (uncertainty)<sup>s</sup>; 1 is a "
       "smooth boundary, 0 one that no accuracy resolves (Grebogi, McDonald, Ott and Yorke 1983). With its 95 % "
       "interval.",
       {{"case"}, {"cells at the boundary", true}, {"s"}, {""}});
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto value = rows.number(row, "exponent"), low = rows.number(row, "low"), high = rows.number(row, "high"),
-               share = rows.number(row, "boundary_share");
+  for (const auto& [id, share, value, low, high] : basin_uncertainty_type().read(view.results().derived)) {
     std::string text = "too few scales to say";
     if (value) text = number_text(*value, 3);
     if (value && low && high) text += fmt::format(" ({} to {})", number_text(*low, 3), number_text(*high, 3));
     const char* said = !value || !high ? "–" : *high < 1 ? "fractal boundary" : "a smooth boundary is not excluded";
-    table.row(view.name_of(rows.text(row, "case"))).number(share ? share_text(*share) : "–").text(text).text(said);
+    table.row(view.name_of(id)).number(share ? share_text(*share) : "–").text(text).text(said);
   }
   return table.html();
 }
 
 std::string differences_html(const CaseView& view) {
-  const AxisRows rows(view.results(), "basin_differences");
   HtmlTable table("Cells that end elsewhere with another method.",
                   {{"case"}, {"and"}, {"decided in both", true}, {"differ", true}, {"share", true}});
   std::set<std::pair<std::string, std::string>> said;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const std::string one = rows.text(row, "case"), other = rows.text(row, "other_case");
+  for (const auto& [one, other, cells, differ, share] : basin_differences_type().read(view.results().derived)) {
     if (one == other || !said.emplace(std::min(one, other), std::max(one, other)).second) continue;  // each pair once
-    const auto share = rows.number(row, "share");
-    table.row(view.name_of(one)).text(view.name_of(other));
-    table.number(number_text(rows.number(row, "cells").value_or(0)));
-    table.number(number_text(rows.number(row, "differ").value_or(0))).number(share ? share_text(*share) : "–");
+    table.row(view.name_of(one)).text(view.name_of(other)).number(number_text(cells));
+    table.number(number_text(differ)).number(share ? share_text(*share) : "–");
   }
   return table.html();
 }
@@ -248,21 +228,18 @@ std::vector<std::string> basins_said(const CaseView& view) {
                     basins.xs.size() * basins.ys.size()));
   double most = -1;
   std::string who;
-  const AxisRows differences(view.results(), "basin_differences");
-  for (size_t row = 0; row < differences.size(); ++row)
-    if (const auto share = differences.number(row, "share"); share && *share > most) {
-      most = *share;
-      who = view.name_of(differences.text(row, "case")) + " and " + view.name_of(differences.text(row, "other_case"));
+  for (const BasinDifferenceRow& row : basin_differences_type().read(view.results().derived))
+    if (row.share && *row.share > most) {
+      most = *row.share;
+      who = view.name_of(row.id) + " and " + view.name_of(row.other);
     }
   if (most >= 0 && basins.grids.size() > 1)
     out.push_back(fmt::format("At most {} of them depend on the method ({}).", share_text(most), who));
-  const AxisRows exponents(view.results(), "basin_uncertainty");
-  for (size_t row = 0; row < exponents.size(); ++row)
-    if (const auto high = exponents.number(row, "high"); high && *high < 1)
+  for (const UncertaintyRow& row : basin_uncertainty_type().read(view.results().derived))
+    if (row.high && *row.high < 1)
       out.push_back(fmt::format("The boundary of basins is fractal in {}: uncertainty exponent {} (95 %: {} to {}).",
-                                view.name_of(exponents.text(row, "case")),
-                                number_text(exponents.number(row, "exponent").value_or(0), 2),
-                                number_text(exponents.number(row, "low").value_or(0), 2), number_text(*high, 2)));
+                                view.name_of(row.id), number_text(row.exponent.value_or(0), 2),
+                                number_text(row.low.value_or(0), 2), number_text(*row.high, 2)));
   return out;
 }
 

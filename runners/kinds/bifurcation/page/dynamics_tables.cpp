@@ -9,9 +9,9 @@
 
 #include "runners/kinds/bifurcation/page/page.hpp"
 #include "runners/kinds/sweep/page/orbits.hpp"
+#include "runners/kinds/sweep/sweep_summaries.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -26,15 +26,8 @@ using GroupCounts = std::array<size_t, regime_groups.size()>;
 /// Those of each case, from `class_counts`.
 std::map<std::string, GroupCounts> count_groups(const StudyResults& results) {
   std::map<std::string, GroupCounts> out;
-  const Table* counts = find_table(results.derived, "class_counts");
-  if (!counts) return out;
-  const TableReader rows(*counts);
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto period = rows.number(row, "period");
-    const size_t group =
-        regime_group(rows.text(row, "class"), period ? std::optional(static_cast<int>(*period)) : std::nullopt);
-    out[rows.text(row, "case")][group] += static_cast<size_t>(rows.number(row, "orbits").value_or(0));
-  }
+  for (const ClassCount& row : class_counts_type().read(results.derived))
+    out[row.id][regime_group(row.regime, row.period)] += static_cast<size_t>(row.orbits);
   return out;
 }
 
@@ -57,19 +50,17 @@ std::string regime_sentence(const GroupCounts& counts) {
 
 /// Where motion first touches, over the methods, for each start.
 std::string grazing_sentence(const StudyResults& results, const Cases& cases, const Quantity& parameter) {
-  const Table* ranges = find_table(results.derived, "grazing_ranges");
-  if (!ranges) return "";
-  const TableReader rows(*ranges);
+  const std::vector<GrazingRange> rows = grazing_ranges_type().read(results.derived);
   std::string out;
   for (const std::string& start : starts_in(cases))
-    for (size_t row = 0; row < rows.size(); ++row) {
-      if (rows.text(row, "start") != start) continue;
-      const double low = rows.number(row, "low").value_or(0), high = rows.number(row, "high").value_or(0);
+    for (const GrazingRange& row : rows) {
+      if (row.start != start) continue;
+      const double low = row.low.value_or(0), high = row.high.value_or(0);
       const std::string text =
           low == high ? value_text(low, parameter) : number_text(low, 7) + " to " + value_text(high, parameter);
       out += fmt::format("<p>Grazing, start {}: {} ({}; each located to {}).</p>\n", escape(start), text,
-                         count_text(static_cast<size_t>(rows.number(row, "changes").value_or(0)), "change", "changes"),
-                         value_text(rows.number(row, "bracket").value_or(0), parameter));
+                         count_text(static_cast<size_t>(row.changes), "change", "changes"),
+                         value_text(row.bracket, parameter));
     }
   return out;
 }
@@ -83,17 +74,14 @@ struct Viscosity {
 
 std::map<std::string, Viscosity> viscosities_of(const StudyResults& results) {
   std::map<std::string, Viscosity> out;
-  const Table* table = find_table(results.derived, "numerical_viscosity");
-  if (!table) return out;
-  const TableReader rows(*table);
-  for (size_t row = 0; row < rows.size(); ++row) {
-    Viscosity& one = out[rows.text(row, "case")];
-    for (const char* end : {"low", "high"})
-      if (const auto value = rows.number(row, end)) one.numerical.include(*value);
-    for (const char* end : {"physical_low", "physical_high"})
-      if (const auto value = rows.number(row, end)) one.physical.include(*value);
-    one.share = rows.number(row, "share");
-    one.small = rows.truth(row, "small").value_or(true);
+  for (const NumericalViscosity& row : numerical_viscosity_type().read(results.derived)) {
+    Viscosity& one = out[row.id];
+    for (const auto& value : {row.low, row.high})
+      if (value) one.numerical.include(*value);
+    for (const auto& value : {row.physical_low, row.physical_high})
+      if (value) one.physical.include(*value);
+    one.share = row.share;
+    one.small = row.small.value_or(true);
   }
   return out;
 }
@@ -179,9 +167,15 @@ std::string dynamics_answer_html(const CaseView& view) {
 
 namespace {
 
-std::string interval_text(const AxisRows& rows, size_t row, const char* low, const char* high, int digits = 7) {
-  const auto a = rows.number(row, low), b = rows.number(row, high);
-  return a && b ? number_text(*a, digits) + " to " + number_text(*b, digits) : "";
+std::string interval_text(const std::optional<double>& low, const std::optional<double>& high, int digits = 7) {
+  return low && high ? number_text(*low, digits) + " to " + number_text(*high, digits) : "";
+}
+
+std::vector<std::string> distinct(const std::vector<AgreementRow>& rows, std::string AgreementRow::*member) {
+  std::vector<std::string> out;
+  for (const AgreementRow& row : rows)
+    if (std::find(out.begin(), out.end(), row.*member) == out.end()) out.push_back(row.*member);
+  return out;
 }
 
 /// The table under its title; "" without rows.
@@ -190,47 +184,41 @@ std::string titled(const char* title, const HtmlTable& table) {
 }
 
 std::string attractors_html(const StudyResults& results) {
-  const AxisRows rows(results, "attractors");
   HtmlTable table(
       "One identity along the parameter and over all methods. Fraction: of the starts that lead there where it exists, "
       "with its 95 % interval. Orbits that are each other's image under x → −x, t → t + T/2 count as one.",
       {{"attractor"}, {"class"}, {"symmetric"}, {"label"}, {"cases"}, {"from, to"}, {"fraction of starts"}, {"where"}});
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto period = rows.number(row, "period"), share = rows.number(row, "fraction");
-    const std::string regime = rows.text(row, "class"), sentence = rows.text(row, "sentence");
-    const size_t group = regime_group(regime, period ? std::optional(static_cast<int>(*period)) : std::nullopt);
-    const std::string symmetric = rows.text(row, "symmetric").empty() ? "" : rows.flag(row, "symmetric") ? "yes" : "no";
-    table.row(rows.text(row, "attractor"));
-    table.cell(swatch(regime_groups[group].colour) + escape(regime_text(regime, period)));
-    table.text(symmetric).text(rows.text(row, "label")).number(rows.number(row, "cases"));
-    table.text(interval_text(rows, row, "from", "to", 6))
-        .text(share ? share_text(*share, rows.number(row, "fraction_low"), rows.number(row, "fraction_high")) : "");
-    table.text(sentence.empty() ? rows.text(row, "presence") : sentence, "reason");
+  for (const AttractorRow& row : attractors_type().read(results.derived)) {
+    const size_t group = regime_group(row.regime, row.period);
+    table.row(row.attractor ? std::to_string(*row.attractor) : "");
+    table.cell(swatch(regime_groups[group].colour) + escape(regime_text(row.regime, row.period)));
+    table.text(!row.symmetric ? "" : *row.symmetric ? "yes" : "no").text(row.label).number(row.cases);
+    table.text(interval_text(row.from, row.to, 6))
+        .text(row.fraction ? share_text(*row.fraction, row.fraction_low, row.fraction_high) : "");
+    table.text(row.sentence.empty() ? row.presence : row.sentence, "reason");
   }
   return titled("Attractors", table);
 }
 
 std::string shifts_html(const CaseView& view, const Quantity& parameter) {
-  const AxisRows rows(view.results(), "shifts");
+  const std::vector<ShiftRow> rows = shifts_type().read(view.results().derived);
   if (rows.empty()) return "";
   HtmlTable table(
       fmt::format("Where the changes of the reference ({}) lie in the other methods, in {}. Bold: the interval of the "
                   "shift leaves out zero.",
-                  escape(view.name_of(rows.text(rows.size() - 1, "reference_case"))), escape(with_unit(parameter))),
+                  escape(view.name_of(rows.back().reference)), escape(with_unit(parameter))),
       {{"method"}, {"start"}, {"change"}, {"kind"}, {"reference"}, {"here"}, {"shift"}, {"interval"}, {""}});
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto here = rows.number(row, "value"), shift = rows.number(row, "shift"), low = rows.number(row, "low"),
-               high = rows.number(row, "high");
-    const bool beyond = low && high && (*low > 0 || *high < 0), known = shift && low && high;
-    table.row(view.name_of(rows.text(row, "case"))).text(rows.text(row, "start"));
-    table.text(rows.text(row, "from") + " → " + rows.text(row, "to")).text(rows.text(row, "kind"));
-    table.number(rows.number(row, "reference_value"), 7).number(here, 7);
-    if (shift)
-      table.number(number_text(*shift, 3), exact_text(*shift), beyond ? "kept" : "");
+  for (const ShiftRow& row : rows) {
+    const bool beyond = row.low && row.high && (*row.low > 0 || *row.high < 0);
+    table.row(view.name_of(row.id)).text(row.start).text(row.from + " → " + row.to).text(row.kind);
+    table.number(row.reference_value, 7).number(row.value, 7);
+    if (row.shift)
+      table.number(number_text(*row.shift, 3), exact_text(*row.shift), beyond ? "kept" : "");
     else
       table.number("–");
-    table.number(known ? number_text(*low, 3) + " to " + number_text(*high, 3) : "–");
-    table.text(here || rows.text(row, "found").empty() ? "" : "not found");
+    const std::string interval = row.shift ? interval_text(row.low, row.high, 3) : "";
+    table.number(interval.empty() ? "–" : interval);
+    table.text(row.value || !row.found ? "" : "not found");
   }
   return titled("Shifts of the changes", table);
 }
@@ -240,14 +228,10 @@ std::string changes_html(const CaseView& view, const Quantity& parameter) {
                               escape(with_unit(parameter))),
                   {{"method"}, {"start"}, {"kind"}, {"change"}, {"value"}, {"width"}});
   for (const CaseRecord* record : view.all()) {
-    const Table* own = find_table(record->tables, "bifurcations");
-    if (!own) continue;
-    const TableReader rows(*own);
-    for (size_t row = 0; row < rows.size(); ++row) {
-      const auto low = rows.number(row, "low"), high = rows.number(row, "high");
-      table.row(view.name(*record)).text(rows.text(row, "start")).text(rows.text(row, "kind"));
-      table.text(rows.text(row, "from") + " → " + rows.text(row, "to")).number(rows.number(row, "value"), 9);
-      table.number(low && high ? std::optional(*high - *low) : std::nullopt, 2);
+    const auto known = [](double value) { return std::isnan(value) ? std::nullopt : std::optional(value); };
+    for (const ChangeRow& row : changes_of(*record)) {
+      table.row(view.name(*record)).text(row.start).text(row.kind).text(row.from + " → " + row.to);
+      table.number(known(row.value), 9).number(known(row.high - row.low), 2);
     }
   }
   return titled("Located changes", table);
@@ -261,11 +245,12 @@ std::string heat_style(double share) {
 }
 
 std::string agreement_html(const CaseView& view) {
-  const AxisRows rows(view.results(), "agreement");
+  const std::vector<AgreementRow> rows = agreement_type().read(view.results().derived);
   if (rows.empty()) return "";
-  const std::vector<std::string> cases = rows.values("case"), others = rows.values("other_case");
-  std::map<std::pair<std::string, std::string>, size_t> place;
-  for (size_t row = 0; row < rows.size(); ++row) place[{rows.text(row, "case"), rows.text(row, "other_case")}] = row;
+  const std::vector<std::string> cases = distinct(rows, &AgreementRow::id),
+                                 others = distinct(rows, &AgreementRow::other);
+  std::map<std::pair<std::string, std::string>, const AgreementRow*> place;
+  for (const AgreementRow& row : rows) place[{row.id, row.other}] = &row;
   HtmlTable table("Values and starts at which two methods find the same class, in per cent of those that both decide.",
                   {{"method"}}, "matrix heat");
   for (size_t k = 0; k < others.size(); ++k) table.add({std::to_string(k + 1), true, view.name_of(others[k])});
@@ -274,20 +259,18 @@ std::string agreement_html(const CaseView& view) {
     table.row(fmt::format("{} {}", number, view.name_of(one)));
     for (const std::string& other : others) {
       const auto found = place.find({one, other});
-      const auto share = found == place.end() ? std::nullopt : rows.number(found->second, "share");
-      if (!share) {
+      if (found == place.end() || !found->second->share) {
         table.absent();
         continue;
       }
-      const double compared = rows.number(found->second, "compared").value_or(0);
-      const auto attractors = rows.number(found->second, "share_attractor");
+      const AgreementRow& row = *found->second;
       table.cell(
-          fmt::format("{:.0f}", 100 * *share),
+          fmt::format("{:.0f}", 100 * *row.share),
           fmt::format(
               " class=\"number\" style=\"{}\" title=\"{} and {}: the same class in {} of {} values and starts{}\"",
-              heat_style(std::clamp(*share, 0.0, 1.0)), escape(view.name_of(one)), escape(view.name_of(other)),
-              number_text(rows.number(found->second, "same_class").value_or(std::round(*share * compared))),
-              number_text(compared), attractors ? ", the same attractor in " + share_text(*attractors) : ""));
+              heat_style(std::clamp(*row.share, 0.0, 1.0)), escape(view.name_of(one)), escape(view.name_of(other)),
+              number_text(row.same), number_text(row.compared),
+              row.share_attractor ? ", the same attractor in " + share_text(*row.share_attractor) : ""));
     }
   }
   return titled("Agreement of methods", table);

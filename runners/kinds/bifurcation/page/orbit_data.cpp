@@ -148,15 +148,11 @@ OrbitJson columns_of(const Table& table) {
 /// Attractors by (case, parameter, start), from the table that was derived of all cases.
 std::map<std::tuple<std::string, double, std::string>, std::string> attractors_of(const StudyResults& results) {
   std::map<std::tuple<std::string, double, std::string>, std::string> out;
-  for (const Table& table : results.derived) {
-    if (table.name != "values") continue;
-    const TableReader rows(table);
-    const size_t id = rows.column("case"), parameter = rows.column("parameter"), start = rows.column("start"),
-                 attractor = rows.column("attractor");
-    for (size_t row = 0; row < rows.size(); ++row)
-      if (const auto value = rows.number(row, parameter); value && !rows.cell(row, attractor).is_nothing())
-        out[{rows.text(row, id), *value, rows.text(row, start)}] = rows.text(row, attractor);
-  }
+  const Table* values = find_table(results.derived, values_name);
+  if (!values) return out;
+  for (const OrbitRow& orbit : orbits_in(*values))
+    if (!std::isnan(orbit.parameter) && orbit.attractor)
+      out[{orbit.id, orbit.parameter, orbit.start}] = std::to_string(*orbit.attractor);
   return out;
 }
 

@@ -28,9 +28,11 @@ KindPage bifurcation_page() {
 namespace {
 
 struct DistanceKind {
-  const char *name, *null;
+  const char* name;
+  std::optional<double> DistanceRow::*distance, DistanceRow::*null;
 };
-constexpr DistanceKind distance_kinds[] = {{"wasserstein", "null_wasserstein"}, {"hausdorff", "null_hausdorff"}};
+constexpr DistanceKind distance_kinds[] = {{"wasserstein", &DistanceRow::wasserstein, &DistanceRow::null_wasserstein},
+                                           {"hausdorff", &DistanceRow::hausdorff, &DistanceRow::null_hausdorff}};
 
 /// Distances of one kind: by case at each value of the parameter; the null level under "".
 using Distances = std::map<std::string, std::map<double, std::vector<double>>>;
@@ -41,16 +43,14 @@ struct DistanceTable {
 };
 
 DistanceTable read_distances(const StudyResults& results) {
-  const AxisRows rows(results, "distances");
   DistanceTable out;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const auto parameter = rows.number(row, "parameter");
-    if (!parameter) continue;
-    out.reference = rows.text(row, "reference_case");
+  for (const DistanceRow& row : distances_type().read(results.derived)) {
+    if (!row.parameter) continue;
+    out.reference = row.reference;
     for (int k = 0; k < 2; ++k) {
-      auto& own = out.of[k][rows.text(row, "case")][*parameter];  // a case without distances is still known
-      if (const auto value = rows.number(row, distance_kinds[k].name)) own.push_back(*value);
-      if (const auto null = rows.number(row, distance_kinds[k].null)) out.of[k][""][*parameter].push_back(*null);
+      auto& own = out.of[k][row.id][*row.parameter];  // a case without distances is still known
+      if (const auto value = row.*distance_kinds[k].distance) own.push_back(*value);
+      if (const auto null = row.*distance_kinds[k].null) out.of[k][""][*row.parameter].push_back(*null);
     }
   }
   return out;
