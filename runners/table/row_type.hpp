@@ -66,7 +66,11 @@ class RowType {
   /// The column `case` in front of rows that speak of one case: read alone, as add_row() writes it with the axes.
   template <class Owner>
   RowType& of_case(std::string Owner::*id) {
-    in_front_.push_back({case_name, [id](Record& record, const Cell& cell) { record.*id = cell.text(); }});
+    return in_front(case_name, [id](Record& record, const Cell& cell) { record.*id = cell.text(); });
+  }
+  /// Another column that is read alone.
+  RowType& in_front(std::string name, Read read) {
+    in_front_.emplace_back(std::move(name), std::move(read));
     return *this;
   }
 

@@ -122,9 +122,9 @@ class StabilityRun {
   CaseRecord refused(const std::string& sentence) {
     record_.status = "refused";
     record_.reason = sentence;
-    Table table = stability_head();
-    for (const double h : steps_) table.rows.push_back({h, false, nullptr, "", nullptr, nullptr, "refused", sentence});
-    record_.tables.push_back(std::move(table));
+    std::vector<StabilityRow> rows;
+    for (const double h : steps_) rows.push_back({h, false, {}, "", {}, {}, "refused", sentence});
+    record_.tables.push_back(stability_type().with(rows));
     return std::move(record_);
   }
 
@@ -260,26 +260,34 @@ class StabilityRun {
   }
 
   void tabulate(const std::vector<Side>& sides, bool observed) {
-    Table table = stability_head(), seen = stability_observed_head(), roots = stability_roots_head();
+    std::vector<StabilityRow> rows;
+    std::vector<ObservedRow> seen;
+    std::vector<RootRow> roots;
     for (const Side& side : sides)
       for (std::size_t i = 0; i < steps_.size(); ++i) {
         const StepSpectrum* known = side.spectrum(i);
         if (known) add_roots(roots, side.closed, steps_[i], steps_.size(), *known);
         const auto [status, reason] = verdict(sides.front(), side, i, observed);
-        table.rows.push_back({steps_[i], side.closed, known ? Cell(known->radius) : Cell(),
-                              known ? known->marginal : "", side.predicted.step, side.observed.step, status, reason});
+        rows.push_back({steps_[i], side.closed, known ? std::optional(known->radius) : std::nullopt,
+                        known ? known->marginal : "", side.predicted.step, side.observed.step, status, reason});
         if (!observed || !side.cells[i]) continue;
         const ObservedCell& cell = *side.cells[i];
         const bool touched = cell.impacts > 0;
-        seen.rows.push_back({steps_[i], side.closed, behaviour_word(cell.behaviour), cell.growth,
-                             side.closed ? Cell(cell.gain) : Cell(), side.closed ? Cell(cell.impacts) : Cell(),
-                             touched ? Cell(cell.changes_per_impact) : Cell(), touched ? Cell(cell.fast_share) : Cell(),
-                             cell.chatters(), cell.first_bad_step >= 0 ? Cell(cell.first_bad_step) : Cell(), cell.steps,
-                             cell.cause});
+        ObservedRow& row = seen.emplace_back();
+        row = {.step = steps_[i], .closed = side.closed, .behaviour = behaviour_word(cell.behaviour)};
+        row.growth = cell.growth;
+        if (side.closed) row.gain = cell.gain;
+        if (side.closed) row.impacts = cell.impacts;
+        if (touched) row.changes_per_impact = cell.changes_per_impact;
+        if (touched) row.fast_share = cell.fast_share;
+        row.chatter = cell.chatters();
+        if (cell.first_bad_step >= 0) row.first_bad_step = cell.first_bad_step;
+        row.steps = cell.steps;
+        row.cause = cell.cause;
       }
-    record_.tables.push_back(std::move(table));
-    record_.tables.push_back(std::move(roots));
-    if (observed) record_.tables.push_back(std::move(seen));
+    record_.tables.push_back(stability_type().with(rows));
+    record_.tables.push_back(stability_roots_type().with(roots));
+    if (observed) record_.tables.push_back(stability_observed_type().with(seen));
     for (const Side& side : sides) say_limits(sides, side, observed);
     if (observed) say_contradictions(sides.front());
   }
@@ -357,9 +365,8 @@ class StabilityRun {
     const auto step = some_plan();
     const auto range = step ? restitution_range(step->first, step->second) : std::nullopt;
     if (!range) return;
-    Table table = restitution_head();
-    table.rows.push_back({step->second, range->least, range->mean, range->most, Cell(root_at_infinity(step->first))});
-    record_.tables.push_back(std::move(table));
+    record_.tables.push_back(restitution_type().with(
+        {{"", step->second, range->least, range->mean, range->most, root_at_infinity(step->first)}}));
   }
 
   const StudyCase& case_;

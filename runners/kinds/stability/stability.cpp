@@ -55,11 +55,10 @@ void check_stability(const Json& study) {
 
 // Marched at some steps, and stable at none of them.
 bool never_stable(const CaseRecord& record) {
-  const Table* table = find_table(record.tables, "stability_observed");
-  if (!table || table->rows.empty()) return false;
-  const std::size_t behaviour = TableReader(*table).column("behaviour");
-  return std::none_of(table->rows.begin(), table->rows.end(),
-                      [&](const Row& row) { return row.at(behaviour) == "stable" || row.at(behaviour) == "marginal"; });
+  const std::vector<ObservedRow> rows = stability_observed_type().read(record.tables);
+  return !rows.empty() && std::none_of(rows.begin(), rows.end(), [](const ObservedRow& row) {
+    return row.behaviour == "stable" || row.behaviour == "marginal";
+  });
 }
 
 std::string limits_text(const CaseRecord& record) {

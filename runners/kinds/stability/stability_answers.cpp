@@ -9,10 +9,10 @@
 
 #include "runners/answers/numbers_in_words.hpp"
 #include "runners/answers/set_names.hpp"
+#include "runners/kinds/stability/stability_roots.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/row_type.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -23,45 +23,6 @@ using say::Clause, say::Sentence, say::and_list, say::percent, say::short_number
 /// What a limit is called where there is none.
 constexpr const char* unlimited = "none";
 constexpr double moves_limit = 0.01, lowers_limit = 0.98;
-
-/// A row of step_limits, as far as it is read here.
-struct LimitRow {
-  std::string id, prediction, observation;
-  bool closed = false, counted = false, agrees = false;
-  std::optional<double> predicted, observed, ratio;
-  int disagreeing = 0;
-};
-
-struct RootRow {
-  std::string id, root, place;
-  bool twofold = false;
-};
-
-std::vector<LimitRow> limits_in(const StudyResults& results) {
-  RowType<LimitRow> type;
-  type.add({"case", "", ""}, &LimitRow::id)
-      .add({"closed", "", ""}, &LimitRow::closed)
-      .add({"counted", "", ""}, &LimitRow::counted)
-      .add({"prediction", "", ""}, &LimitRow::prediction)
-      .add({"predicted", "", ""}, &LimitRow::predicted)
-      .add({"observation", "", ""}, &LimitRow::observation)
-      .add({"observed", "", ""}, &LimitRow::observed)
-      .add({"ratio", "", ""}, &LimitRow::ratio)
-      .add({"agrees", "", ""}, &LimitRow::agrees)
-      .add({"disagreeing_steps", "", ""}, &LimitRow::disagreeing);
-  const Table* found = find_table(results.derived, "step_limits");
-  return found ? type.read(*found) : std::vector<LimitRow>{};
-}
-
-std::vector<RootRow> roots_in(const StudyResults& results) {
-  RowType<RootRow> type;
-  type.add({"case", "", ""}, &RootRow::id)
-      .add({"root", "", ""}, &RootRow::root)
-      .add({"place", "", ""}, &RootRow::place)
-      .add({"double", "", ""}, &RootRow::twofold);
-  const Table* found = find_table(results.derived, "stability_roots");
-  return found ? type.read(*found) : std::vector<RootRow>{};
-}
 
 /// A method on one mesh: its limits with contact open and closed.
 struct Limits {
@@ -79,7 +40,7 @@ class StepLimits {
     std::map<std::string, const CaseRecord*> by_id;
     for (const CaseRecord& record : study.results().cases) by_id[record.id] = &record;
     std::map<std::string, std::size_t> place;
-    for (const LimitRow& row : limits_in(study.results())) {
+    for (const LimitRow& row : step_limits_type().read(study.results().derived)) {
       const auto found = by_id.find(row.id);
       if (found == by_id.end() || row.prediction.empty()) continue;
       const auto [at, fresh] = place.emplace(row.id, all_.size());
@@ -330,7 +291,7 @@ void StepLimits::say_marches(say::Answer& answer) const {
     for (const LimitRow* row : {&one.open, &one.closed}) {
       if (row->id.empty() || !row->counted || !row->ratio) continue;
       ++both;
-      if (!row->agrees) continue;
+      if (row->agrees != true) continue;
       ++agree;
       worst = std::max(worst, std::abs(*row->ratio - 1));
     }
@@ -367,7 +328,7 @@ void StepLimits::say_gains(say::Answer& answer) const {
 void StepLimits::say_roots(say::Answer& answer) const {
   std::set<std::string> cases;
   std::string root, place;
-  for (const RootRow& row : roots_in(study_.results()))
+  for (const RootRow& row : stability_roots_type().read(study_.results().derived))
     if (row.twofold && cases.insert(row.id).second && root.empty()) root = row.root, place = row.place;
   const Members members = where([&](const Limits& one) { return cases.count(one.record->id) > 0; });
   if (members.empty()) return;

@@ -6,7 +6,6 @@
 
 #include "runners/report/html.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -53,41 +52,42 @@ std::string methods_text(const Told& told) {
 
 }  // namespace
 
-Table stability_roots_head() {
+TableType<RootRow> stability_roots_type() {
+  RowType<RootRow> rows;
+  rows.of_case(&RootRow::id)
+      .add({"closed", "", "Whether contact is closed: points held on both sides. Otherwise the structure alone."},
+           &RootRow::closed)
+      .add({"place", "", "Where it lives: kernel of the mass, held points, or modes."}, &RootRow::place)
+      .add({"root", "", "Which root; on modes, angles that go with the step are one."}, &RootRow::root)
+      .add({"double", "", "Whether it is defective: what it multiplies grows like the number of steps."},
+           &RootRow::twofold)
+      .add({"from", "s", "Smallest step of the range that has it."}, &RootRow::from)
+      .add({"to", "s", "The largest."}, &RootRow::to)
+      .add({"steps", "1", "Steps of the range that have it."}, &RootRow::steps)
+      .add({"of", "1", "Steps of the range."}, &RootRow::of)
+      .add({"times", "1", "How many such roots a step has at most."}, &RootRow::times);
   return {
       "stability_roots",
       "One root on the unit circle that is the scheme's own, over the steps of the range: of a motion that is damped "
       "or has no inertia, or of points that are held.",
-      {{"closed", "", "Whether contact is closed: points held on both sides. Otherwise the structure alone."},
-       {"place", "", "Where it lives: kernel of the mass, held points, or modes."},
-       {"root", "", "Which root; on modes, angles that go with the step are one."},
-       {"double", "", "Whether it is defective: what it multiplies grows like the number of steps."},
-       {"from", "s", "Smallest step of the range that has it."},
-       {"to", "s", "The largest."},
-       {"steps", "1", "Steps of the range that have it."},
-       {"of", "1", "Steps of the range."},
-       {"times", "1", "How many such roots a step has at most."}},
-      {}};
+      rows};
 }
 
-void add_roots(Table& table, bool closed, double h, std::size_t of, const StepSpectrum& spectrum) {
+void add_roots(std::vector<RootRow>& rows, bool closed, double h, std::size_t of, const StepSpectrum& spectrum) {
   std::vector<int> times;  // of this step, by row
   for (const MarginalRoot& root : spectrum.marginal_roots) {
-    const Row key = {closed, place_word(root.place), name_of(root), root.defective};
-    auto row = std::find_if(table.rows.begin(), table.rows.end(),
-                            [&](const Row& one) { return std::equal(key.begin(), key.end(), one.begin()); });
-    if (row == table.rows.end()) {
-      Row begun = key;
-      begun.insert(begun.end(), {h, h, 0, of, 0});
-      row = table.rows.insert(row, begun);
-    }
+    const std::string place = place_word(root.place), name = name_of(root);
+    auto row = std::find_if(rows.begin(), rows.end(), [&](const RootRow& one) {
+      return one.closed == closed && one.place == place && one.root == name && one.twofold == root.defective;
+    });
+    if (row == rows.end()) row = rows.insert(row, {"", closed, place, name, root.defective, h, h, 0, of, 0});
     // Roots of several modes are one row, and one step.
-    const auto at = static_cast<std::size_t>(row - table.rows.begin());
-    times.resize(table.rows.size());
-    if (times[at] == 0) (*row)[6] = (*row)[6].whole().value_or(0) + 1;
+    const auto at = static_cast<std::size_t>(row - rows.begin());
+    times.resize(rows.size());
+    if (times[at] == 0) ++row->steps;
     times[at] += root.count;
-    (*row)[5] = h;
-    (*row)[8] = std::max((*row)[8].whole().value_or(0), std::int64_t{times[at]});
+    row->to = h;
+    row->times = std::max(row->times, times[at]);
   }
 }
 
@@ -107,22 +107,20 @@ std::vector<std::string> roots_told(const StudyResults& results, const std::vect
   std::vector<std::pair<std::string, std::size_t>> methods;  // how many rows each has
   Cases known;
   const std::vector<std::string> others = view.varying_without({"time"});
+  const TableType<RootRow> type = stability_roots_type();
   for (const CaseRecord& record : results.cases) {
-    const Table* table = find_table(record.tables, "stability_roots");
+    const Table* table = type.find(record.tables);
     if (!table) continue;
     known.push_back(&record);
     const std::string method = method_name(view, record, columns);
-    const TableReader rows(*table);
-    in_order_met(methods, method) += rows.size();
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const std::string root = rows.text(row, "root"),
-                        place = spoken_place(rows.text(row, "place"), rows.truth(row, "closed") == true);
-      const bool grows = rows.truth(row, "double") == true;
-      Told& told = in_order_met(in_order_met(found, place), grows ? "double " + root + ", which grows linearly" : root);
+    in_order_met(methods, method) += table->rows.size();
+    for (const RootRow& row : type.rows.read(*table)) {
+      Told& told = in_order_met(in_order_met(found, spoken_place(row.place, row.closed)),
+                                row.twofold ? "double " + row.root + ", which grows linearly" : row.root);
       if (told.cases.empty() || told.cases.back() != &record) told.cases.push_back(&record);
       Share& share = in_order_met(told.methods, method);
-      share.steps += rows.number(row, "steps").value_or(0);
-      share.of += rows.number(row, "of").value_or(0);
+      share.steps += static_cast<double>(row.steps);
+      share.of += static_cast<double>(row.of);
     }
   }
   std::vector<std::string> out, none;

@@ -4,14 +4,24 @@
 #include <vector>
 
 #include "runners/report/case_view.hpp"
+#include "runners/table/row_type.hpp"
 
 namespace ricochet {
 
-/// `stability_roots`, without rows: one per root on the unit circle that is the scheme's own, over the steps of a case.
-Table stability_roots_head();
+/// One row of `stability_roots`: a root on the unit circle that is the scheme's own, over the steps of a case.
+struct RootRow {
+  std::string id;
+  bool closed = false;
+  std::string place, root;
+  bool twofold = false;
+  double from = 0, to = 0;
+  std::size_t steps = 0, of = 0;
+  int times = 0;
+};
+TableType<RootRow> stability_roots_type();
 
 /// Counts the roots of the step h, one of so many, in the rows of `stability_roots`.
-void add_roots(Table& table, bool closed, double h, std::size_t of, const StepSpectrum& spectrum);
+void add_roots(std::vector<RootRow>& rows, bool closed, double h, std::size_t of, const StepSpectrum& spectrum);
 
 /// "newmark (beta 0.25, gamma 0.5)": a case by what tells methods apart, as one item of a list.
 std::string method_name(const report::CaseView& view, const CaseRecord& record,

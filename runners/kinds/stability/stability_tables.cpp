@@ -10,7 +10,6 @@
 
 #include "runners/kinds/stability/stability_roots.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -19,59 +18,76 @@ const Column step_column{"step", "s", "Time step h of the range."};
 
 }  // namespace
 
-Table stability_head() {
-  return {"stability",
-          "One step of the range, with the contact held open or closed: what the plan predicts, and what was seen.",
-          {step_column,
-           {"closed", "",
+TableType<StabilityRow> stability_type() {
+  RowType<StabilityRow> rows;
+  rows.add(step_column, &StabilityRow::step)
+      .add({"closed", "",
             "Whether contact is closed: predicted with points held on both sides, observed in the scene itself, whose "
             "contacts open and close. Otherwise the structure alone."},
-           {"radius", "1", "Spectral radius of the step, the largest modulus of its eigenvalues."},
-           {"marginal", "", "Which roots on the unit circle are the scheme's own, and what they do."},
-           {"limit_predicted", "s", "Largest step of the range up to which the radius stays at 1; empty: none found."},
-           {"limit_observed", "s", "Largest step up to which marches stay bounded, by bisection; empty: none found."},
-           {"status", "", "stable, marginal, unstable, failed or refused."},
-           {"reason", "", "What grows and how fast, and where prediction and march disagree."}},
-          {}};
+           &StabilityRow::closed)
+      .add({"radius", "1", "Spectral radius of the step, the largest modulus of its eigenvalues."},
+           &StabilityRow::radius)
+      .add({"marginal", "", "Which roots on the unit circle are the scheme's own, and what they do."},
+           &StabilityRow::marginal)
+      .add({"limit_predicted", "s", "Largest step of the range up to which the radius stays at 1; empty: none found."},
+           &StabilityRow::limit_predicted)
+      .add({"limit_observed", "s", "Largest step up to which marches stay bounded, by bisection; empty: none found."},
+           &StabilityRow::limit_observed)
+      .add({"status", "", "stable, marginal, unstable, failed or refused."}, &StabilityRow::status)
+      .add({"reason", "", "What grows and how fast, and where prediction and march disagree."}, &StabilityRow::reason);
+  return {"stability",
+          "One step of the range, with the contact held open or closed: what the plan predicts, and what was seen.",
+          rows};
 }
 
-Table stability_observed_head() {
-  return {"stability_observed",
-          "One integration: a step of the range, of the structure alone or of the scene with its contacts.",
-          {step_column,
-           {"closed", "", "Whether the scene with its contacts was marched; otherwise the structure alone."},
-           {"behaviour", "", "stable, marginal (grows like the number of steps), unstable, diverged or failed."},
-           {"growth", "1", "Growth of the amplitudes per step, where they grow geometrically."},
-           {"gain", "1", "Largest energy that nothing gave, over all that was given."},
-           {"impacts", "1", "Number of times that a contact point closed, summed over the points."},
-           {"changes_per_impact", "1",
+TableType<ObservedRow> stability_observed_type() {
+  RowType<ObservedRow> rows;
+  rows.add(step_column, &ObservedRow::step)
+      .add({"closed", "", "Whether the scene with its contacts was marched; otherwise the structure alone."},
+           &ObservedRow::closed)
+      .add({"behaviour", "", "stable, marginal (grows like the number of steps), unstable, diverged or failed."},
+           &ObservedRow::behaviour)
+      .add({"growth", "1", "Growth of the amplitudes per step, where they grow geometrically."}, &ObservedRow::growth)
+      .add({"gain", "1", "Largest energy that nothing gave, over all that was given."}, &ObservedRow::gain)
+      .add({"impacts", "1", "Number of times that a contact point closed, summed over the points."},
+           &ObservedRow::impacts)
+      .add({"changes_per_impact", "1",
             "Changes of the set of closed points for each time that contact began anywhere; 2: it closes and opens."},
-           {"fast_share", "1", "Share of the contact force's power above a quarter of the step frequency."},
-           {"chatter", "",
+           &ObservedRow::changes_per_impact)
+      .add({"fast_share", "1", "Share of the contact force's power above a quarter of the step frequency."},
+           &ObservedRow::fast_share)
+      .add({"chatter", "",
             "Whether contact flickers: over 0.75 of the power is fast, or over 20 changes for each time that contact "
             "began."},
-           {"first_bad_step", "1", "Number of the step at which the growth showed."},
-           {"steps", "1", "Steps that were marched."},
-           {"cause", "", "What was seen, one sentence; empty where it is stable."}},
-          {}};
+           &ObservedRow::chatter)
+      .add({"first_bad_step", "1", "Number of the step at which the growth showed."}, &ObservedRow::first_bad_step)
+      .add({"steps", "1", "Steps that were marched."}, &ObservedRow::steps)
+      .add({"cause", "", "What was seen, one sentence; empty where it is stable."}, &ObservedRow::cause);
+  return {"stability_observed",
+          "One integration: a step of the range, of the structure alone or of the scene with its contacts.", rows};
 }
 
-Table restitution_head() {
+TableType<RestitutionRow> restitution_type() {
+  RowType<RestitutionRow> rows;
+  rows.of_case(&RestitutionRow::id)
+      .add({"step", "s", "Step of the plan that was asked: the smallest of the range that has one."},
+           &RestitutionRow::step)
+      .add({"least", "1", "Smallest −v⁺/v⁻ over 64 phases of the impact within the step."}, &RestitutionRow::least)
+      .add({"mean", "1", "Their mean."}, &RestitutionRow::mean)
+      .add({"most", "1", "The largest; beyond 1 the scheme throws a mass back faster than it came."},
+           &RestitutionRow::most)
+      .add({"rho_inf", "1", "What a step leaves of the highest frequencies, ρ∞; nothing for an explicit step."},
+           &RestitutionRow::rho_inf);
   return {"restitution",
           "What a free mass keeps of its speed at a rigid stop, over the phases of the step at which it arrives; from "
           "the plan alone.",
-          {{"step", "s", "Step of the plan that was asked: the smallest of the range that has one."},
-           {"least", "1", "Smallest −v⁺/v⁻ over 64 phases of the impact within the step."},
-           {"mean", "1", "Their mean."},
-           {"most", "1", "The largest; beyond 1 the scheme throws a mass back faster than it came."},
-           {"rho_inf", "1", "What a step leaves of the highest frequencies, ρ∞; nothing for an explicit step."}},
-          {}};
+          rows};
 }
 
 void describe_stability(CaseRecord& record) {
   for (Table& table : record.tables)
-    for (const Table& head :
-         {stability_head(), stability_observed_head(), stability_roots_head(), restitution_head()}) {
+    for (const Table& head : {stability_type().head(), stability_observed_type().head(), stability_roots_type().head(),
+                              restitution_type().head()}) {
       if (head.name != table.name) continue;
       if (const auto contact = find_column(table.columns, "contact")) {
         table.columns[*contact].name = "closed";
@@ -155,35 +171,22 @@ namespace {
 
 std::map<double, std::string> behaviours_of(const CaseRecord& record, bool closed) {
   std::map<double, std::string> out;
-  const Table* observed = find_table(record.tables, "stability_observed");
-  if (!observed) return out;
-  const TableReader rows(*observed);
-  const std::size_t step = rows.column("step"), state = rows.column("closed"), behaviour = rows.column("behaviour");
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (const auto h = rows.number(row, step); h && rows.truth(row, state) == closed)
-      out[*h] = rows.text(row, behaviour);
+  for (const ObservedRow& row : stability_observed_type().read(record.tables))
+    if (row.step && row.closed == closed) out[*row.step] = row.behaviour;
   return out;
 }
 
 // The range as the case left it; nothing where it has none.
 std::optional<StepRange> own_range(const CaseRecord& record, bool closed) {
-  const Table* table = find_table(record.tables, "stability");
-  if (!table) return std::nullopt;
-  const TableReader rows(*table);
-  const std::size_t step = rows.column("step"), state = rows.column("closed"), radius = rows.column("radius"),
-                    marginal = rows.column("marginal"), status = rows.column("status"), reason = rows.column("reason"),
-                    predicted = rows.column("limit_predicted"), observed = rows.column("limit_observed");
   const std::map<double, std::string> behaviours = behaviours_of(record, closed);
   StepRange out;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const auto h = rows.number(row, step);
-    if (rows.truth(row, state) != closed || !h) continue;
-    const auto seen = behaviours.find(*h);
-    out.cells.push_back({*h, rows.number(row, radius), rows.number(row, radius), rows.text(row, marginal),
-                         rows.text(row, status), rows.text(row, reason),
+  for (const StabilityRow& row : stability_type().read(record.tables)) {
+    if (row.closed != closed || !row.step) continue;
+    const auto seen = behaviours.find(*row.step);
+    out.cells.push_back({*row.step, row.radius, row.radius, row.marginal, row.status, row.reason,
                          seen == behaviours.end() ? std::string() : seen->second});
-    out.predicted = rows.number(row, predicted);
-    out.observed = rows.number(row, observed);
+    out.predicted = row.limit_predicted;
+    out.observed = row.limit_observed;
   }
   if (out.cells.empty()) return std::nullopt;
   out.expected = out.predicted;
@@ -292,44 +295,68 @@ Cases counted_open(const StudyResults& results) {
 
 }  // namespace
 
+TableType<LimitRow> step_limits_type() {
+  RowType<LimitRow> rows;
+  rows.of_case(&LimitRow::id)
+      .add({"closed", "",
+            "Whether contact is closed: predicted with points held on both sides, observed in the scene itself. "
+            "Otherwise "
+            "the structure alone."},
+           &LimitRow::closed)
+      .add(
+          {"counted", "",
+           "Whether the row counts in step_limit_agreement.csv: the open structure of cases that differ in the contact "
+           "law alone counts once."},
+          &LimitRow::counted)
+      .add({"prediction", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
+           &LimitRow::prediction)
+      .add({"predicted", "s", "Largest stable step, from the plan alone."}, &LimitRow::predicted)
+      .add({"observation", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
+           &LimitRow::observation)
+      .add({"observed", "s", "Largest stable step, from marches and bisection."}, &LimitRow::observed)
+      .add({"expected", "s", "The smallest predicted limit that the marched cell meets: a scene is open as well."},
+           &LimitRow::expected)
+      .add({"ratio", "1", "observed over expected."}, &LimitRow::ratio)
+      .add({"agrees", "", "Whether the ratio is one to 2 %; empty where a limit is missing."}, &LimitRow::agrees)
+      .add({"disagreeing_steps", "1", "Steps of the range at which the integration does not do what the spectra say."},
+           &LimitRow::disagreeing)
+      .add({"marginal", "", "Which roots on the unit circle are the scheme's own, over the range."},
+           &LimitRow::marginal)
+      .add({"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
+           &LimitRow::first_unstable)
+      .add({"grows", "", "What grows there, or why it is refused."}, &LimitRow::grows)
+      .add({"refused", "", "Whether that step is refused."}, &LimitRow::refused);
+  return {"step_limits", "One case with its contact open or closed: the step limits that its cells come to.", rows};
+}
+
 Table step_limits_table(const StudyResults& results) {
-  Table table = table_of_cases(
-      results, "step_limits", "One case with its contact open or closed: the step limits that its cells come to.",
-      {{"closed", "",
-        "Whether contact is closed: predicted with points held on both sides, observed in the scene itself. Otherwise "
-        "the structure alone."},
-       {"counted", "",
-        "Whether the row counts in step_limit_agreement.csv: the open structure of cases that differ in the contact "
-        "law alone counts once."},
-       {"prediction", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
-       {"predicted", "s", "Largest stable step, from the plan alone."},
-       {"observation", "", "limit, none (every step of the range is stable), below the range, or empty: not made."},
-       {"observed", "s", "Largest stable step, from marches and bisection."},
-       {"expected", "s", "The smallest predicted limit that the marched cell meets: a scene is open as well."},
-       {"ratio", "1", "observed over expected."},
-       {"agrees", "", "Whether the ratio is one to 2 %; empty where a limit is missing."},
-       {"disagreeing_steps", "1", "Steps of the range at which the integration does not do what the spectra say."},
-       {"marginal", "", "Which roots on the unit circle are the scheme's own, over the range."},
-       {"first_unstable", "s", "Smallest step of the range that is unstable, failed or refused."},
-       {"grows", "", "What grows there, or why it is refused."},
-       {"refused", "", "Whether that step is refused."}});
+  const TableType<LimitRow> type = step_limits_type();
+  Table table = table_of_cases(results, type.head());
   const Cases counted = counted_open(results);
   for (const bool closed : {false, true})
     for (const CaseRecord& record : results.cases) {
       const std::optional<StepRange> range = step_range(record, closed);
       if (!range) continue;
-      const bool counts = closed || std::find(counted.begin(), counted.end(), &record) != counted.end();
-      std::optional<double> ratio;
-      if (range->expected && range->observed) ratio = *range->observed / *range->expected;
-      const StepCell* grows = first_unstable(*range);
-      add_row(table, place_of(results, record),
-              {closed, counts, prediction(*range), range->predicted, observation(*range), range->observed,
-               range->expected, ratio, ratio ? Cell(std::abs(*ratio - 1) <= limit_tolerance) : Cell(),
-               std::count_if(range->cells.begin(), range->cells.end(),
-                             [](const StepCell& cell) { return cell.disagrees(); }),
-               marginal(*range), grows ? Cell(grows->step) : Cell(),
-               grows ? grows->reason.substr(0, grows->reason.find("; ")) : "",
-               grows ? Cell(grows->status == "refused") : Cell()});
+      LimitRow row;
+      row.id = record.id;
+      row.closed = closed;
+      row.counted = closed || std::find(counted.begin(), counted.end(), &record) != counted.end();
+      row.prediction = prediction(*range);
+      row.predicted = range->predicted;
+      row.observation = observation(*range);
+      row.observed = range->observed;
+      row.expected = range->expected;
+      if (range->expected && range->observed) row.ratio = *range->observed / *range->expected;
+      if (row.ratio) row.agrees = std::abs(*row.ratio - 1) <= limit_tolerance;
+      row.disagreeing = static_cast<int>(std::count_if(range->cells.begin(), range->cells.end(),
+                                                       [](const StepCell& cell) { return cell.disagrees(); }));
+      row.marginal = marginal(*range);
+      if (const StepCell* grows = first_unstable(*range)) {
+        row.first_unstable = grows->step;
+        row.grows = grows->reason.substr(0, grows->reason.find("; "));
+        row.refused = grows->status == "refused";
+      }
+      add_row(table, place_of(results, record), type.rows.row(row));
     }
   return table;
 }
@@ -344,19 +371,16 @@ Table step_limit_agreement_table(const Table& step_limits) {
                {"tolerance", "1", "Difference, relative to the expected limit, up to which limits agree."},
                {"disagree", "1", "Ranges with a step at which the integration does not do what the spectra say."}},
               {}};
-  const TableReader rows(step_limits);
-  const std::size_t closed = rows.column("closed"), counted = rows.column("counted"), agrees = rows.column("agrees"),
-                    disagreeing = rows.column("disagreeing_steps");
+  const std::vector<LimitRow> rows = step_limits_type().rows.read(step_limits);
   for (const char* contact : {"open", "closed", "both"}) {
     int ranges = 0, limits = 0, agree = 0, disagree = 0;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const bool touching = rows.truth(row, closed).value_or(false);
-      const bool asked = contact == std::string("both") || touching == (contact == std::string("closed"));
-      if (!asked || rows.truth(row, counted) != true) continue;
+    for (const LimitRow& row : rows) {
+      const bool asked = contact == std::string("both") || row.closed == (contact == std::string("closed"));
+      if (!asked || !row.counted) continue;
       ++ranges;
-      limits += rows.truth(row, agrees).has_value();
-      agree += rows.truth(row, agrees) == true;
-      disagree += rows.number(row, disagreeing).value_or(0) > 0;
+      limits += row.agrees.has_value();
+      agree += row.agrees == true;
+      disagree += row.disagreeing > 0;
     }
     table.rows.push_back({contact, ranges, limits, agree, limit_tolerance, disagree});
   }

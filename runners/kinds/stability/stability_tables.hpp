@@ -4,17 +4,42 @@
 #include <vector>
 
 #include "runners/store/record.hpp"
+#include "runners/table/row_type.hpp"
 
 namespace ricochet {
 
-/// `stability`, without rows: one per step and contact state, what the plan predicts there and what became of it.
-Table stability_head();
+/// One row of `stability`: a step and contact state, what the plan predicts there and what became of it.
+struct StabilityRow {
+  std::optional<double> step;
+  bool closed = false;
+  std::optional<double> radius;
+  std::string marginal;
+  std::optional<double> limit_predicted, limit_observed;
+  std::string status, reason;
+};
+TableType<StabilityRow> stability_type();
 
-/// `stability_observed`, without rows: one per step and contact state that was marched.
-Table stability_observed_head();
+/// One row of `stability_observed`: a step and contact state that was marched.
+struct ObservedRow {
+  std::optional<double> step;
+  bool closed = false;
+  std::string behaviour;
+  std::optional<double> growth = {}, gain = {};
+  std::optional<long long> impacts = {};
+  std::optional<double> changes_per_impact = {}, fast_share = {};
+  bool chatter = false;
+  std::optional<long long> first_bad_step = {};
+  long long steps = 0;
+  std::string cause = {};
+};
+TableType<ObservedRow> stability_observed_type();
 
-/// `restitution`, without rows: one, what a free mass keeps of its speed at a rigid stop, over the phases of a step.
-Table restitution_head();
+/// The one row of `restitution`: what a free mass keeps of its speed at a rigid stop, over the phases of a step.
+struct RestitutionRow {
+  std::string id;
+  std::optional<double> step, least, mean, most, rho_inf;
+};
+TableType<RestitutionRow> restitution_type();
 
 /// Gives the tables that a case of a stability study left their units and meanings, and today's column names: stores
 /// that are older say the contact state in the words of a column `contact`.
@@ -59,6 +84,23 @@ std::vector<Disagreement> disagreements(const StepRange& range);
 
 /// An observed limit agrees with the expected one within this share of it.
 inline constexpr double limit_tolerance = 0.02;
+
+/// One row of `step_limits`: a case and a contact state.
+struct LimitRow {
+  std::string id;
+  bool closed = false, counted = false;
+  std::string prediction;
+  std::optional<double> predicted;
+  std::string observation;
+  std::optional<double> observed, expected, ratio;
+  std::optional<bool> agrees;
+  int disagreeing = 0;
+  std::string marginal;
+  std::optional<double> first_unstable;
+  std::string grows;
+  std::optional<bool> refused;
+};
+TableType<LimitRow> step_limits_type();
 
 /// step_limits: one row per case and contact state, open before closed. A scene is open as well as closed: the limit
 /// expected of it is the smaller of both predictions, and a cell is expected to grow where either radius exceeds one.

@@ -20,7 +20,7 @@ inline CaseRecord stability_case(const std::string& mass, double stiffness, doub
                  {"elements", 10}};
   record.id = mass + std::to_string(stiffness);
   record.status = "done";
-  Table table = stability_head();
+  Table table = stability_type().head();
   Table observed{"stability_observed", "", named_columns({"step", "closed", "behaviour"}), {}};
   const auto limit = [](double h) { return h > 0 ? Cell(h) : Cell(); };
   for (const bool touching : {false, true})
@@ -57,7 +57,7 @@ inline StudyResults stability() {
   refused.id = "refused";
   refused.status = "refused";
   refused.reason = "nothing to march";
-  Table table = stability_head();
+  Table table = stability_type().head();
   table.rows.push_back({1e-6, false, nullptr, "", nullptr, nullptr, "refused", refused.reason});
   refused.tables = {table};
   out.cases.push_back(std::move(refused));

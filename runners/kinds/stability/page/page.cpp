@@ -4,8 +4,8 @@
 
 #include <set>
 
+#include "runners/kinds/stability/stability_tables.hpp"
 #include "runners/report/html.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
@@ -18,8 +18,6 @@ KindPage stability_page() {
 }
 
 std::string restitution_html(const CaseView& view) {
-  const Table* restitution = find_table(view.results().derived, "restitution");
-  if (!restitution) return "";
   HtmlTable table(
       "What a free mass keeps of its speed at a rigid stop, from the plan of each scheme alone: over the phases of the "
       "step at which it arrives. Beyond 1 it is thrown back faster than it came. ρ∞: what a step leaves of the highest "
@@ -28,44 +26,34 @@ std::string restitution_html(const CaseView& view) {
   // It depends on the scheme alone: one row for cases that differ in the rest.
   const auto columns = view.varying_without({"mass", "contact", "elements"});
   std::set<std::string> said;
-  const TableReader rows(*restitution);
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const CaseRecord* record = view.find(rows.text(row, "case"));
+  for (const RestitutionRow& row : restitution_type().read(view.results().derived)) {
+    const CaseRecord* record = view.find(row.id);
     if (!record || !said.insert(view.label(*record, columns)).second) continue;
     table.row(view.name(*record, columns));
-    for (const char* column : {"least", "mean", "most", "rho_inf"}) {
-      const auto value = rows.number(row, column);
+    for (const auto& value : {row.least, row.mean, row.most, row.rho_inf})
       table.number(value ? number_text(*value, 3) : "–");
-    }
   }
   return table.size() > 0 ? table.html() : "";
 }
 
 namespace {
 
-std::string limit_text(const TableReader& rows, size_t row, const char* limit, const char* where) {
-  if (const auto step = rows.number(row, limit)) return number_text(*step, 5);
-  const std::string said = rows.text(row, where);
-  return said.empty() ? "–" : said;
+std::string limit_text(const std::optional<double>& limit, const std::string& where) {
+  return limit ? number_text(*limit, 5) : where.empty() ? "–" : where;
 }
 
 /// Marginal roots, then what grows at the smallest step that is not stable, or why there is no prediction; what was
 /// seen there is left to the map.
-std::string why(const TableReader& rows, size_t row) {
-  std::string out = rows.text(row, "marginal");
-  const std::string grows = rows.text(row, "grows");
-  const auto step = rows.number(row, "first_unstable");
-  if (grows.empty() || !step) return out;
-  return out + (out.empty() ? "" : "; ") +
-         (rows.truth(row, "refused") == true ? grows : fmt::format("h = {} s: {}", number_text(*step, 3), grows));
+std::string why(const LimitRow& row) {
+  if (row.grows.empty() || !row.first_unstable) return row.marginal;
+  return row.marginal + (row.marginal.empty() ? "" : "; ") +
+         (row.refused == true ? row.grows
+                              : fmt::format("h = {} s: {}", number_text(*row.first_unstable, 3), row.grows));
 }
 
 }  // namespace
 
 std::string stability_html(const CaseView& view) {
-  const Table* limits = find_table(view.results().derived, "step_limits");
-  if (!limits) return "";
-  const TableReader rows(*limits);
   HtmlTable table(
       "Step limits in seconds. Open: the structure alone. Closed: predicted with points held on both sides, the worst "
       "of several sets; observed in the scene itself, which is open as well: the ratio is to the smaller of both "
@@ -76,16 +64,13 @@ std::string stability_html(const CaseView& view) {
        {"observed limit", true},
        {"observed / predicted", true},
        {"marginal roots, and what grows at the first step that is not stable"}});
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const CaseRecord* record = view.find(rows.text(row, "case"));
-    if (!record || rows.truth(row, "counted") != true) continue;
-    const bool closed = rows.truth(row, "closed") == true;
-    const auto columns = closed ? view.varying() : view.varying_without({"contact"});
-    const auto ratio = rows.number(row, "ratio");
-    table.row(view.name(*record, columns), view.colour(*record)).text(closed ? "closed" : "open");
-    table.number(limit_text(rows, row, "predicted", "prediction"));
-    table.number(limit_text(rows, row, "observed", "observation"));
-    table.number(ratio ? number_text(*ratio, 4) : "–").text(why(rows, row), "reason");
+  for (const LimitRow& row : step_limits_type().read(view.results().derived)) {
+    const CaseRecord* record = view.find(row.id);
+    if (!record || !row.counted) continue;
+    const auto columns = row.closed ? view.varying() : view.varying_without({"contact"});
+    table.row(view.name(*record, columns), view.colour(*record)).text(row.closed ? "closed" : "open");
+    table.number(limit_text(row.predicted, row.prediction)).number(limit_text(row.observed, row.observation));
+    table.number(row.ratio ? number_text(*row.ratio, 4) : "–").text(why(row), "reason");
   }
   if (table.size() == 0) return "";
   return table.html();

@@ -28,12 +28,13 @@ StepSpectrum with(std::vector<MarginalRoot> roots) {
 }  // namespace
 
 TEST_CASE("roots: those of a step that differ by their mode alone are one row, a step counts once") {
-  Table table = stability_roots_head();
+  std::vector<RootRow> rows;
   const std::complex<double> turned = std::polar(1.0, 0.3), other = std::polar(1.0, 0.4);
-  add_roots(table, false, 1e-4, 3, with({root(turned, RootPlace::mode), root(other, RootPlace::mode)}));
-  add_roots(table, false, 1e-3, 3, with({root(turned, RootPlace::mode)}));
-  add_roots(table, false, 1e-2, 3, with({}));
-  add_roots(table, true, 1e-3, 3, with({root(turned, RootPlace::kernel), root(other, RootPlace::kernel)}));
+  add_roots(rows, false, 1e-4, 3, with({root(turned, RootPlace::mode), root(other, RootPlace::mode)}));
+  add_roots(rows, false, 1e-3, 3, with({root(turned, RootPlace::mode)}));
+  add_roots(rows, false, 1e-2, 3, with({}));
+  add_roots(rows, true, 1e-3, 3, with({root(turned, RootPlace::kernel), root(other, RootPlace::kernel)}));
+  const Table table = stability_roots_type().with(rows);
   REQUIRE(table.rows.size() == 3);
   CHECK(table.rows[0] == Row{false, "modes", "roots of modulus 1", false, 1e-4, 1e-3, 2, 3, 2});
   // On the kernel the angle is the scheme's.
@@ -42,14 +43,15 @@ TEST_CASE("roots: those of a step that differ by their mode alone are one row, a
 
 TEST_CASE("roots: an answer tells which, where, on what and by whom, and who has none") {
   const double h = 1e-3;
-  Table sawtooth = stability_roots_head(), held = stability_roots_head();
+  std::vector<RootRow> sawtooth, held;
   add_roots(sawtooth, false, h, 1, with({root(-1, RootPlace::kernel, true, 5)}));
   add_roots(held, true, h, 2, with({root(1, RootPlace::held_points)}));
+  const TableType<RootRow> type = stability_roots_type();
   StudyResults results;
   results.columns = {"mass", "time"};
-  results.cases = {case_of("a", "consistent", "newmark", stability_roots_head()),
-                   case_of("b", "singular", "newmark", sawtooth), case_of("c", "consistent", "moreau-jean", held),
-                   case_of("d", "consistent", "bathe", stability_roots_head())};
+  results.cases = {
+      case_of("a", "consistent", "newmark", type.head()), case_of("b", "singular", "newmark", type.with(sawtooth)),
+      case_of("c", "consistent", "moreau-jean", type.with(held)), case_of("d", "consistent", "bathe", type.head())};
   const std::vector<std::string> said = roots_told(results, {"time"});
   REQUIRE(said.size() == 3);
   CHECK(said[0] ==
