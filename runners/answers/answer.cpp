@@ -9,55 +9,12 @@
 
 namespace ricochet::answers {
 
-const RowType<Clause>& clause_rows() {
-  static const RowType<Clause> rows = [] {
-    RowType<Clause> type;
-    type.add({"order", "1", "Number of the sentence in the answer, from 1."}, &Clause::order)
-        .add({"form", "",
-              "What is said: keeps, gains, differ, none (no difference), open (not told), apart (how far, as a share "
-              "of the scale), needs (the step that "
-              "would tell), matters, part (matters in "
-              "some "
-              "combinations), value, order, cheapest, limit, diagram, basin, status."},
-             &Clause::form)
-        .add({"measure", "", "The measure that is spoken of."}, &Clause::measure)
-        .add({"choice", "", "The choice that is spoken of: a role, or an axis of the study."}, &Clause::choice)
-        .add({"who", "", "The methods that it holds for, in words."}, &Clause::who)
-        .add({"methods", "", "A case of each of these methods, the finest with a value."}, &Clause::methods)
-        .add({"value", "", "The value; of several methods, or of a choice's effects, the median. In `unit`."},
-             &Clause::value)
-        .add({"low", "", "The least of these methods, in `unit`."}, &Clause::low)
-        .add({"high", "", "The largest of these methods, in `unit`."}, &Clause::high)
-        .add({"u", "", "Uncertainty that step and mesh leave: the largest of these methods, in `unit`."},
-             &Clause::uncertainty)
-        .add({"status", "",
-              "What the values do as they are refined, \"several\" where methods differ in that; of a choice its "
-              "verdict."},
-             &Clause::status)
-        .add({"unit", "", "Unit of value, low, high and u."}, &Clause::unit)
-        .add({"at_step", "", "The finest step of these methods: s, or a share of the period."}, &Clause::at_step)
-        .add({"at_mesh", "1", "The finest mesh of these methods: elements."}, &Clause::at_mesh)
-        .add({"sentence", "", "What is said of it; a sentence stands on the first of its rows."}, &Clause::sentence);
-    return type;
-  }();
-  return rows;
-}
-
-Table answers_head() {
-  return {
-      "answers",
-      "What the study says to its question, in the order in which it is read: a row for each set of methods, or each "
-      "choice, that a sentence speaks of.",
-      clause_rows().columns(),
-      {}};
-}
-
 void Answer::say(std::string text, Clause clause) {
   sentences.push_back({std::move(text), {std::move(clause)}});
 }
 
 Table Answer::table() const {
-  Table table = answers_head();
+  Table table = answers_type().head();
   int order = 0;
   for (const Sentence& sentence : sentences) {
     ++order;
@@ -66,7 +23,7 @@ Table Answer::table() const {
       clause.order = order;
       clause.sentence = first ? sentence.text : "";
       first = false;
-      table.rows.push_back(clause_rows().row(clause));
+      table.rows.push_back(answers_type().rows.row(clause));
     }
   }
   return table;
@@ -80,35 +37,47 @@ std::optional<double> finite(std::optional<double> value, double factor) {
 
 }  // namespace
 
+const TableType<MeasureLimit>& limits_type() {
+  static const TableType<MeasureLimit> all = [] {
+    RowType<MeasureLimit> rows;
+    rows.add({"measure", "", "The measure."}, &MeasureLimit::measure)
+        .add({"case", "", "The case of the finest mesh and step that has a value."}, &MeasureLimit::id)
+        .add({"value", "", "The value there, over the scale of its measure where that is a share; in `unit`."},
+             &MeasureLimit::value)
+        .add({"u", "", "Uncertainty that step and mesh leave, in `unit`; none of a single size, and of what grows."},
+             &MeasureLimit::uncertainty)
+        .add({"low", "", "Where the limit may be: from."}, &MeasureLimit::low)
+        .add({"high", "", "Where the limit may be: to."}, &MeasureLimit::high)
+        .add({"unit", "", "Unit of these."}, &MeasureLimit::unit)
+        .add({"status", "",
+              "What the values do as they are refined: one, same, two, settles, reaches truth, vanishes, moves, "
+              "wanders, "
+              "blows "
+              "up."},
+             &MeasureLimit::status)
+        .add({"order", "1", "Order of convergence in the step, where two orders in a row agree."}, &MeasureLimit::order)
+        .add({"step_moves", "", "What the step still moves it by, in `unit`."}, &MeasureLimit::step_moves)
+        .add({"mesh_moves", "", "What the mesh still moves it by, in `unit`."}, &MeasureLimit::mesh_moves)
+        .add({"steps", "1", "Steps at the finest mesh."}, &MeasureLimit::steps)
+        .add({"meshes", "1", "Meshes at the finest step."}, &MeasureLimit::meshes)
+        .add({"method", "", "The method in words."}, &MeasureLimit::method)
+        .add({"tier", "1", "Methods with one number are not told apart; 1 is best, or least where none is better."},
+             &MeasureLimit::tier)
+        .add({"truth", "", "What an exact method gives, in `unit`, where that is known."}, &MeasureLimit::truth);
+    return TableType<MeasureLimit>{
+        "limits",
+        "One row per method and measure: the value at the finest step and mesh, and how far refining them still "
+        "moves it.",
+        rows};
+  }();
+  return all;
+}
+
 Table limits_table(const Compared& study, const std::vector<std::string>& measures) {
   const StudyResults& results = study.results();
-  Table table{"limits",
-              "One row per method and measure: the value at the finest step and mesh, and how far refining them still "
-              "moves it.",
-              {},
-              {}};
-  for (const std::string& column : study.columns()) table.columns.push_back(axis_column(results, column));
-  for (const Column& column :
-       {Column{"measure", "", "The measure."},
-        {"case", "", "The case of the finest mesh and step that has a value."},
-        {"value", "", "The value there, over the scale of its measure where that is a share; in `unit`."},
-        {"u", "", "Uncertainty that step and mesh leave, in `unit`; none of a single size, and of what grows."},
-        {"low", "", "Where the limit may be: from."},
-        {"high", "", "Where the limit may be: to."},
-        {"unit", "", "Unit of these."},
-        {"status", "",
-         "What the values do as they are refined: one, same, two, settles, reaches truth, vanishes, moves, wanders, "
-         "blows "
-         "up."},
-        {"order", "1", "Order of convergence in the step, where two orders in a row agree."},
-        {"step_moves", "", "What the step still moves it by, in `unit`."},
-        {"mesh_moves", "", "What the mesh still moves it by, in `unit`."},
-        {"steps", "1", "Steps at the finest mesh."},
-        {"meshes", "1", "Meshes at the finest step."},
-        {"method", "", "The method in words."},
-        {"tier", "1", "Methods with one number are not told apart; 1 is best, or least where none is better."},
-        {"truth", "", "What an exact method gives, in `unit`, where that is known."}})
-    table.columns.push_back(column);
+  const TableType<MeasureLimit>& type = limits_type();
+  Table table{type.name, type.text, axis_columns(results, study.columns()), {}};
+  table.columns = joined(std::move(table.columns), type.rows.columns());
   for (const std::string& measure : measures) {
     const MeasureLimits limits = limits_of(study, measure, keeps_energy(results), all_cases(results));
     const std::vector<const Method*> methods = limits.with_limit();
@@ -118,21 +87,27 @@ Table limits_table(const Compared& study, const std::vector<std::string>& measur
     for (std::size_t k = 0; k < methods.size(); ++k) {
       const Method* method = methods[k];
       const auto tier = tiers[k] > 0 ? std::optional(static_cast<int>(tiers[k])) : std::nullopt;
-      Row row = axes_of(method->first(), study.columns());
       const double factor = limits.words.factor;
       const Limit& limit = *method->limit;
       const auto move = [&](const std::optional<Limit>& along) -> std::optional<double> {
         return along ? finite(along->uncertainty, factor) : std::nullopt;
       };
       const auto sizes = [](const std::optional<Limit>& along) { return along ? static_cast<int>(along->sizes) : 0; };
-      for (Cell cell :
-           {Cell(measure), Cell(method->finest->id), Cell(factor * limit.value),
-            Cell(finite(limit.uncertainty, factor)), Cell(finite(limit.low, factor)), Cell(finite(limit.high, factor)),
-            Cell(limits.words.unit), Cell(word(limit.status)), Cell(limit.order), Cell(move(method->step)),
-            Cell(move(method->mesh)), Cell(sizes(method->step)), Cell(sizes(method->mesh)),
-            Cell(study.label(method->first())), Cell(tier), Cell(finite(limits.words.truth, factor))})
-        row.push_back(std::move(cell));
-      table.rows.push_back(std::move(row));
+      MeasureLimit row{.measure = measure, .id = method->finest->id, .value = factor * limit.value};
+      row.uncertainty = finite(limit.uncertainty, factor);
+      row.low = finite(limit.low, factor);
+      row.high = finite(limit.high, factor);
+      row.unit = limits.words.unit;
+      row.status = word(limit.status);
+      row.order = limit.order;
+      row.step_moves = move(method->step);
+      row.mesh_moves = move(method->mesh);
+      row.steps = sizes(method->step);
+      row.meshes = sizes(method->mesh);
+      row.method = study.label(method->first());
+      row.tier = tier;
+      row.truth = finite(limits.words.truth, factor);
+      add_row(table, axes_of(method->first(), study.columns()), type.rows.row(row));
     }
   }
   return table;

@@ -4,30 +4,12 @@
 #include <vector>
 
 #include "runners/answers/compared.hpp"
-#include "runners/table/row_type.hpp"
+#include "runners/store/study_tables.hpp"
 
 namespace ricochet::answers {
 
 /// The form of a clause whose methods do not differ.
 inline constexpr const char* alike = "none";
-
-/// One thing that a sentence says of some methods: a row of `answers`.
-struct Clause {
-  int order = 0;  ///< of the sentence within the answer, from 1
-  std::string
-      form;  ///< keeps, gains, differ, none, open, matters, part, value, order, cheapest, limit, diagram, basin, status
-  std::string measure = {}, choice = {};
-  std::string who = {};      ///< the methods in words
-  std::string methods = {};  ///< a case of each, blanks between
-  std::optional<double> value = {}, low = {}, high = {}, uncertainty = {};
-  std::string status = {};  ///< of the limit, or the verdict on a choice
-  std::string unit = {};
-  std::optional<double> at_step = {}, at_mesh = {};  ///< the finest, s and elements
-  std::string sentence = {};                         ///< on the first clause of each sentence
-};
-const RowType<Clause>& clause_rows();
-/// `answers` without rows.
-Table answers_head();
 
 /// A sentence with what it says as numbers; at least one clause.
 struct Sentence {
@@ -61,6 +43,19 @@ std::string evidence_text(const Compared& study, const std::string& measure);
 
 /// The same as a table of a page: the methods best first, or what each choice moves.
 std::string evidence_html(const Compared& study);
+
+/// One row of `limits`: a method and a measure.
+struct MeasureLimit {
+  std::string measure, id;
+  std::optional<double> value = {}, uncertainty = {}, low = {}, high = {};
+  std::string unit = {}, status = {};
+  std::optional<double> order = {}, step_moves = {}, mesh_moves = {};
+  int steps = 0, meshes = 0;
+  std::string method = {};
+  std::optional<int> tier = {};
+  std::optional<double> truth = {};
+};
+const TableType<MeasureLimit>& limits_type();
 
 /// limits: one row per method and measure.
 Table limits_table(const Compared& study, const std::vector<std::string>& measures);

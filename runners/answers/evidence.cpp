@@ -122,14 +122,9 @@ std::string evidence_text(const Compared& study, const std::string& measure) {
 
 std::string evidence_html(const Compared& study) {
   // The measure that the answer rests on stands first in `limits`.
-  struct Named {
-    std::string measure;
-  };
-  const Table* limits = find_table(study.results().derived, "limits");
-  if (!limits || limits->rows.empty()) return "";
-  RowType<Named> type;
-  type.add({"measure", "", ""}, &Named::measure);
-  const Evidence found = evidence(study, type.read(*limits).front().measure, most_page_rows);
+  const std::vector<MeasureLimit> limits = limits_type().read(study.results().derived);
+  if (limits.empty()) return "";
+  const Evidence found = evidence(study, limits.front().measure, most_page_rows);
   if (found.rows.empty()) return "";
   const std::string more = found.more > 0 ? fmt::format(" {} more in {}.", found.more, found.file) : "";
   // What is concluded stands before what it rests on, which may go on out of sight, the finest first.

@@ -228,64 +228,49 @@ void extend_key(std::string& key, std::string_view column, const std::string& te
 
 }  // namespace
 
-AxisRows::AxisRows(const StudyResults& results, std::string_view table, std::vector<std::string> keys)
-    : keys_(std::move(keys)) {
-  const Table* found = find_table(results.derived, table);
-  if (!found) return;
-  rows_.emplace(*found);
-  for (const Column& column : found->columns)
-    if (std::find(results.columns.begin(), results.columns.end(), column.name) != results.columns.end())
-      axes_.push_back(column.name);
-  for (size_t row = 0; row < size(); ++row) {
+AxisPlaces::AxisPlaces(const StudyResults& results, const Table* table,
+                       const std::vector<std::vector<std::string>>& keys) {
+  if (!table) return;
+  std::vector<size_t> places;
+  for (size_t c = 0; c < table->columns.size(); ++c)
+    if (const std::string& name = table->columns[c].name;
+        std::find(results.columns.begin(), results.columns.end(), name) != results.columns.end()) {
+      axes_.push_back(name);
+      places.push_back(c);
+    }
+  for (size_t row = 0; row < keys.size(); ++row) {
+    Row& cells = cells_.emplace_back();
+    for (const size_t place : places) cells.push_back(table->rows[row][place]);
     std::string key;
-    for (const std::string& column : axes_) extend_key(key, column, text(row, column));
-    for (const std::string& column : keys_) extend_key(key, column, text(row, column));
+    for (size_t axis = 0; axis < axes_.size(); ++axis) extend_key(key, axes_[axis], axis_text(row, axis));
+    for (const std::string& one : keys[row]) extend_key(key, "", one);
     places_.emplace(std::move(key), row);
   }
 }
 
-std::string AxisRows::text(size_t row, std::string_view column) const {
-  return cell_words(rows_->cell(row, rows_->column_if_any(column)));
+std::string AxisPlaces::axis_text(size_t row, size_t axis) const {
+  return cell_words(cells_[row][axis]);
 }
 
-std::optional<double> AxisRows::number(size_t row, std::string_view column) const {
-  return rows_->number(row, rows_->column_if_any(column));
-}
-
-Cell AxisRows::value(size_t row, std::string_view column) const {
-  return rows_->cell(row, rows_->column_if_any(column));
-}
-
-bool AxisRows::flag(size_t row, std::string_view column) const {
-  return rows_->truth(row, rows_->column_if_any(column)).value_or(false);
-}
-
-std::vector<std::string> AxisRows::values(std::string_view column) const {
-  std::vector<std::string> out;
-  for (size_t row = 0; row < size(); ++row) {
-    std::string value = text(row, column);
-    if (std::find(out.begin(), out.end(), value) == out.end()) out.push_back(std::move(value));
-  }
-  return out;
-}
-
-std::optional<size_t> AxisRows::find(const CaseRecord& record, const std::vector<std::string>& keys,
-                                     const std::vector<std::string>& but) const {
+std::optional<size_t> AxisPlaces::find(const CaseRecord& record, const std::vector<std::string>& keys,
+                                       const std::vector<std::string>& but) const {
   std::string key;
   for (const std::string& column : axes_)
     if (std::find(but.begin(), but.end(), column) == but.end()) extend_key(key, column, CaseView::text(record, column));
-  for (size_t k = 0; k < keys_.size() && k < keys.size(); ++k) extend_key(key, keys_[k], keys[k]);
+  for (const std::string& one : keys) extend_key(key, "", one);
   const auto found = places_.find(key);
   return found == places_.end() ? std::nullopt : std::optional(found->second);
 }
 
-const CaseRecord* AxisRows::example(size_t row, const StudyResults& results) const {
-  for (const CaseRecord& record : results.cases)
-    if (std::all_of(axes_.begin(), axes_.end(), [&](const std::string& column) {
-          const std::string value = text(row, column);
-          return value.empty() || value == CaseView::text(record, column);
-        }))
-      return &record;
+const CaseRecord* AxisPlaces::example(size_t row, const StudyResults& results) const {
+  for (const CaseRecord& record : results.cases) {
+    bool same = true;
+    for (size_t axis = 0; axis < axes_.size(); ++axis) {
+      const std::string value = axis_text(row, axis);
+      same = same && (value.empty() || value == CaseView::text(record, axes_[axis]));
+    }
+    if (same) return &record;
+  }
   return nullptr;
 }
 

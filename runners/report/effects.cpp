@@ -6,6 +6,7 @@
 
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet::report {
@@ -57,14 +58,10 @@ std::string effects_percent(double share) {
 
 /// The table `effects` by measure.
 std::vector<MeasureShares> measure_shares(const StudyResults& results) {
-  const AxisRows rows(results, "effects");
   std::vector<MeasureShares> out;
-  for (size_t row = 0; row < rows.size(); ++row) {
-    const std::string name = rows.text(row, "measure");
-    if (out.empty() || out.back().name != name) out.push_back({name, rows.flag(row, "log"), {}});
-    MeasureShare share{rows.text(row, "factor"), rows.number(row, "share").value_or(0), 0, 0, 1};
-    share.low = rows.number(row, "low").value_or(share.share);
-    share.high = rows.number(row, "high").value_or(share.share);
+  for (const EffectRow& row : effects_type().read(results.derived)) {
+    if (out.empty() || out.back().name != row.measure) out.push_back({row.measure, row.log, {}});
+    MeasureShare share{row.factor, row.share, row.low.value_or(row.share), row.high.value_or(row.share), 1};
     share.order = share.factor == "higher" ? 4 : share.factor == "repeats" ? 0 : choices_in(share.factor).size();
     out.back().shares.push_back(std::move(share));
   }
@@ -144,9 +141,9 @@ std::string effects_html(const CaseView& view) {
   const std::vector<MeasureShares> all = measure_shares(view.results());
   if (all.empty()) return "";
   // What the study observes first; where it observes none of these, all of them.
-  const std::vector<std::string> observed = AxisRows(view.results(), "answers").values("measure");
+  const std::vector<answers::Clause> said = answers::answers_type().read(view.results().derived);
   const auto main = [&](const MeasureShares& measure) {
-    return std::find(observed.begin(), observed.end(), measure.name) != observed.end();
+    return std::any_of(said.begin(), said.end(), [&](const auto& one) { return one.measure == measure.name; });
   };
   const auto mains = static_cast<size_t>(std::count_if(all.begin(), all.end(), main));
   std::string first, rest;

@@ -9,7 +9,7 @@
 #include "runners/report/panel_data.hpp"
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
-#include "runners/table/table_reader.hpp"
+#include "runners/store/study_tables.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -115,10 +115,8 @@ PageJson measures_json(const PageJson& cases) {
 
 /// The measure that the answer speaks of first; "" where it speaks of none.
 std::string answered_measure(const StudyResults& results) {
-  const Table* answers = find_table(results.derived, "answers");
-  if (!answers || answers->rows.empty()) return "";
-  const TableReader rows(*answers);
-  return rows.text(0, "measure");
+  const std::vector<answers::Clause> said = answers::answers_type().read(results.derived);
+  return said.empty() ? "" : said.front().measure;
 }
 
 /// Rows of the table that are of this measure, without the axes: the case has them.
@@ -130,9 +128,9 @@ Table of_measure(const Table& table, const std::string& measure, const std::vect
       kept.push_back(k);
       out.columns.push_back(table.columns[k]);
     }
-  const TableReader rows(table);
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (rows.text(row, "measure") != measure) continue;
+  const auto named = find_column(table.columns, measure_name);
+  for (std::size_t row = 0; named && row < table.rows.size(); ++row) {
+    if (table.rows[row][*named].text() != measure) continue;
     Row& one = out.rows.emplace_back();
     for (const std::size_t k : kept) one.push_back(table.rows[row][k]);
   }

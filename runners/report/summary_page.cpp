@@ -10,19 +10,15 @@
 #include "runners/store/environments.hpp"
 #include "runners/store/fingerprint.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
 std::vector<std::string> answer_lines(const StudyResults& results) {
   std::vector<std::string> lines;
-  const Table* table = find_table(results.derived, "answers");
-  if (!table) return lines;
-  const TableReader rows(*table);
-  const size_t column = rows.column("sentence");
-  for (size_t row = 0; row < rows.size(); ++row)
-    if (std::string text = rows.text(row, column); !text.empty()) lines.push_back(std::move(text));
+  for (answers::Clause& one : answers::answers_type().read(results.derived))
+    if (!one.sentence.empty()) lines.push_back(std::move(one.sentence));
   return lines;
 }
 
@@ -123,20 +119,14 @@ Fill limits_fill(const StudyResults& results) {
   out << line_fill(counts_text(results));
   if (const auto missing = results.expected_cases - static_cast<int>(results.cases.size()); missing > 0)
     out << line_fill(count_text(static_cast<std::size_t>(missing), "case", "cases") + " not run yet.");
-  if (const Table* reasons = find_table(results.derived, "reasons")) {
-    const TableReader rows(*reasons);
-    for (std::size_t row = 0; row < std::min(rows.size(), most_reasons); ++row)
-      out << line_fill(
-          fmt::format("{} {}: {}.", rows.text(row, "cases"), rows.text(row, "status"), rows.text(row, "reason")));
-    if (rows.size() > most_reasons)
-      out << line_fill(count_text(rows.size() - most_reasons, "more reason", "more reasons") + " in reasons.csv.");
-  }
+  const std::vector<ReasonRow> reasons = reasons_type().read(results.derived);
+  for (std::size_t k = 0; k < std::min(reasons.size(), most_reasons); ++k)
+    out << line_fill(fmt::format("{} {}: {}.", reasons[k].cases, reasons[k].status, reasons[k].reason));
+  if (reasons.size() > most_reasons)
+    out << line_fill(count_text(reasons.size() - most_reasons, "more reason", "more reasons") + " in reasons.csv.");
   std::vector<std::string> open;
-  if (const Table* answers = find_table(results.derived, "answers")) {
-    const TableReader rows(*answers);
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      if (rows.text(row, "form") == "open") open.push_back(in_words(rows.text(row, "measure")));
-  }
+  for (const answers::Clause& one : answers::answers_type().read(results.derived))
+    if (one.form == "open") open.push_back(in_words(one.measure));
   if (!open.empty()) out << line_fill("Not resolved: " + list_text(open, most_values) + ".");
   std::size_t notes = 0;
   for (const CaseRecord& record : results.cases) notes += record.notes.empty() ? 0 : 1;

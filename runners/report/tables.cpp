@@ -10,8 +10,8 @@
 #include "runners/report/html.hpp"
 #include "runners/report/summary_page.hpp"
 #include "runners/store/atomic_file.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -234,19 +234,15 @@ std::string notes_html(const CaseView& view) {
   const auto groups = grouped<std::string>(
       view, [](const CaseRecord& r) -> const auto& { return r.notes; });
   bool any = !groups.empty();
-  if (const Table* reasons = find_table(view.results().derived, "reasons")) {
-    const TableReader rows(*reasons);
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (rows.text(row, "status") != "done") continue;
-      const auto cases = static_cast<std::size_t>(rows.number(row, "cases").value_or(0));
-      Fill one;
-      one.set("note", rows.text(row, "reason"));
-      one.set("cases", cases == 1 ? view.name_of(rows.text(row, "case"))
-                                  : fmt::format("{} cases, of this kind; this is {}", cases,
-                                                view.name_of(rows.text(row, "case"))));
-      entries << one;
-      any = true;
-    }
+  for (const ReasonRow& row : reasons_type().read(view.results().derived)) {
+    if (row.status != "done") continue;
+    Fill one;
+    one.set("note", row.reason);
+    one.set("cases", row.cases == 1
+                         ? view.name_of(row.first)
+                         : fmt::format("{} cases, of this kind; this is {}", row.cases, view.name_of(row.first)));
+    entries << one;
+    any = true;
   }
   if (!any) return "";
   for (const auto& [note, cases] : groups) {

@@ -8,6 +8,7 @@
 
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/study/axis_meaning.hpp"
 
 namespace ricochet {
@@ -87,16 +88,7 @@ bool has_share(const EffectShare& share, const std::vector<Factor>& factors) {
 }  // namespace
 
 Table effects_table(const StudyResults& results) {
-  Table table{"effects",
-              "Over all cases: what one choice, or two together, explain of the spread of one measure. Choices of two "
-              "levels have differences (answers.csv) and no share; a measure whose spread round-off explains has none.",
-              {{"measure", "", "The measure, a column of cases.csv."},
-               {"factor", "", "The axis that was varied; two joined by × for what only their combination explains."},
-               {"share", "1", "Share of the variance of the measure over the finished cases that the factor explains."},
-               {"low", "1", "Lower end of the 95 % interval of the share."},
-               {"high", "1", "Upper end of the 95 % interval of the share."},
-               {"log", "", "Whether the logarithm of the measure was analysed, because it spans orders of magnitude."}},
-              {}};
+  std::vector<EffectRow> rows;
   std::vector<std::vector<std::string>> cells;
   std::vector<std::string> measures;
   for (const CaseRecord& record : results.cases) {
@@ -110,7 +102,7 @@ Table effects_table(const StudyResults& results) {
   std::vector<Factor> factors = factors_of(results.columns, cells).factors;
   std::erase_if(factors, [](const Factor& factor) { return factor.levels.size() < 2; });
   const auto told = [](const Factor& factor) { return factor.levels.size() > 2; };
-  if (factors.size() < 2 || std::none_of(factors.begin(), factors.end(), told)) return table;
+  if (factors.size() < 2 || std::none_of(factors.begin(), factors.end(), told)) return effects_type().head();
   for (const std::string& name : measures) {
     std::vector<std::optional<double>> values;
     for (const CaseRecord& record : results.cases)
@@ -119,9 +111,9 @@ Table effects_table(const StudyResults& results) {
     const Effects effects = effects_of(factors, values);
     for (const EffectShare& share : effects.shares)
       if (has_share(share, factors))
-        table.rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
+        rows.push_back({name, share.factor, share.share, share.low, share.high, effects.log});
   }
-  return table;
+  return effects_type().with(rows);
 }
 
 }  // namespace ricochet

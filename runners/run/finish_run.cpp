@@ -16,6 +16,7 @@
 #include "runners/store/atomic_file.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/store/store.hpp"
+#include "runners/store/study_tables.hpp"
 #include "runners/table/in_order_met.hpp"
 
 namespace ricochet {
@@ -49,14 +50,7 @@ std::string without_numbers(const std::string& text) {
 }  // namespace
 
 Table reasons_table(const StudyResults& results) {
-  Table out{"reasons",
-            "One row per reason for which finished cases have no result, or a doubtful one, in the study's order.",
-            {{"status", "", "refused (does not apply), diverged or failed; done, with a doubt."},
-             {"reason", "", "Why, as it stands in cases.csv; doubts of one kind are one, that of the first case."},
-             {"cases", "1", "Number of cases that give this reason."},
-             {"case", "", "The first of them: its row in cases.csv."}},
-            {}};
-  std::vector<std::pair<Row, Cases>> groups;
+  std::vector<std::pair<std::pair<std::string, std::string>, Cases>> groups;  // by status and reason
   std::map<std::string, std::string> kinds;
   for (const CaseRecord& record : results.cases) {
     if (record.partial) continue;
@@ -67,15 +61,16 @@ Table reasons_table(const StudyResults& results) {
         const std::string doubt = record.reason.substr(begin, end - begin);
         // The first of a kind speaks for all.
         const std::string& first = kinds.try_emplace(without_numbers(doubt), doubt).first->second;
-        in_order_met(groups, Row{record.status, first}).push_back(&record);
+        in_order_met(groups, std::pair(record.status, first)).push_back(&record);
         begin = end + between.size();
       }
       continue;
     }
-    in_order_met(groups, Row{record.status, record.reason}).push_back(&record);
+    in_order_met(groups, std::pair(record.status, record.reason)).push_back(&record);
   }
-  for (const auto& [said, cases] : groups) out.rows.push_back({said[0], said[1], cases.size(), cases.front()->id});
-  return out;
+  std::vector<ReasonRow> rows;
+  for (const auto& [said, cases] : groups) rows.push_back({said.first, said.second, cases.size(), cases.front()->id});
+  return reasons_type().with(rows);
 }
 
 StudyResults write_folder(Store& store, const std::filesystem::path& folder, const RenderReport& render,

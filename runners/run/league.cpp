@@ -7,10 +7,12 @@
 #include <limits>
 #include <map>
 
+#include "runners/kinds/comparison/comparison_tables.hpp"
+#include "runners/kinds/stability/stability_tables.hpp"
+#include "runners/kinds/trajectory/energy_tables.hpp"
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -35,17 +37,12 @@ Scheme scheme_of(const CaseRecord& record) {
 /// Takes a value of a case; nothing: it was looked for, and could not be told.
 using Add = std::function<void(const CaseRecord&, std::optional<double>)>;
 /// Calls with every row of a derived table and its case, where the study has both.
-using See = std::function<void(const CaseRecord&, const TableReader&, std::size_t row)>;
-
-void see_rows(const StudyResults& study, const char* name, const See& see) {
-  const Table* table = find_table(study.derived, name);
-  if (!table) return;
+template <class Record, class See>
+void see_rows(const StudyResults& study, const TableType<Record>& type, See see) {
   std::map<std::string, const CaseRecord*> cases;
   for (const CaseRecord& record : study.cases) cases[record.id] = &record;
-  const TableReader rows(*table);
-  const std::size_t id = rows.column("case");
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    if (const auto found = cases.find(rows.text(row, id)); found != cases.end()) see(*found->second, rows, row);
+  for (const Record& row : type.read(study.derived))
+    if (const auto found = cases.find(row.id); found != cases.end()) see(*found->second, row);
 }
 
 bool touches(const CaseRecord& record) {
@@ -53,26 +50,25 @@ bool touches(const CaseRecord& record) {
 }
 
 void add_orders(const StudyResults& study, bool contact, const Add& add) {
-  see_rows(study, "orders", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    if (rows.text(row, "refined") != "step" || rows.text(row, "error") != told_error || touches(record) != contact)
-      return;
-    const auto order = rows.number(row, "order"), low = rows.number(row, "low"), high = rows.number(row, "high");
-    add(record, order && low && high && *high - *low <= widest_interval ? order : std::nullopt);
+  see_rows(study, orders_type(), [&](const CaseRecord& record, const OrderRow& row) {
+    if (row.refined != "step" || row.error != told_error || touches(record) != contact) return;
+    const bool told = row.order && row.low && row.high && *row.high - *row.low <= widest_interval;
+    add(record, told ? row.order : std::nullopt);
   });
 }
 
 // A column of a table where the case has it.
-void add_column(const StudyResults& study, const char* table, const char* column, bool contact, const Add& add) {
-  see_rows(study, table, [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    const auto value = rows.number(row, rows.column_if_any(column));
-    if (value && (!contact || touches(record))) add(record, value);
+template <class Record>
+void add_column(const StudyResults& study, const TableType<Record>& type, std::optional<double> Record::*column,
+                bool contact, const Add& add) {
+  see_rows(study, type, [&](const CaseRecord& record, const Record& row) {
+    if (row.*column && (!contact || touches(record))) add(record, row.*column);
   });
 }
 
 void see_points(const StudyResults& study, const std::function<void(const CaseRecord&, double error, double s)>& see) {
-  see_rows(study, "work_precision", [&](const CaseRecord& record, const TableReader& rows, std::size_t row) {
-    const auto error = rows.number(row, "value"), seconds = rows.number(row, "run_seconds");
-    if (rows.text(row, "error") == told_error && error && seconds) see(record, *error, *seconds);
+  see_rows(study, work_precision_type(), [&](const CaseRecord& record, const WorkRow& row) {
+    if (row.error == told_error && row.value && row.run_seconds) see(record, *row.value, *row.run_seconds);
   });
 }
 
@@ -106,20 +102,26 @@ const std::vector<Figure>& figures() {
   const auto orders = [](bool impacts) {
     return [impacts](const StudyResults& results, const Add& add) { add_orders(results, impacts, add); };
   };
-  const auto column = [](const char* table, const char* name, bool largest = false) {
-    return [=](const StudyResults& results, const Add& add) { add_column(results, table, name, largest, add); };
+  const auto restitution = [](std::optional<double> RestitutionRow::*column) {
+    return [=](const StudyResults& results, const Add& add) {
+      add_column(results, restitution_type(), column, false, add);
+    };
+  };
+  const auto step_gains = [](const StudyResults& results, const Add& add) {
+    add_column(results, energy_ends_type(), &EnergyEnd::step_gain, true, add);
   };
   static const std::vector<Figure> all = {
       {{"order free", "1", "Order in the step without contact."}, orders(false), 2},
       {{"order through contact", "1", "Order in the step where a stop is touched."}, orders(true), 2},
       {{"largest step gain", "1", "Largest gain of energy in one step at contact, over the starting energy."},
-       column("energy_ends", "step_gain", true),
+       step_gains,
        0,
        true},
-      {{"e least", "1", "Least restitution of a free mass over the phases of a step."}, column("restitution", "least")},
-      {{"e mean", "1", "Mean of the same."}, column("restitution", "mean")},
-      {{"e most", "1", "Largest of the same."}, column("restitution", "most")},
-      {{"ρ∞", "1", "What a step leaves of the highest frequencies."}, column("restitution", "rho_inf")},
+      {{"e least", "1", "Least restitution of a free mass over the phases of a step."},
+       restitution(&RestitutionRow::least)},
+      {{"e mean", "1", "Mean of the same."}, restitution(&RestitutionRow::mean)},
+      {{"e most", "1", "Largest of the same."}, restitution(&RestitutionRow::most)},
+      {{"ρ∞", "1", "What a step leaves of the highest frequencies."}, restitution(&RestitutionRow::rho_inf)},
       {{"cost of a step", "µs", "Processor time of one step."}, add_costs},
       {{"error at 1 ms", "m", "Smallest error of the tip, root mean square over time, within 1 ms of processor time."},
        add_reached},

@@ -11,7 +11,6 @@
 #include "runners/store/record_values.hpp"
 #include "runners/study/axis_meaning.hpp"
 #include "runners/table/in_order_met.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet {
 namespace {
@@ -77,41 +76,64 @@ std::vector<std::string> errors_of(const StudyResults& results) {
   return errors.get<std::vector<std::string>>();
 }
 
+TableType<ErrorRow> errors_type() {
+  RowType<ErrorRow> rows;
+  rows.of_case(&ErrorRow::id)
+      .add(error_column, &ErrorRow::error)
+      .add(value_column, &ErrorRow::value)
+      .add({"floor", "that of the error",
+            "What the reference itself may be wrong by: below it the error says nothing, and below four of it no "
+            "order."},
+           &ErrorRow::floor);
+  return {"errors", "One kind of error of one case.", rows};
+}
+
 Table errors_table(const StudyResults& results) {
-  Table table = table_of_cases(
-      results, "errors", "One kind of error of one case.",
-      {error_column,
-       value_column,
-       {"floor", "that of the error",
-        "What the reference itself may be wrong by: below it the error says nothing, and below four of it no order."}});
+  const TableType<ErrorRow> type = errors_type();
+  Table table = table_of_cases(results, type.head());
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : errors_of(results))
       if (const auto value = measure(record, "error." + name))
-        add_row(table, place_of(results, record), {name, *value, measure(record, "floor." + name)});
+        add_row(table, place_of(results, record),
+                type.rows.row({record.id, name, value, measure(record, "floor." + name)}));
   return table;
 }
 
+TableType<OrderRow> orders_type() {
+  RowType<OrderRow> rows;
+  rows.of_case(&OrderRow::id)
+      .add(
+          {"refined", "", "What is refined: step or elements; the order is one in the step, or in the element length."},
+          &OrderRow::refined)
+      .add(error_column, &OrderRow::error)
+      .add(
+          {"order", "1", "Fitted order: the slope of the error over the refined quantity, both on logarithmic scales."},
+          &OrderRow::order)
+      .add({"low", "1", "Lower end of the 95 % interval of the order."}, &OrderRow::low)
+      .add({"high", "1", "Upper end of the 95 % interval of the order."}, &OrderRow::high)
+      .add({"declared", "1", "The order in the step that the scheme declares; empty where it declares none."},
+           &OrderRow::declared)
+      .add({"verdict", "", "Whether the fit confirms the declared order, refutes it, or cannot decide."},
+           &OrderRow::verdict)
+      .add({"reason", "", "What the verdict rests on: which points were used, and what was in the way."},
+           &OrderRow::reason)
+      .add({"saturates_at", "",
+            "Where the errors do not fall, so that there is no order: what may keep them up. The law: stops of the "
+            "reference "
+            "are rigid and those of the case are not; the mesh, or the step: the reference has none. Not told: "
+            "neither."},
+           &OrderRow::saturates_at);
+  return {"orders", "The order with which one kind of error of one method falls as one quantity is refined.", rows};
+}
+
 Table orders_table(const StudyResults& results) {
-  Table table{
-      "orders", "The order with which one kind of error of one method falls as one quantity is refined.", {}, {}};
-  table.columns = {{"case", "",
+  const TableType<OrderRow> type = orders_type();
+  Table table{type.name, type.text, {}, {}};
+  table.columns = {{case_name, "",
                     "The finest of the cases that the order is fitted to; the others differ in the refined "
                     "quantity alone."}};
   table.columns = joined(std::move(table.columns), axis_columns(results, without(results.columns, "step")));
-  table.columns = joined(
-      std::move(table.columns),
-      {{"refined", "", "What is refined: step or elements; the order is one in the step, or in the element length."},
-       error_column,
-       {"order", "1", "Fitted order: the slope of the error over the refined quantity, both on logarithmic scales."},
-       {"low", "1", "Lower end of the 95 % interval of the order."},
-       {"high", "1", "Upper end of the 95 % interval of the order."},
-       {"declared", "1", "The order in the step that the scheme declares; empty where it declares none."},
-       {"verdict", "", "Whether the fit confirms the declared order, refutes it, or cannot decide."},
-       {"reason", "", "What the verdict rests on: which points were used, and what was in the way."},
-       {"saturates_at", "",
-        "Where the errors do not fall, so that there is no order: what may keep them up. The law: stops of the "
-        "reference "
-        "are rigid and those of the case are not; the mesh, or the step: the reference has none. Not told: neither."}});
+  table.columns = joined(std::move(table.columns), type.rows.columns());
   for (const std::string refined : {"step", "elements"}) {
     const std::string other = refined == "step" ? "elements" : "step";
     std::set<double> sizes;
@@ -154,36 +176,53 @@ Table orders_table(const StudyResults& results) {
           row.push_back(column == refined ? Cell() : axis(first, column));
         const std::string gci =
             fit.gci ? fmt::format("; grid convergence index of the finest point used: {:.2g}", *fit.gci) : "";
-        const auto slope = [&](const std::optional<double>& value) { return fit.saturated ? Cell() : Cell(value); };
-        row.insert(row.end(), {refined, name, slope(fit.order), slope(fit.low), slope(fit.high), question.declared,
-                               verdict_word(fit.verdict), fit.reason + gci,
-                               fit.saturated ? Cell(saturates_at(question, of_law)) : Cell()});
-        table.rows.push_back(std::move(row));
+        OrderRow told{.id = finest->id, .refined = refined, .error = name, .declared = question.declared};
+        if (!fit.saturated) {
+          told.order = fit.order;
+          told.low = fit.low;
+          told.high = fit.high;
+        } else {
+          told.saturates_at = saturates_at(question, of_law);
+        }
+        told.verdict = verdict_word(fit.verdict);
+        told.reason = fit.reason + gci;
+        add_row(table, std::move(row), type.rows.row(told));
       }
     }
   }
   return table;
 }
 
+TableType<WorkRow> work_precision_type() {
+  RowType<WorkRow> rows;
+  rows.of_case(&WorkRow::id)
+      .add(error_column, &WorkRow::error)
+      .add(value_column, &WorkRow::value)
+      .add({"run_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats."},
+           &WorkRow::run_seconds)
+      .add({"low", "s", "The fastest repeat."}, &WorkRow::low)
+      .add({"high", "s", "The slowest repeat."}, &WorkRow::high)
+      .add({"steps", "1", "Steps of time that were marched."}, &WorkRow::steps)
+      .add({"status", "", "done, refused, diverged or failed, as in cases.csv."}, &WorkRow::status);
+  return {"work_precision", "One kind of error of one case, and what the case costs.", rows};
+}
+
 Table work_precision_table(const StudyResults& results) {
   const std::vector<std::string> methods = without(results.columns, "step");
-  Table table{"work_precision", "One kind of error of one case, and what the case costs.", {case_column()}, {}};
+  const TableType<WorkRow> type = work_precision_type();
+  Table table{type.name, type.text, {case_column()}, {}};
   table.columns = joined(std::move(table.columns), axis_columns(results, methods));
   table.columns = joined(std::move(table.columns), axis_columns(results, {"step"}));
-  table.columns =
-      joined(std::move(table.columns),
-             {error_column,
-              value_column,
-              {"run_seconds", "s", "Processor time of the marching alone, nothing observed: median of the repeats."},
-              {"low", "s", "The fastest repeat."},
-              {"high", "s", "The slowest repeat."},
-              {"steps", "1", "Steps of time that were marched."},
-              {"status", "", "done, refused, diverged or failed, as in cases.csv."}});
+  table.columns = joined(std::move(table.columns), type.rows.columns());
   for (const CaseRecord& record : results.cases)
-    for (const std::string& name : errors_of(results))
-      add_row(table, place_of(record, methods),
-              {axis(record, "step"), name, measure(record, "error." + name), measure(record, "timed_seconds"),
-               measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status});
+    for (const std::string& name : errors_of(results)) {
+      Row place = place_of(record, methods);
+      place.push_back(axis(record, "step"));
+      add_row(
+          table, std::move(place),
+          type.rows.row({record.id, name, measure(record, "error." + name), measure(record, "timed_seconds"),
+                         measure(record, "timed_low"), measure(record, "timed_high"), record.steps, record.status}));
+    }
   return table;
 }
 
@@ -242,27 +281,45 @@ bool is_scene(const std::string& column) {
   return !is_method(column) && column != "elements" && column != "step";
 }
 
+TableType<TargetRow> precision_targets_type() {
+  RowType<TargetRow> rows;
+  const auto add = [&](Column column, TargetCase TargetRow::*which, auto TargetCase::*member) {
+    using Value = std::remove_reference_t<decltype(std::declval<TargetCase>().*member)>;
+    rows.add(
+        std::move(column), [which, member](const TargetRow& row) { return Cell(row.*which.*member); },
+        [which, member](TargetRow& row, const Cell& cell) {
+          if (!cell.is_nothing()) row.*which.*member = CellValue<Value>::of(cell).value_or(Value());
+        });
+  };
+  rows.in_front(case_name, [](TargetRow& row, const Cell& cell) { row.first.id = cell.text(); });
+  rows.add({"error", "", "Which error: a quantity of the motion and how its difference is measured."},
+           &TargetRow::error);
+  rows.add({"at_most", "that of the error", "The error to be reached."}, &TargetRow::at_most);
+  add({"seconds", "s", "Processor time of the case: median of the repeats."}, &TargetRow::first, &TargetCase::seconds);
+  add({"low", "s", "Its fastest repeat."}, &TargetRow::first, &TargetCase::low);
+  add({"high", "s", "Its slowest repeat."}, &TargetRow::first, &TargetCase::high);
+  add({"other_case", "", "The fastest case of any other method that gets there."}, &TargetRow::other, &TargetCase::id);
+  add({"other_seconds", "s", "Processor time of that case: median of the repeats."}, &TargetRow::other,
+      &TargetCase::seconds);
+  add({"other_low", "s", "Its fastest repeat."}, &TargetRow::other, &TargetCase::low);
+  add({"other_high", "s", "Its slowest repeat."}, &TargetRow::other, &TargetCase::high);
+  rows.add({"speed_up", "1", "other_seconds over seconds."}, &TargetRow::speed_up);
+  rows.add({"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."},
+           &TargetRow::overlap);
+  rows.add({"share", "1",
+            "at_most over what the error of a motion at rest would be, a power of ten; empty where that "
+            "is not known: then at_most is one."},
+           &TargetRow::share);
+  return {"precision_targets",
+          "One error to be reached in one scene: the cheapest method with a step that was run, and the runner-up.",
+          rows};
+}
+
 Table precision_targets_table(const StudyResults& results) {
   const std::vector<std::string> scene = columns_that(results, is_scene), method = columns_that(results, is_method);
-  Table table{"precision_targets",
-              "One error to be reached in one scene: the cheapest method with a step that was run, and the runner-up.",
-              {{"case", "", "The case that gets there in the least time."}},
-              {}};
-  table.columns = joined(joined(std::move(table.columns), axis_columns(results, scene)),
-                         {{"error", "", "Which error: a quantity of the motion and how its difference is measured."},
-                          {"at_most", "that of the error", "The error to be reached."},
-                          {"seconds", "s", "Processor time of the case: median of the repeats."},
-                          {"low", "s", "Its fastest repeat."},
-                          {"high", "s", "Its slowest repeat."},
-                          {"other_case", "", "The fastest case of any other method that gets there."},
-                          {"other_seconds", "s", "Processor time of that case: median of the repeats."},
-                          {"other_low", "s", "Its fastest repeat."},
-                          {"other_high", "s", "Its slowest repeat."},
-                          {"speed_up", "1", "other_seconds over seconds."},
-                          {"overlap", "", "Whether the repeats of both overlap, so that they are not told apart."},
-                          {"share", "1",
-                           "at_most over what the error of a motion at rest would be, a power of ten; empty where that "
-                           "is not known: then at_most is one."}});
+  const TableType<TargetRow> type = precision_targets_type();
+  Table table{type.name, type.text, {{case_name, "", "The case that gets there in the least time."}}, {}};
+  table.columns = joined(joined(std::move(table.columns), axis_columns(results, scene)), type.rows.columns());
   const std::vector<Cases> scenes = groups_of(all_cases(results), scene);
   const nlohmann::ordered_json errors = results.study.value("errors", nlohmann::ordered_json::array());
   for (const auto& error : errors)
@@ -283,42 +340,44 @@ Table precision_targets_table(const StudyResults& results) {
         const std::vector<TimedError> entries = fastest(points, tolerance, method);
         if (entries.empty()) break;
         const TimedError& first = entries[0];
-        Row row = place_of(*first.record, scene);
-        row.insert(row.end(), {error.get<std::string>(), tolerance, first.seconds, first.low, first.high});
+        const auto costs = [](const TimedError& one) {
+          return TargetCase{one.record->id, one.seconds, one.low, one.high};
+        };
+        TargetRow row{costs(first), {}, error.get<std::string>(), tolerance, {}, {}, {}};
         if (entries.size() > 1) {
-          const TimedError& second = entries[1];
-          row.insert(row.end(), {second.record->id, second.seconds, second.low, second.high,
-                                 second.seconds / first.seconds, second.low <= first.high});
+          row.other = costs(entries[1]);
+          row.speed_up = entries[1].seconds / first.seconds;
+          row.overlap = entries[1].low <= first.high;
         }
-        row.resize(table.columns.size());
-        if (size > 0) row.back() = share;
-        table.rows.push_back(std::move(row));
+        if (size > 0) row.share = share;
+        add_row(table, place_of(*first.record, scene), type.rows.row(row));
         if (tolerance <= best->known) break;
       }
     }
   return table;
 }
 
+TableType<OrderVerdicts> order_verdicts_type() {
+  RowType<OrderVerdicts> rows;
+  rows.add({"orders", "1", "Orders that were fitted."}, &OrderVerdicts::orders)
+      .add({"declared", "1", "Those whose scheme declares an order for such a run."}, &OrderVerdicts::declared)
+      .add({"confirmed", "1", "Those that agree with the declared order."}, &OrderVerdicts::confirmed)
+      .add({"refuted", "1", "Those that do not."}, &OrderVerdicts::refuted)
+      .add({"undecided", "1", "Those of which the points do not tell."}, &OrderVerdicts::undecided);
+  return {"order_verdicts", "Over all cases: how often fitted orders are those that the schemes declare.", rows};
+}
+
 Table order_verdicts_table(const Table& orders) {
-  Table table{"order_verdicts",
-              "Over all cases: how often fitted orders are those that the schemes declare.",
-              {{"orders", "1", "Orders that were fitted."},
-               {"declared", "1", "Those whose scheme declares an order for such a run."},
-               {"confirmed", "1", "Those that agree with the declared order."},
-               {"refuted", "1", "Those that do not."},
-               {"undecided", "1", "Those of which the points do not tell."}},
-              {}};
-  const TableReader rows(orders);
-  const std::size_t declared = rows.column("declared"), verdict = rows.column("verdict");
-  const auto count = [&](const char* word) {
-    int out = 0;
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      out += rows.number(row, declared) && rows.text(row, verdict) == word;
-    return out;
-  };
-  const int confirmed = count("confirmed"), refuted = count("refuted"), undecided = count("undecided");
-  table.rows.push_back({rows.size(), confirmed + refuted + undecided, confirmed, refuted, undecided});
-  return table;
+  OrderVerdicts counts;
+  for (const OrderRow& row : orders_type().rows.read(orders)) {
+    ++counts.orders;
+    if (!row.declared) continue;
+    counts.confirmed += row.verdict == "confirmed";
+    counts.refuted += row.verdict == "refuted";
+    counts.undecided += row.verdict == "undecided";
+  }
+  counts.declared = counts.confirmed + counts.refuted + counts.undecided;
+  return order_verdicts_type().with({counts});
 }
 
 }  // namespace ricochet

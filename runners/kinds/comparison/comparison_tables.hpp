@@ -1,17 +1,40 @@
 #pragma once
 #include "runners/store/record.hpp"
+#include "runners/table/row_type.hpp"
 
 namespace ricochet {
 
 /// The errors that a study asks for, in its order.
 std::vector<std::string> errors_of(const StudyResults& results);
 
+/// One row of `errors`.
+struct ErrorRow {
+  std::string id, error;
+  std::optional<double> value, floor;
+};
+TableType<ErrorRow> errors_type();
 /// errors: one row per case and error, with the floor below which it says nothing.
 Table errors_table(const StudyResults& results);
 
+/// One row of `orders`.
+struct OrderRow {
+  std::string id, refined, error;
+  std::optional<double> order = {}, low = {}, high = {}, declared = {};
+  std::string verdict = {}, reason = {};
+  std::optional<std::string> saturates_at = {};
+};
+TableType<OrderRow> orders_type();
 /// orders: one row per method, error and refined quantity, with the fit's verdict and reason.
 Table orders_table(const StudyResults& results);
 
+/// One row of `work_precision`.
+struct WorkRow {
+  std::string id, error;
+  std::optional<double> value, run_seconds, low, high;
+  long long steps = 0;
+  std::string status;
+};
+TableType<WorkRow> work_precision_type();
 /// work_precision: one row per case and error, with the processor time it took.
 Table work_precision_table(const StudyResults& results);
 
@@ -21,11 +44,30 @@ bool is_method(const std::string& column);
 /// Whether another value makes another scene of it: neither method, nor mesh, nor step.
 bool is_scene(const std::string& column);
 
+/// What a case of `precision_targets` costs.
+struct TargetCase {
+  std::optional<std::string> id;
+  std::optional<double> seconds, low, high;
+};
+/// One row of `precision_targets`.
+struct TargetRow {
+  TargetCase first, other;
+  std::string error;
+  std::optional<double> at_most, speed_up;
+  std::optional<bool> overlap;
+  std::optional<double> share;
+};
+TableType<TargetRow> precision_targets_type();
 /// precision_targets: for each error, scene and power of ten, the cheapest method that gets there with a step that was
 /// run, and the runner-up. From the power that the worst case misses (or the first that some case reaches) to the last
 /// that one does. What an error is known to is its value, or the floor of its reference if that is larger.
 Table precision_targets_table(const StudyResults& results);
 
+/// The one row of `order_verdicts`.
+struct OrderVerdicts {
+  std::size_t orders = 0, declared = 0, confirmed = 0, refuted = 0, undecided = 0;
+};
+TableType<OrderVerdicts> order_verdicts_type();
 /// order_verdicts: how many of the orders with a declared one are confirmed, refuted and undecided.
 Table order_verdicts_table(const Table& orders);
 

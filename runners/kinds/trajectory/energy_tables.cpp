@@ -27,32 +27,49 @@ double energy_noise(const CaseRecord& record) {
   return residual && std::abs(*residual) <= exact_balance ? std::max(round_off, std::abs(*residual)) : round_off;
 }
 
+TableType<EnergyEnd> energy_ends_type() {
+  RowType<EnergyEnd> rows;
+  rows.of_case(&EnergyEnd::id)
+      .add({"energy", "J", "The common mechanical energy at the end."}, &EnergyEnd::energy)
+      .add({"ratio", "1",
+            "The same over the energy brought in: that of the start, and what loads brought in beyond what they took."},
+           &EnergyEnd::ratio)
+      .add({"change", "1", "Distance of that ratio from 1."}, &EnergyEnd::change)
+      .add({"noise_floor", "1",
+            "What of the change is not told from round-off: 2⁻⁵² times the number of steps, or the residual of the "
+            "energy "
+            "balance over the energy brought in where the balance is exact, whichever is larger."},
+           &EnergyEnd::noise_floor)
+      .add({"kept", "", "Whether the change is within the noise floor."}, &EnergyEnd::kept)
+      .add({"step_gain", "1", "Largest gain of one step over the energy brought in."}, &EnergyEnd::step_gain)
+      .add({"gains", "", "Whether that is more than 1e-9 of it."}, &EnergyEnd::gains)
+      .add({"lost_at_contact", "1", "What the contact efforts took out, over the energy brought in."},
+           &EnergyEnd::lost_at_contact)
+      .add({"conservative", "", "Whether nothing but contact changes the energy of the study's finished cases."},
+           &EnergyEnd::conservative);
+  return {"energy_ends", "One finished case: what its energy ends at, and what is told from round-off.", rows};
+}
+
 Table energy_ends_table(const StudyResults& results) {
-  Table table = table_of_cases(
-      results, "energy_ends", "One finished case: what its energy ends at, and what is told from round-off.",
-      {{"energy", "J", "The common mechanical energy at the end."},
-       {"ratio", "1",
-        "The same over the energy brought in: that of the start, and what loads brought in beyond what they took."},
-       {"change", "1", "Distance of that ratio from 1."},
-       {"noise_floor", "1",
-        "What of the change is not told from round-off: 2⁻⁵² times the number of steps, or the residual of the energy "
-        "balance over the energy brought in where the balance is exact, whichever is larger."},
-       {"kept", "", "Whether the change is within the noise floor."},
-       {"step_gain", "1", "Largest gain of one step over the energy brought in."},
-       {"gains", "", "Whether that is more than 1e-9 of it."},
-       {"lost_at_contact", "1", "What the contact efforts took out, over the energy brought in."},
-       {"conservative", "", "Whether nothing but contact changes the energy of the study's finished cases."}});
+  const TableType<EnergyEnd> type = energy_ends_type();
+  Table table = table_of_cases(results, type.head());
   const bool conservative = answers::keeps_energy(results);
   for (const CaseRecord* record : done_cases(results)) {
-    const auto end = measure(*record, "energy_end"), ratio = measure(*record, "energy_left");
-    if (!end && !ratio) continue;
-    const auto gain = of_brought_in(*record, "largest_step_gain");
-    const double noise = energy_noise(*record);
-    add_row(
-        table, place_of(results, *record),
-        {end, ratio, ratio ? Cell(std::abs(*ratio - 1)) : Cell(), noise,
-         ratio ? Cell(std::abs(*ratio - 1) <= noise) : Cell(), gain, gain ? Cell(*gain > step_gain_threshold) : Cell(),
-         of_brought_in(*record, "dissipated_at_contact"), conservative});
+    EnergyEnd row;
+    row.id = record->id;
+    row.energy = measure(*record, "energy_end");
+    row.ratio = measure(*record, "energy_left");
+    if (!row.energy && !row.ratio) continue;
+    row.noise_floor = energy_noise(*record);
+    if (row.ratio) {
+      row.change = std::abs(*row.ratio - 1);
+      row.kept = *row.change <= row.noise_floor;
+    }
+    row.step_gain = of_brought_in(*record, "largest_step_gain");
+    if (row.step_gain) row.gains = *row.step_gain > step_gain_threshold;
+    row.lost_at_contact = of_brought_in(*record, "dissipated_at_contact");
+    row.conservative = conservative;
+    add_row(table, place_of(results, *record), type.rows.row(row));
   }
   return table;
 }

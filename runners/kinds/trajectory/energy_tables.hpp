@@ -1,5 +1,6 @@
 #pragma once
 #include "runners/store/record.hpp"
+#include "runners/table/row_type.hpp"
 
 /// \file
 /// What the energies of a study of trajectories say of its methods, worked out of the measures of its cases.
@@ -14,6 +15,18 @@ inline constexpr double exact_balance = 1e-8;
 /// A step counts as gaining energy above this share of the energy brought in.
 inline constexpr double step_gain_threshold = 1e-9;
 
+/// One row of `energy_ends`.
+struct EnergyEnd {
+  std::string id;
+  std::optional<double> energy, ratio, change;
+  double noise_floor = 0;
+  std::optional<bool> kept;
+  std::optional<double> step_gain;
+  std::optional<bool> gains;
+  std::optional<double> lost_at_contact;
+  bool conservative = false;
+};
+TableType<EnergyEnd> energy_ends_type();
 /// energy_ends: one row per finished case with an energy at its end.
 Table energy_ends_table(const StudyResults& results);
 

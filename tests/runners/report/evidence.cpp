@@ -36,18 +36,22 @@ TEST_CASE("without derived tables there is no evidence", "[report]") {
 
 TEST_CASE("rows are found by the axes of a case", "[report]") {
   const StudyResults results = synthetic::comparison({1e-3, 5e-4}, {10, 20});
-  const AxisRows errors(results, "errors", {"error"}), orders(results, "orders", {"refined", "error"});
+  const AxisRows<ErrorRow> errors(results, errors_type(),
+                                  [](const ErrorRow& row) { return std::vector<std::string>{row.error}; });
+  const AxisRows<OrderRow> orders(results, orders_type(), [](const OrderRow& row) {
+    return std::vector<std::string>{row.refined, row.error};
+  });
   for (const CaseRecord& record : results.cases) {
     const auto row = errors.find(record, {"energy"});
     CHECK(row.has_value() == ricochet::measure(record, "error.energy").has_value());
-    if (row) CHECK(errors.number(*row, "value") == ricochet::measure(record, "error.energy"));
+    if (row) CHECK(errors[*row].value == ricochet::measure(record, "error.energy"));
     CHECK_FALSE(errors.find(record, {"no such"}));
     const auto order = orders.find(record, {"elements", "energy"}, {"elements"});
-    if (order) CHECK(orders.text(*order, "elements").empty());
+    for (size_t axis = 0; order && axis < orders.axes().size(); ++axis)
+      if (orders.axes()[axis] == "elements") CHECK(orders.axis_text(*order, axis).empty());
     CHECK(order.has_value() == (record.status != "refused"));
   }
-  CHECK(errors.text(0, "no such column").empty());
-  CHECK(AxisRows(results, "no such table").empty());
+  CHECK(AxisRows<ErrorRow>(StudyResults{}, errors_type()).empty());
 }
 
 TEST_CASE("the Pareto front is what nothing beats", "[report]") {

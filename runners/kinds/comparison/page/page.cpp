@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
 #include "runners/store/record_values.hpp"
@@ -74,7 +75,11 @@ Cases cases_along(const CaseView& view, const std::string& refined) {
 }  // namespace
 
 Table order_lines(const CaseView& view) {
-  const AxisRows errors(view.results(), "errors", {"error"}), orders(view.results(), "orders", {"refined", "error"});
+  const AxisRows<ErrorRow> errors(view.results(), errors_type(),
+                                  [](const ErrorRow& row) -> std::vector<std::string> { return {row.error}; });
+  const AxisRows<OrderRow> orders(view.results(), orders_type(), [](const OrderRow& row) -> std::vector<std::string> {
+    return {row.refined, row.error};
+  });
   Table out{"order_lines",
             "One row per line of a convergence figure: the longest run of points above their floor within a factor of "
             "two of e = C x^p.",
@@ -98,21 +103,20 @@ Table order_lines(const CaseView& view) {
       std::stable_sort(group.cases.begin(), group.cases.end(), [&](const CaseRecord* a, const CaseRecord* b) {
         return CaseView::number(*a, refined).value_or(0) < CaseView::number(*b, refined).value_or(0);
       });
-      for (const std::string& error : errors.values("error")) {
+      for (const std::string& error : errors.values(&ErrorRow::error)) {
         std::optional<size_t> row;
         std::vector<LinePoint> points;
         for (const CaseRecord* record : group.cases) {
           if (!row) row = orders.find(*record, {refined, error}, {refined});
           const auto found = errors.find(*record, {error});
-          const auto x = CaseView::number(*record, refined), value = found ? errors.number(*found, "value") : x;
+          const auto x = CaseView::number(*record, refined), value = found ? errors[*found].value : x;
           if (found && x && value && record->status == "done")
-            points.push_back({*x, *value, errors.number(*found, "floor").value_or(0)});
+            points.push_back({*x, *value, errors[*found].floor.value_or(0)});
         }
-        const auto order = row ? orders.number(*row, "order") : std::nullopt;
+        const auto order = row ? orders[*row].order : std::nullopt;
         const auto line = order ? longest_line(points, refined == "step" ? *order : -*order) : std::nullopt;
         if (!line) continue;
-        Row cells;
-        for (const std::string& column : orders.axes()) cells.push_back(orders.value(*row, column));
+        Row cells = orders.cells(*row);
         cells.insert(cells.end(),
                      {refined, error, *order, line->from, line->to, line->at(line->from), line->at(line->to)});
         out.rows.push_back(std::move(cells));
@@ -124,9 +128,8 @@ Table order_lines(const CaseView& view) {
 
 namespace {
 
-std::string interval_text(const AxisRows& rows, size_t row) {
-  const auto low = rows.number(row, "low"), high = rows.number(row, "high");
-  return low && high ? fmt::format("[{}, {}]", order_number(*low), order_number(*high)) : "";
+std::string interval_text(const OrderRow& row) {
+  return row.low && row.high ? fmt::format("[{}, {}]", order_number(*row.low), order_number(*row.high)) : "";
 }
 
 /// The looks of a verdict: those of a status.
@@ -135,37 +138,36 @@ std::string verdict_class(const std::string& verdict) {
 }
 
 /// One order as "0.99 ✓": ✓ confirmed, ✕ refuted, ? undecided, none where nothing is declared.
-void order_cell(HtmlTable& table, const AxisRows& rows, size_t row) {
-  const std::string verdict = rows.text(row, "verdict"), interval = interval_text(rows, row);
-  const auto order = rows.number(row, "order");
-  const bool declared = rows.number(row, "declared").has_value();
-  const std::string floor = rows.text(row, "saturates_at");
+void order_cell(HtmlTable& table, const OrderRow& row) {
+  const std::string& verdict = row.verdict;
+  const std::string floor = row.saturates_at.value_or("");
   if (!floor.empty()) {
-    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, verdict + ": " + rows.text(row, "reason"),
-                 verdict_class(declared ? verdict : ""));
+    table.number(floor == "not told" ? "does not fall" : "floor: " + floor, verdict + ": " + row.reason,
+                 verdict_class(row.declared ? verdict : ""));
     return;
   }
-  const char* mark = !declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
-  table.number((order ? order_number(*order) : "–") + mark,
-               fmt::format("{}{}{}: {}", interval, order ? " " : "", verdict, rows.text(row, "reason")),
-               verdict_class(declared ? verdict : ""));
+  const char* mark = !row.declared ? "" : verdict == "confirmed" ? " ✓" : verdict == "refuted" ? " ✕" : " ?";
+  table.number((row.order ? order_number(*row.order) : "–") + mark,
+               fmt::format("{}{}{}: {}", interval_text(row), row.order ? " " : "", verdict, row.reason),
+               verdict_class(row.declared ? verdict : ""));
 }
 
 /// What a row is about, without the kind of error.
 struct Method {
   std::string label, colour, key, refined;
-  std::vector<size_t> rows;
+  std::vector<const OrderRow*> rows;
 };
 
-std::vector<Method> methods(const CaseView& view, const AxisRows& rows) {
+std::vector<Method> methods(const CaseView& view, const AxisRows<OrderRow>& rows) {
   std::vector<Method> out;
   for (size_t row = 0; row < rows.size(); ++row) {
     // What the row does not say (the element count of a refinement of elements) is not said.
     std::vector<std::string> columns;
-    std::string key = rows.text(row, "refined");
-    for (const std::string& column : rows.axes()) {
-      if (!rows.text(row, column).empty()) columns.push_back(column);
-      key += '\x1f' + rows.text(row, column);
+    std::string key = rows[row].refined;
+    for (size_t axis = 0; axis < rows.axes().size(); ++axis) {
+      const std::string value = rows.axis_text(row, axis);
+      if (!value.empty()) columns.push_back(rows.axes()[axis]);
+      key += '\x1f' + value;
     }
     auto found = std::find_if(out.begin(), out.end(), [&](const Method& m) { return m.key == key; });
     if (found == out.end()) {
@@ -173,28 +175,27 @@ std::vector<Method> methods(const CaseView& view, const AxisRows& rows) {
       found = out.insert(out.end(), {example ? view.name(*example, columns) : "the one method",
                                      example ? view.colour(*example) : "",
                                      key,
-                                     rows.text(row, "refined"),
+                                     rows[row].refined,
                                      {}});
     }
-    found->rows.push_back(row);
+    found->rows.push_back(&rows[row]);
   }
   return out;
 }
 
 /// The orders that a method declares over its errors: "1", "1, 2".
-std::string declared_text(const AxisRows& rows, const Method& method) {
+std::string declared_text(const Method& method) {
   std::vector<std::string> said;
-  for (const size_t row : method.rows)
-    if (const auto declared = rows.number(row, "declared")) {
-      std::string text = number_text(*declared, 3);
+  for (const OrderRow* row : method.rows)
+    if (row->declared) {
+      std::string text = number_text(*row->declared, 3);
       if (std::find(said.begin(), said.end(), text) == said.end()) said.push_back(std::move(text));
     }
   return said.empty() ? "–" : fmt::format("{}", fmt::join(said, ", "));
 }
 
 /// Methods × errors.
-std::string matrix(const AxisRows& rows, const std::vector<Method>& all) {
-  const std::vector<std::string> errors = rows.values("error");
+std::string matrix(const std::vector<std::string>& errors, const std::vector<Method>& all) {
   HtmlTable table(
       "Order p of e ≈ C r<sup>p</sup>, r the step or the length of an element, fitted over the range that behaves so. "
       "✓ confirms the declared order, ✕ refutes it, ? does not decide; the tooltip has the 95 % interval and the "
@@ -202,35 +203,33 @@ std::string matrix(const AxisRows& rows, const std::vector<Method>& all) {
       {{"method"}, {"refined"}, {"declared", true}});
   for (const std::string& error : errors) table.add({error, true});
   for (const Method& method : all) {
-    table.row(method.label, method.colour).text(method.refined).number(declared_text(rows, method));
+    table.row(method.label, method.colour).text(method.refined).number(declared_text(method));
     for (const std::string& error : errors) {
       const auto found = std::find_if(method.rows.begin(), method.rows.end(),
-                                      [&](size_t row) { return rows.text(row, "error") == error; });
+                                      [&](const OrderRow* row) { return row->error == error; });
       if (found == method.rows.end())
         table.absent();
       else
-        order_cell(table, rows, *found);
+        order_cell(table, **found);
     }
   }
   return table.html();
 }
 
 /// Every order with its interval and reason, what is not confirmed first.
-std::string details(const AxisRows& rows, const std::vector<Method>& all) {
+std::string details(const std::vector<Method>& all) {
   HtmlTable table("",
                   {{"method"}, {"refined"}, {"error"}, {"order", true}, {"declared", true}, {"verdict"}, {"reason"}});
   for (const char* wanted : {"refuted", "undecided", "confirmed"})
     for (const Method& method : all)
-      for (const size_t row : method.rows) {
-        const std::string verdict = rows.text(row, "verdict");
-        if (verdict != wanted) continue;
-        const auto order = rows.number(row, "order"), declared = rows.number(row, "declared");
-        table.row(method.label, method.colour).text(method.refined).text(rows.text(row, "error"), "text");
-        const std::string floor = rows.text(row, "saturates_at");
-        table.number(floor.empty() ? (order ? order_number(*order) : "–") + " " + interval_text(rows, row)
+      for (const OrderRow* row : method.rows) {
+        if (row->verdict != wanted) continue;
+        table.row(method.label, method.colour).text(method.refined).text(row->error, "text");
+        const std::string floor = row->saturates_at.value_or("");
+        table.number(floor.empty() ? (row->order ? order_number(*row->order) : "–") + " " + interval_text(*row)
                                    : "floor: " + floor);
-        table.number(declared ? number_text(*declared, 3) : "–");
-        table.text(verdict, verdict_class(verdict)).text(rows.text(row, "reason"), "reason");
+        table.number(row->declared ? number_text(*row->declared, 3) : "–");
+        table.text(row->verdict, verdict_class(row->verdict)).text(row->reason, "reason");
       }
   return "<details><summary>Every order with its interval, verdict and reason</summary>\n" + table.html() +
          "</details>\n";
@@ -238,27 +237,27 @@ std::string details(const AxisRows& rows, const std::vector<Method>& all) {
 
 /// "24 orders against what the methods declare: 18 confirmed, 2 refuted, 4 undecided."
 std::string counts(const StudyResults& results) {
-  const Table* verdicts = find_table(results.derived, "order_verdicts");
-  if (!verdicts || verdicts->rows.empty()) return "";
-  const TableReader rows(*verdicts);
-  const auto count = [&](const char* column) { return static_cast<size_t>(rows.number(0, column).value_or(0)); };
+  const std::vector<OrderVerdicts> rows = order_verdicts_type().read(results.derived);
+  if (rows.empty()) return "";
+  const OrderVerdicts& all = rows.front();
   std::string out;
-  for (const char* verdict : {"confirmed", "refuted", "undecided"})
-    if (count(verdict) > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count(verdict), verdict);
-  if (count("declared") == 0)
+  for (const auto& [count, verdict] :
+       {std::pair(all.confirmed, "confirmed"), {all.refuted, "refuted"}, {all.undecided, "undecided"}})
+    if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, verdict);
+  if (all.declared == 0)
     return fmt::format("<p class=\"lead\">{}, none with a declared order to compare with.</p>\n",
-                       count_text(count("orders"), "order", "orders"));
+                       count_text(all.orders, "order", "orders"));
   return fmt::format("<p class=\"lead\">{} against what the methods declare: {}.</p>\n",
-                     count_text(count("declared"), "order", "orders"), out);
+                     count_text(all.declared, "order", "orders"), out);
 }
 
 }  // namespace
 
 std::string orders_html(const CaseView& view) {
-  const AxisRows rows(view.results(), "orders");
+  const AxisRows<OrderRow> rows(view.results(), orders_type());
   if (rows.empty()) return "";
   const std::vector<Method> all = methods(view, rows);
-  return counts(view.results()) + matrix(rows, all) + details(rows, all);
+  return counts(view.results()) + matrix(rows.values(&OrderRow::error), all) + details(all);
 }
 
 }  // namespace ricochet::report

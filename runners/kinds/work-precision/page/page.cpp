@@ -10,7 +10,6 @@
 #include "runners/kinds/comparison/page/page.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/html.hpp"
-#include "runners/table/table_reader.hpp"
 
 namespace ricochet::report {
 
@@ -25,7 +24,10 @@ KindPage work_precision_page() {
 }
 
 WorkPrecision::WorkPrecision(const CaseView& view)
-    : rows_(view.results(), "work_precision", {"error"}), errors_(view.results(), "errors", {"error"}) {}
+    : rows_(view.results(), work_precision_type(),
+            [](const WorkRow& row) -> std::vector<std::string> { return {row.error}; }),
+      errors_(view.results(), errors_type(),
+              [](const ErrorRow& row) -> std::vector<std::string> { return {row.error}; }) {}
 
 std::vector<std::string> scene_columns(const CaseView& view) {
   std::vector<std::string> scene;
@@ -34,22 +36,21 @@ std::vector<std::string> scene_columns(const CaseView& view) {
 }
 
 std::optional<WorkPoint> WorkPrecision::point(const CaseRecord& record, const std::string& error) const {
-  const auto row = rows_.find(record, {error});
-  if (!row || record.status != "done") return std::nullopt;
-  const auto value = rows_.number(*row, "value"), seconds = rows_.number(*row, "run_seconds");
+  const auto found = rows_.find(record, {error});
+  if (!found || record.status != "done") return std::nullopt;
+  const WorkRow& row = rows_[*found];
+  const auto value = row.value, seconds = row.run_seconds;
   if (!value || !seconds || !(*value > 0) || !(*seconds > 0)) return std::nullopt;
-  WorkPoint out{&record, *value, *seconds, *seconds, *seconds, 0, 0};
-  out.low = rows_.number(*row, "low").value_or(out.low);
-  out.high = rows_.number(*row, "high").value_or(out.high);
-  out.steps = rows_.number(*row, "steps").value_or(0);
-  if (const auto known = errors_.find(record, {error})) out.floor = errors_.number(*known, "floor").value_or(0);
+  WorkPoint out{&record, *value, *seconds, row.low.value_or(*seconds), row.high.value_or(*seconds), 0, 0};
+  out.steps = static_cast<double>(row.steps);
+  if (const auto known = errors_.find(record, {error})) out.floor = errors_[*known].floor.value_or(0);
   return out;
 }
 
 std::string WorkPrecision::why_none(const CaseRecord& record, const std::string& error) const {
   const auto row = rows_.find(record, {error});
-  const auto value = row ? rows_.number(*row, "value") : std::nullopt;
-  const auto seconds = row ? rows_.number(*row, "run_seconds") : std::nullopt;
+  const auto value = row ? rows_[*row].value : std::nullopt;
+  const auto seconds = row ? rows_[*row].run_seconds : std::nullopt;
   return !value ? "no such error" : !(*value > 0) ? "error exactly 0" : !seconds || !(*seconds > 0) ? "not timed" : "";
 }
 
@@ -82,11 +83,9 @@ bool told_from_front(const WorkPoint& point, const std::vector<WorkPoint>& point
 
 namespace {
 
-/// The method of a row under a prefix ("", "other_"), its step, and its time.
-void case_cells(HtmlTable& table, const CaseView& view, const TableReader& targets, size_t row,
-                std::string_view prefix) {
-  const auto column = [&](const char* name) { return std::string(prefix) + name; };
-  const CaseRecord* record = view.find(targets.text(row, column("case")));
+/// The method of a case, its step, and its time.
+void case_cells(HtmlTable& table, const CaseView& view, const TargetCase& one) {
+  const CaseRecord* record = view.find(one.id.value_or(""));
   if (!record) {
     table.absent(false, "no other").absent(false).absent();
     return;
@@ -95,19 +94,16 @@ void case_cells(HtmlTable& table, const CaseView& view, const TableReader& targe
   std::copy_if(view.varying().begin(), view.varying().end(), std::back_inserter(methods), is_method);
   std::string how = exact_text(CaseView::number(*record, "step").value_or(0)) + " s";
   if (view.varies("elements")) how += ", " + CaseView::text(*record, "elements") + " elements";
-  const auto seconds = [&](const char* name, int digits) {
-    return number_text(targets.number(row, column(name)).value_or(0), digits);
-  };
   table.text(view.name(*record, methods)).text(how);
-  table.number(seconds("seconds", 3), seconds("low", 4) + " to " + seconds("high", 4) + " s");
+  table.number(number_text(one.seconds.value_or(0), 3),
+               number_text(one.low.value_or(0), 4) + " to " + number_text(one.high.value_or(0), 4) + " s");
 }
 
 }  // namespace
 
 std::string work_precision_html(const CaseView& view) {
-  const Table* found = find_table(view.results().derived, "precision_targets");
-  if (!found) return "";
-  const TableReader targets(*found);
+  const TableType<TargetRow> type = precision_targets_type();
+  if (!type.find(view.results().derived)) return "";
   const std::vector<std::string> scene = scene_columns(view);
   std::vector<HtmlTable::Head> heads = {
       {"error"},     {"at most", true}, {"cheapest"},           {"with step"},      {"run time (s)", true},
@@ -119,19 +115,18 @@ std::string work_precision_html(const CaseView& view) {
       "least time. Spread: fastest to slowest repeat (in the time's tooltip); where the spreads overlap, the two are "
       "not told apart.",
       std::move(heads));
-  for (size_t row = 0; row < targets.size(); ++row) {
-    Quantity quantity = error_quantity(targets.text(row, "error"));
-    quantity.name = targets.text(row, "error");
+  for (const TargetRow& row : type.read(view.results().derived)) {
+    Quantity quantity = error_quantity(row.error);
+    quantity.name = row.error;
     table.row().text(with_unit(quantity), "text");
-    const CaseRecord* record = view.find(targets.text(row, "case"));
+    const CaseRecord* record = view.find(row.first.id.value_or(""));
     if (!scene.empty()) table.text(record ? view.label(*record, scene) : "");
-    const auto share = targets.number(row, targets.column_if_any("share"));
-    table.number(power_text(share ? *share : targets.number(row, "at_most").value_or(0)),
-                 share ? exact_text(targets.number(row, "at_most").value_or(0)) : "");
-    case_cells(table, view, targets, row, "");
-    case_cells(table, view, targets, row, "other_");
-    if (const auto speed_up = targets.number(row, "speed_up"))
-      table.number(number_text(*speed_up, 3) + " ×").text(targets.truth(row, "overlap") == true ? "overlap" : "apart");
+    const double at_most = row.at_most.value_or(0);
+    table.number(power_text(row.share.value_or(at_most)), row.share ? exact_text(at_most) : "");
+    case_cells(table, view, row.first);
+    case_cells(table, view, row.other);
+    if (row.speed_up)
+      table.number(number_text(*row.speed_up, 3) + " ×").text(row.overlap == true ? "overlap" : "apart");
     else
       table.absent().absent(false);
   }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/report/case_view.hpp"
 #include "runners/report/kind_page.hpp"
 
@@ -38,7 +39,7 @@ class WorkPrecision {
   explicit WorkPrecision(const CaseView& view);
 
   bool empty() const { return rows_.empty(); }
-  std::vector<std::string> errors() const { return rows_.values("error"); }
+  std::vector<std::string> errors() const { return rows_.values(&WorkRow::error); }
 
   /// The point of a case; nothing where it has no such error, an error of exactly 0, or no time.
   std::optional<WorkPoint> point(const CaseRecord& record, const std::string& error) const;
@@ -47,7 +48,8 @@ class WorkPrecision {
   std::vector<WorkPoint> points(const Cases& cases, const std::string& error) const;
 
  private:
-  AxisRows rows_, errors_;
+  AxisRows<WorkRow> rows_;
+  AxisRows<ErrorRow> errors_;
 };
 
 /// Columns that make another scene of it: neither methods, nor mesh, nor step.

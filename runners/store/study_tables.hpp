@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/table/row_type.hpp"
+
+/// \file
+/// Rows of the tables that studies of several kinds have.
+namespace ricochet {
+
+/// The column that names a measure of cases.csv.
+inline constexpr char measure_name[] = "measure";
+
+/// One row of `effects`: what a choice, or several together, explain of the spread of a measure.
+struct EffectRow {
+  std::string measure, factor;
+  double share = 0;
+  std::optional<double> low, high;
+  bool log = false;
+};
+TableType<EffectRow> effects_type();
+
+/// One row of `reasons`: why cases have no result, or a doubtful one.
+struct ReasonRow {
+  std::string status, reason;
+  std::size_t cases = 0;
+  std::string first;  ///< of these cases
+};
+TableType<ReasonRow> reasons_type();
+
+namespace answers {
+
+/// One thing that a sentence says of some methods: a row of `answers`.
+struct Clause {
+  int order = 0;  ///< of the sentence within the answer, from 1
+  std::string
+      form;  ///< keeps, gains, differ, none, open, matters, part, value, order, cheapest, limit, diagram, basin, status
+  std::string measure = {}, choice = {};
+  std::string who = {};      ///< the methods in words
+  std::string methods = {};  ///< a case of each, blanks between
+  std::optional<double> value = {}, low = {}, high = {}, uncertainty = {};
+  std::string status = {};  ///< of the limit, or the verdict on a choice
+  std::string unit = {};
+  std::optional<double> at_step = {}, at_mesh = {};  ///< the finest, s and elements
+  std::string sentence = {};                         ///< on the first clause of each sentence
+};
+const TableType<Clause>& answers_type();
+
+}  // namespace answers
+}  // namespace ricochet
