@@ -76,7 +76,7 @@ std::string own_tables_text(const CaseRecord& record) {
 std::string ledger_text(const Kind& kind, const Study& study, const CaseRecord& again) {
   StudyResults alone = results_header(study);
   alone.cases = {again};
-  if (kind.tables) kind.tables(alone);
+  kind.tables(alone);
   const Table* ledger = find_table(alone.derived, "energy_ledger");
   if (!ledger || ledger->rows.empty()) return "";
   TextTable table({"", "J"});
@@ -103,7 +103,7 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
       << parameters_text(open.record) << "\n"
       << again.status << (again.reason.empty() ? "" : ": " + again.reason)
       << (again.steps > 0 ? fmt::format(", {} steps", again.steps) : "");
-  if (const std::string outcome = open.kind->outcome && again.status == "done" ? open.kind->outcome(again) : "";
+  if (const std::string outcome = again.status == "done" ? open.kind->outcome(again) : "";
       !outcome.empty())
     out << ": " << outcome;
   out << "\n";
@@ -117,7 +117,7 @@ int print_again(const OpenCase& open, const StoredStudy& stored, const StudyCase
 /// The curve of a case that is marched once.
 int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int samples, std::ostream& out,
                 const std::atomic<bool>& stop) {
-  if (!open.kind->march)
+  if (!open.kind->marches_once())
     throw PointRefused(
         fmt::format("a case of kind {} is more than one integration: it has no curve", open.results.kind));
   study_case.samples = samples;
@@ -135,7 +135,7 @@ int print_curve(const OpenCase& open, const StoredStudy& stored, StudyCase study
 /// Snapshots of a case that is marched once, kept in the store.
 int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase study_case, int instants,
                    std::ostream& out, const std::atomic<bool>& stop) {
-  if (!open.kind->march)
+  if (!open.kind->marches_once())
     throw PointRefused(
         fmt::format("a case of kind {} is more than one integration: it has no film", open.results.kind));
   if (study_case.settings.is_null()) study_case.settings = Json::object();
@@ -169,7 +169,7 @@ int look_at(const Arguments& arguments, std::ostream& out) {
     throw PointRefused(fmt::format("{} holds a study of kind {}, which this program does not have",
                                    arguments.operands[0], open.results.kind));
   if (arguments.study) return print_study(open, out);
-  if (open.kind->point)
+  if (open.kind->has_points())
     throw PointRefused(
         fmt::format("a case of kind {} is many orbits: `ricochet point {} {}` marches one of them again; "
                     "with --study this prints the study of the case alone",

@@ -169,8 +169,8 @@ namespace {
 // "bifurcation or basins".
 std::string kinds_with_points() {
   std::vector<std::string> names;
-  for (const Kind& kind : kinds())
-    if (kind.point) names.push_back(kind.format.name);
+  for (const KindPointer& kind : kinds())
+    if (kind->has_points()) names.push_back(kind->format.name);
   return fmt::format("{}", fmt::join(names, " or "));
 }
 
@@ -179,7 +179,7 @@ std::string kinds_with_points() {
 int command_point(const Arguments& arguments, std::ostream& out) {
   const StudyResults results = read_store(arguments.operands[0]);
   const Kind* kind = find_kind(results.kind);
-  if (!kind || !kind->point)
+  if (!kind || !kind->has_points())
     throw UsageError(fmt::format("{} holds a study of kind {}; a point is one of kind {}", arguments.operands[0],
                                  results.kind, kinds_with_points()));
   const PointRequest asked{arguments.operands[1], arguments.plugins, arguments.parameter, arguments.start,

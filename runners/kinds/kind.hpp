@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <optional>
 #include <ricochet/contract/registry.hpp>
 #include <stdexcept>
@@ -74,52 +75,69 @@ struct ForecastContext {
   std::function<double(const StudyCase&)> step_seconds;  ///< of one marched step of a case
 };
 
-/// A kind of study, all that the program knows of it. Functions that may be empty say so.
-struct Kind {
-  StudyKind format;  ///< its name, its keys, and what it adds to a case
+/// A kind of study, all that the program knows of it.
+class Kind {
+ public:
+  virtual ~Kind() = default;
+
+  const StudyKind format;                   ///< its name, its keys, and what it adds to a case
+  const std::vector<MeasureInfo> measures;  ///< those that it adds to those of the kinds registered before it
 
   /// What would run for a case, decided without running it.
-  std::function<CasePlan(const StudyCase&, const Registry&)> plan;
-  /// Processor seconds that a study takes beside the marches of its cases (references, repeats). Empty: none.
-  std::function<double(const ForecastContext&)> beside;
+  virtual CasePlan plan(const StudyCase& study_case, const Registry& registry) const = 0;
   /// What runs the cases of a study.
-  std::function<CaseRunner(const RunContext&)> start;
+  virtual CaseRunner start(const RunContext& context) const = 0;
 
-  /// Marches the scene of one case once, with its curve, whatever else the kind makes of it. Empty: its cases are more
-  /// than one integration.
-  std::function<CaseRecord(const StudyCase&, const Registry&, const std::atomic<bool>& stop)> march;
+  /// Whether a study takes more than the marches of its cases: references, repeats.
+  virtual bool works_beside() const { return false; }
+  /// Processor seconds of that.
+  virtual double beside(const ForecastContext&) const { return 0; }
 
-  /// Appends the tables that follow from the cases to results.derived. Empty: those that the cases carry.
-  std::function<void(StudyResults&)> tables;
-  /// The answer where this kind has its own way. Empty: methods in tiers, or choices by what they move, in the observed
+  /// Whether a case is one integration of its scene.
+  virtual bool marches_once() const { return false; }
+  /// Marches the scene of one case once, with its curve, whatever else the kind makes of it. Throws std::logic_error
+  /// where a case is more than that.
+  virtual CaseRecord march(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) const;
+
+  /// Appends the tables that follow from the cases to results.derived; those that the cases carry.
+  virtual void tables(StudyResults& results) const;
+  /// Whether this kind has its own way to answer; else methods in tiers, or choices by what they move, in the observed
   /// measures.
-  std::function<answers::Answer(const StudyResults&)> answers;
-  /// The measures that an answer is made of where the study names none. Empty: none.
-  std::function<std::vector<std::string>(const StudyResults&)> observed;
+  virtual bool answers_itself() const { return false; }
+  virtual answers::Answer answers(const StudyResults&) const { return {}; }
+  /// The measures that an answer is made of where the study names none.
+  virtual std::vector<std::string> observed(const StudyResults&) const { return {}; }
   /// `curves` without rows: the sampled series that a case leaves in curves/ID.csv. Without columns: none.
-  Table curve;
-  /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". Empty, or "": nothing.
-  std::function<std::string(const CaseRecord&)> outcome;
+  virtual Table curve() const { return {}; }
+  /// What a finished case has to say, in the terminal: "tip-l2 1.2e-05". "": nothing.
+  virtual std::string outcome(const CaseRecord&) const { return ""; }
   /// What is wrong with a finished case that contradicts itself, for the totals and the exit code: "spectrum and march
-  /// disagree". "": nothing. Empty: no case can.
-  std::function<std::string(const CaseRecord&)> contradiction;
-  /// Measures that this kind adds to those of the kinds registered before it.
-  std::vector<MeasureInfo> measures;
+  /// disagree". "": nothing.
+  virtual std::string contradiction(const CaseRecord&) const { return ""; }
   /// Whether its measures stand in cases.csv even where no case has one.
-  bool measures_stand = false;
-  /// A study of one case alone, to be looked at; null where the case cannot be repeated alone. Empty: never.
-  std::function<nlohmann::ordered_json(const StudyResults&, const CaseRecord&)> alone;
+  virtual bool measures_stand() const { return false; }
+  /// A study of one case alone, to be looked at; null where the case cannot be repeated alone.
+  virtual nlohmann::ordered_json alone(const StudyResults&, const CaseRecord&) const { return nullptr; }
   /// What its reports show; asked for when there is one to write. Empty: what every page has.
-  std::function<report::KindPage()> page;
-  /// Marches one point of a stored study again, samples to `out`; returns the exit code. Throws PointRefused. Empty:
-  /// such a study has no points.
-  std::function<int(const StudyResults&, const PointRequest&, std::ostream& out)> point;
+  virtual report::KindPage page() const { return {}; }
+
+  /// Whether a stored study has points that can be marched again.
+  virtual bool has_points() const { return false; }
+  /// Marches one of them, samples to `out`; returns the exit code. Throws PointRefused.
+  virtual int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const;
+
+ protected:
+  explicit Kind(StudyKind of_studies, std::vector<MeasureInfo> of_cases = {})
+      : format(std::move(of_studies)), measures(std::move(of_cases)) {}
+  Kind(const Kind&) = delete;
 };
 
+using KindPointer = std::unique_ptr<const Kind>;
+
 /// The kinds of the program, in the order in which they are told.
-const std::vector<Kind>& kinds();
+const std::vector<KindPointer>& kinds();
 /// Adds a kind; to be called before any study is read. Throws std::logic_error for a name that is taken.
-void add_kind(Kind kind);
+void add_kind(KindPointer kind);
 /// The kind of this name; null where there is none.
 const Kind* find_kind(const std::string& name);
 /// What reports of this kind show; nothing of their own where there is none of this name.

@@ -5,6 +5,7 @@
 #include "runners/kinds/convergence/convergence.hpp"
 #include "runners/kinds/kind.hpp"
 #include "runners/kinds/stability/stability.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/kinds/work-precision/work_precision.hpp"
 
@@ -13,10 +14,10 @@ namespace {
 
 /// The kinds, and what is asked of all of them together.
 struct Registered {
-  std::vector<Kind> kinds;
+  std::vector<KindPointer> kinds;
   std::vector<MeasureInfo> measures;
-  void add(Kind kind) {
-    measures.insert(measures.end(), kind.measures.begin(), kind.measures.end());
+  void add(KindPointer kind) {
+    measures.insert(measures.end(), kind->measures.begin(), kind->measures.end());
     kinds.push_back(std::move(kind));
   }
 };
@@ -25,7 +26,7 @@ Registered& registered() {
   static Registered all = [] {
     Registered built_in;
     // A new kind is one more line here.
-    for (Kind (*make)() :
+    for (KindPointer (*make)() :
          {trajectory_kind, convergence_kind, work_precision_kind, stability_kind, bifurcation_kind, basins_kind})
       built_in.add(make());
     return built_in;
@@ -35,29 +36,41 @@ Registered& registered() {
 
 }  // namespace
 
-const std::vector<Kind>& kinds() {
+CaseRecord Kind::march(const StudyCase&, const Registry&, const std::atomic<bool>&) const {
+  throw std::logic_error("a case of kind " + format.name + " is more than one integration");
+}
+
+void Kind::tables(StudyResults& results) const {
+  collect_tables(results);
+}
+
+int Kind::point(const StudyResults&, const PointRequest&, std::ostream&) const {
+  throw PointRefused("a study of kind " + format.name + " has no points");
+}
+
+const std::vector<KindPointer>& kinds() {
   return registered().kinds;
 }
 
-void add_kind(Kind kind) {
-  if (find_kind(kind.format.name)) throw std::logic_error("there is a kind \"" + kind.format.name + "\" already");
+void add_kind(KindPointer kind) {
+  if (find_kind(kind->format.name)) throw std::logic_error("there is a kind \"" + kind->format.name + "\" already");
   registered().add(std::move(kind));
 }
 
 const Kind* find_kind(const std::string& name) {
   const auto found =
-      std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) { return kind.format.name == name; });
-  return found == kinds().end() ? nullptr : &*found;
+      std::find_if(kinds().begin(), kinds().end(), [&](const KindPointer& kind) { return kind->format.name == name; });
+  return found == kinds().end() ? nullptr : found->get();
 }
 
 report::KindPage page_of(const std::string& kind) {
   const Kind* known = find_kind(kind);
-  return known && known->page ? known->page() : report::KindPage();
+  return known ? known->page() : report::KindPage();
 }
 
 std::vector<const StudyKind*> study_kinds() {
   std::vector<const StudyKind*> formats;
-  for (const Kind& kind : kinds()) formats.push_back(&kind.format);
+  for (const KindPointer& kind : kinds()) formats.push_back(&kind->format);
   return formats;
 }
 
@@ -73,7 +86,7 @@ const MeasureInfo* measure_info(const std::string& name) {
 
 std::vector<std::string> standing_measures(const std::string& kind) {
   std::vector<std::string> names;
-  if (const Kind* known = find_kind(kind); known && known->measures_stand)
+  if (const Kind* known = find_kind(kind); known && known->measures_stand())
     for (const MeasureInfo& info : known->measures) names.emplace_back(info.name);
   return names;
 }

@@ -19,7 +19,7 @@ std::vector<std::string> asked(const StudyResults& results) {
 
 bool answers_itself(const StudyResults& results) {
   const Kind* kind = find_kind(results.kind);
-  return kind && kind->answers;
+  return kind && kind->answers_itself();
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ std::vector<std::string> observed_measures(const StudyResults& results) {
   std::vector<std::string> names = asked(results);
   std::erase(names, status_asked);
   const Kind* kind = find_kind(results.kind);
-  if (names.empty() && kind && kind->observed) names = kind->observed(results);
+  if (names.empty() && kind) names = kind->observed(results);
   std::erase_if(names, [&](const std::string& name) {
     return std::none_of(results.cases.begin(), results.cases.end(),
                         [&](const CaseRecord& one) { return one.status == "done" && measure(one, name); });

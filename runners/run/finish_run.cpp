@@ -24,7 +24,7 @@ namespace ricochet {
 void derive_tables(StudyResults& results) {
   results.derived.clear();
   const Kind* kind = find_kind(results.kind);
-  if (kind && kind->tables)
+  if (kind)
     kind->tables(results);
   else
     collect_tables(results);

@@ -37,7 +37,7 @@ Forecast forecast(const Study& study, std::vector<PlannedCase>& cases, const Reg
     one.plan.predicted_seconds += set_up;
     found.seconds += one.plan.predicted_seconds;
   }
-  if (kind.beside) {
+  if (kind.works_beside()) {
     ForecastContext context{study, registry, {}, [&](const StudyCase& one) {
                               const auto step = steps.find(&one);
                               return step == steps.end() ? 0 : step->second;

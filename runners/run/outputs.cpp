@@ -110,7 +110,7 @@ void write_failures(const std::filesystem::path& folder, const StudyResults& res
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   std::set<std::string> wanted;
   const Kind* kind = find_kind(results.kind);
-  if (!kind || !kind->alone || !results.study.contains("scene")) return;  // nothing to make a study of
+  if (!kind || !results.study.contains("scene")) return;  // nothing to make a study of
   for (const CaseRecord& record : results.cases) {
     if (!went_wrong(record)) continue;
     const auto study = kind->alone(results, record);
@@ -228,11 +228,12 @@ void remove_curve_table(const std::filesystem::path& folder) {
 
 Table curves_head(const StudyResults& results) {
   const Kind* kind = find_kind(results.kind);
-  Table curves{"curves", kind ? kind->curve.text : "", {}, {}};
+  const Table declared = kind ? kind->curve() : Table();
+  Table curves{"curves", declared.text, {}, {}};
   for (const CaseRecord& record : results.cases)
     for (const std::string& name : record.curve.names)
       if (!find_column(curves.columns, name)) curves.columns.push_back({name, "", ""});
-  if (kind) describe(curves, kind->curve);
+  describe(curves, declared);
   return curves;
 }
 

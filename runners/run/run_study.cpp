@@ -25,7 +25,7 @@ constexpr double of_each_case = 1.6e-3;  // s for its row, its curve, its share 
 
 /// Whether all cases together are predicted to take less than a second. References are not foreseen.
 bool is_short(const Study& study, const StudyRunner& here) {
-  if (find_kind(study.kind)->beside) return false;
+  if (find_kind(study.kind)->works_beside()) return false;
   double seconds = of_each_case * static_cast<double>(study.cases.size());
   if (seconds >= short_run) return false;
   std::atomic<bool> long_enough{false};

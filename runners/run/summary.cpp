@@ -25,7 +25,7 @@ std::string cell(const CaseRecord& record, const std::string& column) {
 std::map<std::string, int> contradictions(const StudyResults& results) {
   std::map<std::string, int> found;
   const Kind* kind = find_kind(results.kind);
-  if (kind && kind->contradiction)
+  if (kind)
     for (const CaseRecord& record : results.cases)
       if (const std::string wrong = kind->contradiction(record); !wrong.empty()) ++found[wrong];
   return found;
@@ -43,7 +43,7 @@ std::string outcome_text(const CaseRecord& record, const std::string& kind) {
   if (record.partial) return record.reason;
   if (record.status == "done") {
     const Kind* known = find_kind(kind);
-    const std::string own = known && known->outcome ? known->outcome(record) : "";
+    const std::string own = known ? known->outcome(record) : "";
     std::string text = own.empty() ? "done" : "done: " + own;
     if (!record.reason.empty()) text += (own.empty() ? ": " : "; ") + record.reason;
     return text;

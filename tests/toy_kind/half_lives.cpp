@@ -35,21 +35,28 @@ report::KindPage half_lives_page() {
   return page;
 }
 
-// How long the free oscillator takes to lose half of its amplitude, for several thresholds: t = ln(1/share)·2m/c.
-Kind half_lives() {
-  Kind kind;
-  kind.format.name = "half-lives";
-  kind.format.text = "Each case is asked when its amplitude has fallen to given shares.";
+StudyKind half_lives_format() {
+  StudyKind format;
+  format.name = "half-lives";
+  format.text = "Each case is asked when its amplitude has fallen to given shares.";
   Field shares = keys::of_form(Field::Form::numbers, "shares", std::nullopt, "The shares, all different.");
   shares.spec = real_parameter("shares", "1", std::nullopt, {0, 1, true, true}, shares.spec.text);
-  kind.format.keys = {std::move(shares), keys::budget()};
-  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"shares", "budget"}); };
-  kind.format.check = [](const Json& resolved) {
+  format.keys = {std::move(shares), keys::budget()};
+  format.settings = [](const Json& resolved) { return given_settings(resolved, {"shares", "budget"}); };
+  format.check = [](const Json& resolved) {
     if (resolved.at("scene").at("structure").at("type") != "oscillator")
       throw InputError("/scene/structure/type", "half-lives are those of an oscillator");
   };
-  kind.plan = [](const StudyCase&, const Registry&) { return CasePlan{}; };
-  kind.start = [](const RunContext&) {
+  return format;
+}
+
+// How long the free oscillator takes to lose half of its amplitude, for several thresholds: t = ln(1/share)·2m/c.
+class HalfLives final : public Kind {
+ public:
+  HalfLives()
+      : Kind(half_lives_format(), {{"longest_half_life", "s", "Time after which the smallest share is reached."}}) {}
+  CasePlan plan(const StudyCase&, const Registry&) const override { return {}; }
+  CaseRunner start(const RunContext&) const override {
     CaseRunner runner;
     runner.run = [](const StudyCase& study_case, const std::atomic<bool>&) {
       const Json structure = study_case.scene_json.at("structure");
@@ -71,14 +78,15 @@ Kind half_lives() {
       return record;
     };
     return runner;
-  };
-  kind.tables = [](StudyResults& results) { collect_tables(results); };
-  kind.outcome = [](const CaseRecord& record) {
+  }
+  std::string outcome(const CaseRecord& record) const override {
     return "the slowest takes " + std::to_string(*measure(record, "longest_half_life")) + " s";
-  };
-  kind.page = half_lives_page;
-  kind.measures = {{"longest_half_life", "s", "Time after which the smallest share is reached."}};
-  return kind;
+  }
+  report::KindPage page() const override { return half_lives_page(); }
+};
+
+KindPointer half_lives() {
+  return std::make_unique<HalfLives>();
 }
 
 const bool registered = (add_kind(half_lives()), true);
@@ -96,7 +104,7 @@ int command(const std::vector<std::string>& words, std::string& said) {
 
 }  // namespace
 
-TEST_CASE("a kind of study is one record: the program runs one that it has never seen, from the study to the report") {
+TEST_CASE("a kind of study is one class: the program runs one that it has never seen, from the study to the report") {
   REQUIRE(registered);
   const ScratchFolder scratch;
   const auto file = scratch.path() / "toy.json", folder = scratch.path() / "results";

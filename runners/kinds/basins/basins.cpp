@@ -40,18 +40,34 @@ std::vector<Field> basins_keys() {
   return fields;
 }
 
+class BasinsKind final : public SweepKind {
+ public:
+  BasinsKind()
+      : SweepKind("basins", "Each case goes through a grid of two parameters: where the orbit of each cell ends.",
+                  basins_keys()) {}
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
+    return plan_basins(study_case, registry);
+  }
+  answers::Answer answers(const StudyResults& results) const override {
+    return basins_answer(answers::Compared(results));
+  }
+  report::KindPage page() const override { return report::basins_page(); }
+  int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {
+    return march_cell_again(results, asked, out);
+  }
+
+ private:
+  CaseRecord run(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
+                 const std::atomic<bool>& stop) const override {
+    return run_basins(study_case, registry, context, stop);
+  }
+  void derive(StudyResults& results) const override { dynamics::derive_basins(results); }
+};
+
 }  // namespace
 
-Kind basins_kind() {
-  Kind kind = sweep_kind(run_basins, dynamics::derive_basins);
-  kind.format.name = "basins";
-  kind.format.text = "Each case goes through a grid of two parameters: where the orbit of each cell ends.";
-  kind.format.keys = basins_keys();
-  kind.plan = plan_basins;
-  kind.point = march_cell_again;
-  kind.answers = [](const StudyResults& results) { return basins_answer(answers::Compared(results)); };
-  kind.page = report::basins_page;
-  return kind;
+KindPointer basins_kind() {
+  return std::make_unique<BasinsKind>();
 }
 
 namespace {

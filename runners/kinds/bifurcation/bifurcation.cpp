@@ -56,19 +56,34 @@ std::vector<Field> bifurcation_keys() {
   return fields;
 }
 
+class BifurcationKind final : public SweepKind {
+ public:
+  BifurcationKind()
+      : SweepKind("bifurcation", "Each case goes through a parameter: sections, classes and exponents of its orbits.",
+                  bifurcation_keys(), orbit_measures()) {}
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
+    return plan_bifurcation(study_case, registry);
+  }
+  answers::Answer answers(const StudyResults& results) const override {
+    return bifurcation_answer(answers::Compared(results));
+  }
+  report::KindPage page() const override { return report::bifurcation_page(); }
+  int point(const StudyResults& results, const PointRequest& asked, std::ostream& out) const override {
+    return march_orbit_again(results, asked, out);
+  }
+
+ private:
+  CaseRecord run(const StudyCase& study_case, const Registry& registry, const CaseContext& context,
+                 const std::atomic<bool>& stop) const override {
+    return run_bifurcation(study_case, registry, context, stop);
+  }
+  void derive(StudyResults& results) const override { derive_dynamics(results); }
+};
+
 }  // namespace
 
-Kind bifurcation_kind() {
-  Kind kind = sweep_kind(run_bifurcation, derive_dynamics);
-  kind.format.name = "bifurcation";
-  kind.format.text = "Each case goes through a parameter: sections, classes and exponents of its orbits.";
-  kind.format.keys = bifurcation_keys();
-  kind.plan = plan_bifurcation;
-  kind.measures = orbit_measures();
-  kind.answers = [](const StudyResults& results) { return bifurcation_answer(answers::Compared(results)); };
-  kind.point = march_orbit_again;
-  kind.page = report::bifurcation_page;
-  return kind;
+KindPointer bifurcation_kind() {
+  return std::make_unique<BifurcationKind>();
 }
 
 namespace {

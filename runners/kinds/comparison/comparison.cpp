@@ -7,8 +7,13 @@
 #include <ricochet/measure/motion/motion_sampler.hpp>
 #include <set>
 
+#include "runners/kinds/comparison/comparison_answers.hpp"
+#include "runners/kinds/comparison/comparison_tables.hpp"
 #include "runners/kinds/comparison/references.hpp"
 #include "runners/kinds/comparison/run_comparison.hpp"
+#include "runners/kinds/tables_of_cases.hpp"
+#include "runners/kinds/trajectory/contact_rows.hpp"
+#include "runners/kinds/trajectory/run_case.hpp"
 #include "runners/kinds/trajectory/trajectory.hpp"
 #include "runners/study/fields.hpp"
 
@@ -202,6 +207,51 @@ std::vector<MeasureInfo> comparison_measures() {
       {"size.impulse", "N s", "What this error would be of a motion at rest: errors over it are relative ones.",
        Of::computation, true},
   };
+}
+
+namespace {
+
+StudyKind comparison_format(const char* name, const char* text, std::vector<Field> keys) {
+  StudyKind format;
+  format.name = name;
+  format.text = text;
+  format.keys = std::move(keys);
+  format.settings = comparison_settings;
+  format.check = check_comparison;
+  return format;
+}
+
+}  // namespace
+
+ComparisonKind::ComparisonKind(const char* name, const char* text, std::vector<Field> keys,
+                               std::vector<MeasureInfo> of_cases)
+    : Kind(comparison_format(name, text, std::move(keys)), std::move(of_cases)) {}
+
+CasePlan ComparisonKind::plan(const StudyCase& study_case, const Registry& registry) const {
+  return plan_case(study_case, registry);
+}
+
+CaseRecord ComparisonKind::march(const StudyCase& study_case, const Registry& registry,
+                                 const std::atomic<bool>& stop) const {
+  return run_case(study_case, registry, stop);
+}
+
+void ComparisonKind::tables(StudyResults& results) const {
+  results.derived.push_back(errors_table(results));
+  results.derived.push_back(orders_table(results));
+  results.derived.push_back(order_verdicts_table(results.derived.back()));
+  results.derived.push_back(order_runs_table(answers::Compared(results)));
+  costs(results);
+  describe_contact(results.cases);
+  collect_tables(results);
+}
+
+Table ComparisonKind::curve() const {
+  return curves_head();
+}
+
+nlohmann::ordered_json ComparisonKind::alone(const StudyResults& results, const CaseRecord& record) const {
+  return minimal_study(results, record);
 }
 
 }  // namespace ricochet

@@ -33,4 +33,27 @@ std::string errors_text(const CaseRecord& record);
 /// The measures of every comparison: errors, their floors, how they were found.
 std::vector<MeasureInfo> comparison_measures();
 
+/// What the kinds that compare cases with a reference have in common.
+class ComparisonKind : public Kind {
+ public:
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override;
+  CaseRunner start(const RunContext& context) const override { return compare_cases(context); }
+  bool works_beside() const override { return true; }
+  double beside(const ForecastContext& context) const override { return seconds_beside(context); }
+  bool marches_once() const override { return true; }
+  CaseRecord march(const StudyCase& study_case, const Registry& registry, const std::atomic<bool>& stop) const override;
+  void tables(StudyResults& results) const override;
+  bool answers_itself() const override { return true; }
+  Table curve() const override;
+  std::string outcome(const CaseRecord& record) const override { return errors_text(record); }
+  nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override;
+
+ protected:
+  ComparisonKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases);
+
+ private:
+  /// Appends what the errors cost.
+  virtual void costs(StudyResults&) const {}
+};
+
 }  // namespace ricochet

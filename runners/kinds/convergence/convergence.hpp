@@ -4,6 +4,6 @@
 namespace ricochet {
 
 /// Each case is compared with a reference; orders of the errors in the step and in the element length.
-Kind convergence_kind();
+KindPointer convergence_kind();
 
 }  // namespace ricochet

@@ -90,37 +90,54 @@ std::vector<MeasureInfo> stability_measures() {
 
 }  // namespace
 
-Kind stability_kind() {
-  Kind kind;
-  kind.format.name = "stability";
-  kind.format.text = "Each case goes through a range of steps: the spectrum of the step, and what marching it shows.";
-  kind.format.keys = stability_keys();
-  kind.format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
-  kind.format.check = check_stability;
-  kind.plan = plan_stability;
-  kind.start = [](const RunContext& context) {
+namespace {
+
+StudyKind stability_format() {
+  StudyKind format;
+  format.name = "stability";
+  format.text = "Each case goes through a range of steps: the spectrum of the step, and what marching it shows.";
+  format.keys = stability_keys();
+  format.settings = [](const Json& resolved) { return given_settings(resolved, {"steps", "observe", "budget"}); };
+  format.check = check_stability;
+  return format;
+}
+
+class StabilityKind final : public Kind {
+ public:
+  StabilityKind() : Kind(stability_format(), stability_measures()) {}
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
+    return plan_stability(study_case, registry);
+  }
+  CaseRunner start(const RunContext& context) const override {
     CaseRunner runner;
     runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return run_stability(study_case, registry, stop);
     };
     return runner;
-  };
-  kind.tables = [](StudyResults& results) {
+  }
+  void tables(StudyResults& results) const override {
     for (CaseRecord& record : results.cases) describe_stability(record);
     collect_tables(results);
     results.derived.push_back(step_limits_table(results));
     results.derived.push_back(step_limit_agreement_table(results.derived.back()));
     for (Table table : {stability_cells_table(results), stability_disagreements_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-  };
-  kind.outcome = limits_text;
-  kind.contradiction = [](const CaseRecord& record) {
+  }
+  bool answers_itself() const override { return true; }
+  answers::Answer answers(const StudyResults& results) const override {
+    return stability_answer(answers::Compared(results));
+  }
+  std::string outcome(const CaseRecord& record) const override { return limits_text(record); }
+  std::string contradiction(const CaseRecord& record) const override {
     return measure(record, "contradictions").value_or(0) > 0 ? "spectrum and march disagree without contact" : "";
-  };
-  kind.measures = stability_measures();
-  kind.answers = [](const StudyResults& results) { return stability_answer(answers::Compared(results)); };
-  kind.page = report::stability_page;
-  return kind;
+  }
+  report::KindPage page() const override { return report::stability_page(); }
+};
+
+}  // namespace
+
+KindPointer stability_kind() {
+  return std::make_unique<StabilityKind>();
 }
 
 std::vector<double> steps_of(const StudyCase& study_case) {

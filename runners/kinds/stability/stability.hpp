@@ -14,6 +14,6 @@ constexpr long long most_scene_steps = 200000, least_scene_steps = 200, free_ste
 std::vector<double> steps_of(const StudyCase& study_case);
 
 /// Each case goes through a range of steps: spectral radius of the step, and what marching it shows.
-Kind stability_kind();
+KindPointer stability_kind();
 
 }  // namespace ricochet

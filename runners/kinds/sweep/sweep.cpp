@@ -48,43 +48,58 @@ Field swept_pointer() {
       "real parameter of a method (\"/methods/contact/stiffness\").");
 }
 
-Kind sweep_kind(RunSweep run, DeriveTables derive) {
-  Kind kind;
-  kind.format.settings = sweep_settings;
-  kind.format.check_methods = check_sweep;
-  kind.format.marches_another = some_value_possible;
-  kind.format.complete = mark_sweep;
-  kind.format.check_cases = check_values;
-  kind.start = [run](const RunContext& context) {
-    const auto checkpoints = std::make_shared<CheckpointStore>();
-    CaseRunner runner;
-    runner.open = [checkpoints](CheckpointStore opened, const std::atomic<bool>&) { *checkpoints = std::move(opened); };
-    runner.run = [run, checkpoints, blocks = context.blocks, key = context.key, &registry = context.registry](
-                     const StudyCase& study_case, const std::atomic<bool>& stop) {
-      CaseRecord record = run(study_case, registry, CaseContext{*checkpoints, key(study_case), blocks}, stop);
-      if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
-        add_doubts(record,
-                   load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,
-                                study_case.steps_per_period));
-      return record;
-    };
-    runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](
-                       const StudyCase& study_case, const std::string& order,
-                       const std::function<void(std::string)>& so_far,
-                       const std::atomic<bool>& stop) { return marcher->march(study_case, order, so_far, stop); };
-    return runner;
+namespace {
+
+StudyKind sweep_format(const char* name, const char* text, std::vector<Field> keys) {
+  StudyKind format;
+  format.name = name;
+  format.text = text;
+  format.keys = std::move(keys);
+  format.settings = sweep_settings;
+  format.check_methods = check_sweep;
+  format.marches_another = some_value_possible;
+  format.complete = mark_sweep;
+  format.check_cases = check_values;
+  return format;
+}
+
+}  // namespace
+
+SweepKind::SweepKind(const char* name, const char* text, std::vector<Field> keys, std::vector<MeasureInfo> of_cases)
+    : Kind(sweep_format(name, text, std::move(keys)), std::move(of_cases)) {}
+
+CaseRunner SweepKind::start(const RunContext& context) const {
+  const auto checkpoints = std::make_shared<CheckpointStore>();
+  CaseRunner runner;
+  runner.open = [checkpoints](CheckpointStore opened, const std::atomic<bool>&) { *checkpoints = std::move(opened); };
+  runner.run = [this, checkpoints, blocks = context.blocks, key = context.key, &registry = context.registry](
+                   const StudyCase& study_case, const std::atomic<bool>& stop) {
+    CaseRecord record = run(study_case, registry, CaseContext{*checkpoints, key(study_case), blocks}, stop);
+    if (const double pulsation = forcing_pulsation(study_case.scene); pulsation > 0)
+      add_doubts(record, load_changes(study_case.scene, 2 * std::numbers::pi / pulsation / study_case.steps_per_period,
+                                      study_case.steps_per_period));
+    return record;
   };
-  kind.tables = [derive](StudyResults& results) {
-    const SweptColumns swept = swept_columns(results);
-    for (CaseRecord& record : results.cases) describe_sweep(record, swept);
-    collect_tables(results, derived_as_dynamics);
-    derive(results);
-  };
-  kind.alone = single_study;
-  kind.contradiction = [](const CaseRecord& record) {
-    return measure(record, "orbits_lost").value_or(0) > 0 ? "the process of an orbit ended" : "";
-  };
-  return kind;
+  runner.block = [marcher = std::make_shared<BlockMarcher>(context.registry)](
+                     const StudyCase& study_case, const std::string& order,
+                     const std::function<void(std::string)>& so_far,
+                     const std::atomic<bool>& stop) { return marcher->march(study_case, order, so_far, stop); };
+  return runner;
+}
+
+void SweepKind::tables(StudyResults& results) const {
+  const SweptColumns swept = swept_columns(results);
+  for (CaseRecord& record : results.cases) describe_sweep(record, swept);
+  collect_tables(results, derived_as_dynamics);
+  derive(results);
+}
+
+std::string SweepKind::contradiction(const CaseRecord& record) const {
+  return measure(record, "orbits_lost").value_or(0) > 0 ? "the process of an orbit ended" : "";
+}
+
+nlohmann::ordered_json SweepKind::alone(const StudyResults& results, const CaseRecord& record) const {
+  return single_study(results, record);
 }
 
 std::vector<MeasureInfo> orbit_measures() {

@@ -236,45 +236,65 @@ std::vector<std::string> observed_energies(const StudyResults& results) {
 
 }  // namespace
 
-Kind trajectory_kind() {
-  Kind kind;
-  kind.format.name = "trajectory";
-  kind.format.text = "Each case marches its scene once.";
-  kind.measures = with_readings(trajectory_measures());
-  kind.format.keys = {keys::step(),
-                      keys::duration(),
-                      keys::samples(),
-                      keys::march("auto"),
-                      keys::optional(window_key()),
-                      snapshots_key(),
-                      keys::budget(),
-                      keys::observe(measure_names(kind.measures))};
-  kind.format.check = check_window;
-  kind.format.settings = [](const Json& resolved) {
+namespace {
+
+StudyKind trajectory_format(const std::vector<MeasureInfo>& measures) {
+  StudyKind format;
+  format.name = "trajectory";
+  format.text = "Each case marches its scene once.";
+  format.keys = {keys::step(),
+                 keys::duration(),
+                 keys::samples(),
+                 keys::march("auto"),
+                 keys::optional(window_key()),
+                 snapshots_key(),
+                 keys::budget(),
+                 keys::observe(measure_names(measures))};
+  format.check = check_window;
+  format.settings = [](const nlohmann::ordered_json& resolved) {
     return given_settings(resolved, {"window", "snapshots", "budget"});
   };
-  kind.plan = plan_case;
-  kind.march = run_case;
-  kind.start = [](const RunContext& context) {
+  return format;
+}
+
+class TrajectoryKind final : public Kind {
+ public:
+  explicit TrajectoryKind(const std::vector<MeasureInfo>& of_cases) : Kind(trajectory_format(of_cases), of_cases) {}
+  CasePlan plan(const StudyCase& study_case, const Registry& registry) const override {
+    return plan_case(study_case, registry);
+  }
+  CaseRunner start(const RunContext& context) const override {
     CaseRunner runner;
     runner.run = [&registry = context.registry](const StudyCase& study_case, const std::atomic<bool>& stop) {
       return run_case(study_case, registry, stop);
     };
     return runner;
-  };
-  kind.tables = [](StudyResults& results) {
+  }
+  bool marches_once() const override { return true; }
+  CaseRecord march(const StudyCase& study_case, const Registry& registry,
+                   const std::atomic<bool>& stop) const override {
+    return run_case(study_case, registry, stop);
+  }
+  void tables(StudyResults& results) const override {
     describe_contact(results.cases);
     collect_tables(results);
     for (Table table : {energy_ends_table(results), energy_ledger_table(results)})
       if (!table.rows.empty()) results.derived.push_back(std::move(table));
-  };
-  kind.curve = curves_head();
-  kind.outcome = energies_text;
-  kind.observed = observed_energies;
-  kind.measures_stand = true;
-  kind.alone = minimal_study;
-  kind.page = report::trajectory_page;
-  return kind;
+  }
+  std::vector<std::string> observed(const StudyResults& results) const override { return observed_energies(results); }
+  Table curve() const override { return curves_head(); }
+  std::string outcome(const CaseRecord& record) const override { return energies_text(record); }
+  bool measures_stand() const override { return true; }
+  nlohmann::ordered_json alone(const StudyResults& results, const CaseRecord& record) const override {
+    return minimal_study(results, record);
+  }
+  report::KindPage page() const override { return report::trajectory_page(); }
+};
+
+}  // namespace
+
+KindPointer trajectory_kind() {
+  return std::make_unique<TrajectoryKind>(with_readings(trajectory_measures()));
 }
 
 namespace {

@@ -4,6 +4,6 @@
 namespace ricochet {
 
 /// As convergence, and each case is timed: error against processor time.
-Kind work_precision_kind();
+KindPointer work_precision_kind();
 
 }  // namespace ricochet
