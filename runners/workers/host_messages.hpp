@@ -28,9 +28,6 @@ class Transport {
 // What the coordinator (rank 0) and the agents of the other machines send each other, as bytes of this kind of
 // machine.
 
-/// Each side says that it is alive so often, and takes the other for lost after such a silence, s.
-constexpr double alive_every = 2, lost_after = 60;
-
 /// The machine of an agent, told once, before anything else.
 struct HostFacts {
   std::string name;
@@ -42,28 +39,11 @@ struct HostFacts {
   std::string failure;              ///< why it cannot serve; "" where it can
 };
 
-/// One thing said about one worker of an agent's machine, or about the machine.
-struct HostMessage {
-  enum class What : char {
-    facts = 'f',    ///< agent: HostFacts
-    alive = '.',    ///< either: now and then
-    start = 's',    ///< coordinator: starts the worker of that number
-    message = 'm',  ///< either: a Message to or from a worker
-    kill = 'k',     ///< coordinator
-    ended = 'e',    ///< agent: WorkerEnd
-    leave = 'l',    ///< coordinator: ends the agent; its last word to it
-    gone = 'g',     ///< agent: it has heard so, and its workers are no more; its last word
-  };
-  What what = What::alive;
-  std::uint32_t worker = 0;
-  Message message = {};  ///< content: bytes of what it carries
-};
-
-std::string to_bytes(const HostMessage& message);
+std::string to_bytes(const Message& message);
 std::string to_bytes(const HostFacts& facts);
 std::string to_bytes(const WorkerEnd& end);
 /// Throw std::runtime_error for other bytes. What a Message carries is not looked at.
-HostMessage host_message(const std::string& bytes);
+Message host_message(const std::string& bytes);
 HostFacts host_facts(const std::string& bytes);
 WorkerEnd worker_end(const std::string& bytes);
 

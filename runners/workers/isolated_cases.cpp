@@ -23,10 +23,9 @@ namespace {
 using Word = Message::Word;
 using Clock = std::chrono::steady_clock;
 
-constexpr double look_up = 0.25;        // s between two looks at `stop`
-constexpr double longest_silence = 60;  // s; a worker says every second that it is there
-constexpr double after_stop = 6;        // s for coming back; for a case that waits for its blocks, a little longer
-constexpr double longest_call = 60;     // s for one call of a plugin's function, where a case has no budget
+constexpr double look_up = 0.25;     // s between two looks at `stop`
+constexpr double after_stop = 6;     // s for coming back; for a case that waits for its blocks, a little longer
+constexpr double longest_call = 60;  // s for one call of a plugin's function, where a case has no budget
 constexpr int attempts = 2;
 
 /// A worker ended, or gave up.
@@ -286,7 +285,7 @@ class IsolatedCases::Coordinator {
       quiet += std::min(seconds_since(looked), 2 * look_up);
       looked = Clock::now();
       if (state == Channel::Heard::silence) {
-        silent = quiet > longest_silence;
+        silent = quiet > lost_after;
         if (silent) worker.kill();
       }
       if (state != Channel::Heard::message) continue;

@@ -18,7 +18,7 @@
 namespace ricochet {
 namespace {
 
-using What = HostMessage::What;
+using Word = Message::Word;
 
 constexpr int coordinator = 0;
 
@@ -57,13 +57,15 @@ class AgentWorker {
     for (;;) {
       const Channel::Heard heard = worker_->receive(message, long_time);
       if (heard == Channel::Heard::gone) break;
-      if (heard == Channel::Heard::message)
-        transport_.send(coordinator, to_bytes(HostMessage{What::message, number_, std::move(message)}));
+      // What an agent says of its workers is not theirs to say.
+      if (heard != Channel::Heard::message || message.word == Word::ended) continue;
+      message.worker = number_;
+      transport_.send(coordinator, to_bytes(message));
     }
     tell_end(worker_->end());
   }
   void tell_end(const WorkerEnd& end) {
-    transport_.send(coordinator, to_bytes(HostMessage{What::ended, number_, {.content = to_bytes(end)}}));
+    transport_.send(coordinator, to_bytes(Message{.word = Word::ended, .content = to_bytes(end), .worker = number_}));
     ended_ = true;
   }
 
@@ -78,7 +80,7 @@ class AgentWorker {
 
 bool serve_as_agent(Transport& transport, const HostFacts& facts,
                     const std::function<std::unique_ptr<Worker>()>& start_worker, double silence) {
-  transport.send(coordinator, to_bytes(HostMessage{What::facts, 0, {.content = to_bytes(facts)}}));
+  transport.send(coordinator, to_bytes(Message{.word = Word::facts, .content = to_bytes(facts)}));
   std::map<std::uint32_t, std::unique_ptr<AgentWorker>> workers;
   auto told = std::chrono::steady_clock::now(), heard = told;
   for (;;) {
@@ -86,24 +88,28 @@ bool serve_as_agent(Transport& transport, const HostFacts& facts,
     const auto now = std::chrono::steady_clock::now();
     if (std::chrono::duration<double>(now - told).count() > alive_every) {
       told = now;
-      transport.send(coordinator, to_bytes(HostMessage{What::alive}));
+      transport.send(coordinator, to_bytes(Message{}));
       std::erase_if(workers, [](const auto& one) { return one.second->ended(); });
     }
     if (packet) heard = now;
     if (std::chrono::duration<double>(now - heard).count() > silence) return false;
     if (!packet) continue;
-    const HostMessage said = host_message(packet->bytes);
-    if (said.what == What::leave) {
+    const Message said = host_message(packet->bytes);
+    if (said.word == Word::leave) {
       workers.clear();
-      transport.send(coordinator, to_bytes(HostMessage{What::gone}));
+      transport.send(coordinator, to_bytes(Message{.word = Word::gone}));
       return true;
     }
-    if (said.what == What::start)
+    if (said.word == Word::start) {
       workers[said.worker] = std::make_unique<AgentWorker>(transport, said.worker, start_worker);
+      continue;
+    }
     const auto found = workers.find(said.worker);
     if (found == workers.end()) continue;
-    if (said.what == What::message) found->second->send(said.message);
-    if (said.what == What::kill) found->second->kill();
+    if (said.word == Word::kill)
+      found->second->kill();
+    else
+      found->second->send(said);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace ricochet {
 namespace {
 
-using What = HostMessage::What;
+using Word = Message::Word;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr double look_around = 0.25;  // s
@@ -42,7 +42,7 @@ class RemoteHosts::RemoteWorker : public Worker {
  public:
   RemoteWorker(RemoteHosts& all, int rank, std::uint32_t number, std::shared_ptr<Inbox> inbox)
       : all_(all), rank_(rank), number_(number), inbox_(std::move(inbox)) {
-    all_.tell(rank_, {What::start, number_, {}});
+    all_.tell(rank_, {.word = Word::start, .worker = number_});
   }
   ~RemoteWorker() override {
     kill();
@@ -55,7 +55,9 @@ class RemoteHosts::RemoteWorker : public Worker {
       const std::lock_guard guard(inbox_->mutex);
       if (inbox_->end) return false;
     }
-    all_.tell(rank_, {What::message, number_, message});
+    Message told = message;
+    told.worker = number_;
+    all_.tell(rank_, told);
     return true;
   }
 
@@ -71,7 +73,7 @@ class RemoteHosts::RemoteWorker : public Worker {
     return inbox_->end ? Channel::Heard::gone : Channel::Heard::silence;
   }
 
-  void kill() override { all_.tell(rank_, {What::kill, number_, {}}); }
+  void kill() override { all_.tell(rank_, {.word = Word::kill, .worker = number_}); }
 
   WorkerEnd end() override {
     kill();
@@ -134,7 +136,7 @@ bool RemoteHosts::dismiss() {
   std::unique_lock lock(mutex_);
   if (!leaving_.exchange(true))
     for (const auto& [number, rank] : ranks_)
-      if (!rank.lost) tell(number, {What::leave, 0, {}});
+      if (!rank.lost) tell(number, {.word = Word::leave});
   changed_.wait(lock, [this] {
     return std::all_of(ranks_.begin(), ranks_.end(),
                        [](const auto& one) { return one.second.lost || one.second.gone; });
@@ -142,7 +144,7 @@ bool RemoteHosts::dismiss() {
   return std::none_of(ranks_.begin(), ranks_.end(), [](const auto& one) { return one.second.lost.load(); });
 }
 
-void RemoteHosts::tell(int rank, const HostMessage& message) {
+void RemoteHosts::tell(int rank, const Message& message) {
   transport_.send(rank, to_bytes(message));
 }
 
@@ -161,7 +163,7 @@ void RemoteHosts::say_alive() {
   const std::lock_guard guard(mutex_);
   if (leaving_) return;
   for (const auto& [number, rank] : ranks_)
-    if (!rank.lost) tell(number, {What::alive, 0, {}});
+    if (!rank.lost) tell(number, {});
 }
 
 void RemoteHosts::hear(Transport::Packet packet) {
@@ -177,14 +179,14 @@ void RemoteHosts::hear(Transport::Packet packet) {
   }
 }
 
-void RemoteHosts::hear(Rank& rank, HostMessage said) {
-  if (said.what == What::facts) {
+void RemoteHosts::hear(Rank& rank, Message said) {
+  if (said.word == Word::facts) {
     const std::lock_guard guard(mutex_);
-    rank.facts = host_facts(said.message.content);
+    rank.facts = host_facts(said.content);
     changed_.notify_all();
     return;
   }
-  if (said.what == What::gone) {
+  if (said.word == Word::gone) {
     if (!leaving_) throw std::runtime_error("an agent went that nobody had sent home");
     const std::lock_guard guard(mutex_);
     rank.gone = true;
@@ -198,8 +200,10 @@ void RemoteHosts::hear(Rank& rank, HostMessage said) {
     if (found == rank.workers.end()) return;
     inbox = found->second;
   }
-  if (said.what == What::message) inbox->put(std::move(said.message));
-  if (said.what == What::ended) inbox->close(worker_end(said.message.content));
+  if (said.word == Word::ended)
+    inbox->close(worker_end(said.content));
+  else
+    inbox->put(std::move(said));
 }
 
 void RemoteHosts::look_for_lost() {

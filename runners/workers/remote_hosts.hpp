@@ -53,11 +53,11 @@ class RemoteHosts {
   };
   void listen();
   void hear(Transport::Packet packet);
-  void hear(Rank& rank, HostMessage said);
+  void hear(Rank& rank, Message said);
   void look_for_lost();
   void lose(Rank& rank, const std::string& why);
   void say_alive();
-  void tell(int rank, const HostMessage& message);
+  void tell(int rank, const Message& message);
 
   Transport& transport_;
   const TellLost lost_;

@@ -10,7 +10,11 @@
 
 namespace ricochet {
 
-/// What one process says to another: a word, and bytes whose meaning belongs to it.
+/// Each side of a run says that it is alive so often, and takes the other for lost after such a silence, s.
+constexpr double alive_every = 1, lost_after = 60;
+
+/// What one process says to another: a word, and bytes whose meaning belongs to it. Between machines it also says which
+/// worker it is for, or from.
 struct Message {
   enum class Word : char {
     // to a worker
@@ -36,10 +40,18 @@ struct Message {
     march = 'm',     ///< BlockRequest: asks to have a block marched; answered by `block_status`
     cancel = 'c',    ///< stops the block of that question; not answered
     alive = '.',     ///< now and then; not answered
+    // between the coordinator and the agent of a machine, about it or one of its workers
+    facts = 'F',  ///< agent: HostFacts
+    start = 's',  ///< coordinator: starts the worker of that number
+    kill = 'K',   ///< coordinator
+    ended = 'e',  ///< agent: WorkerEnd
+    leave = 'l',  ///< coordinator: ends the agent; its last word to it
+    gone = 'g',   ///< agent: it has heard so, and its workers are no more; its last word
   };
   Word word = Word::alive;
   std::string content = {};
-  std::uint32_t about = 0;  ///< which question it asks or answers; those of one side differ
+  std::uint32_t about = 0;   ///< which question it asks or answers; those of one side differ
+  std::uint32_t worker = 0;  ///< of an agent's machine; 0: none of them. Left out between a worker and its machine
 };
 
 /// One end of a stream socket that carries messages, whole and in order. Either side may go at any moment.

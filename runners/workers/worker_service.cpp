@@ -34,7 +34,7 @@ namespace {
 using Word = Message::Word;
 
 constexpr auto kLookEvery = std::chrono::milliseconds(250);
-constexpr int kLooksPerAlive = 4;
+constexpr int kLooksPerAlive = static_cast<int>(alive_every * 1000) / static_cast<int>(kLookEvery.count());
 constexpr double kLeast = 2;      // s that any call of a plugin's function may take
 constexpr double kAfterStop = 3;  // s for coming back
 constexpr int kGaveUp = 1;

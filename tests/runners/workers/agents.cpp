@@ -389,7 +389,7 @@ TEST_CASE("agents: one whose coordinator falls silent leaves, with its workers")
   prepare(world, study, 1, 0);
   Exchange exchange(2);
   std::atomic<int> there{0};
-  Exchange::End(exchange, 0).send(1, to_bytes(HostMessage{HostMessage::What::start, 1}));
+  Exchange::End(exchange, 0).send(1, to_bytes(Message{.word = Message::Word::start, .worker = 1}));
   Exchange::End end(exchange, 1);
   HostFacts facts;
   facts.rank = 1;
@@ -405,7 +405,7 @@ TEST_CASE("agents: one that talks nonsense before its facts is named with its ra
   HostFacts facts;
   facts.rank = 2;
   Exchange::End(exchange, 1).send(0, "host 0: an older build says hello");
-  other.send(0, to_bytes(HostMessage{HostMessage::What::facts, 0, {.content = to_bytes(facts)}}));
+  other.send(0, to_bytes(Message{.word = Message::Word::facts, .content = to_bytes(facts)}));
   RemoteHosts remote(
       end, [](const HostFacts&, const std::string&) {}, 0.2);
   CHECK_THROWS_WITH(remote.facts(), Catch::Contains("rank 1") && Catch::Contains("another build"));

@@ -6,7 +6,7 @@
 namespace ricochet::tests {
 namespace {
 
-using HostWhat = HostMessage::What;
+using Word = Message::Word;
 using FateWhat = ScriptedNetwork::Fate::What;
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
@@ -25,7 +25,7 @@ ScriptedNetwork::ScriptedNetwork(ScriptedWorld& world, std::uint32_t seed, std::
     HostFacts facts;
     facts.rank = static_cast<int>(agents_.size());
     facts.name = "machine " + std::to_string(facts.rank);
-    agent.from_it.push_back(to_bytes(HostMessage{HostWhat::facts, 0, {.content = to_bytes(facts)}}));
+    agent.from_it.push_back(to_bytes(Message{.word = Word::facts, .content = to_bytes(facts)}));
   }
 }
 
@@ -66,27 +66,30 @@ std::optional<Transport::Packet> ScriptedNetwork::receive(double) {
 }
 
 void ScriptedNetwork::hear(Agent& agent, const std::string& bytes) {
-  const HostMessage said = host_message(bytes);
-  if (said.what == HostWhat::leave) {
+  const Message said = host_message(bytes);
+  if (said.word == Word::leave) {
     agent.home = true;
     agent.workers.clear();
-    agent.from_it.push_back(to_bytes(HostMessage{HostWhat::gone}));
+    agent.from_it.push_back(to_bytes(Message{.word = Word::gone}));
   }
-  if (said.what == HostWhat::start) agent.workers[said.worker] = std::make_unique<ScriptedWorker>(world_);
+  if (said.word == Word::start) agent.workers[said.worker] = std::make_unique<ScriptedWorker>(world_);
   const auto found = agent.workers.find(said.worker);
   if (found == agent.workers.end()) return;
   ScriptedWorker& worker = *found->second;
-  if (said.what == HostWhat::message) worker.send(said.message);
-  if (said.what == HostWhat::kill) worker.kill();
+  if (said.word == Word::kill) worker.kill();
+  if (said.word != Word::start && said.word != Word::kill) worker.send(said);
   pass_on(agent, said.worker, worker);
   if (worker.ended()) agent.workers.erase(found);
 }
 
 void ScriptedNetwork::pass_on(Agent& agent, std::uint32_t number, ScriptedWorker& worker) {
-  for (Message message; worker.receive(message, 0) == Channel::Heard::message;)
-    agent.from_it.push_back(to_bytes(HostMessage{HostWhat::message, number, std::move(message)}));
+  for (Message message; worker.receive(message, 0) == Channel::Heard::message;) {
+    message.worker = number;
+    agent.from_it.push_back(to_bytes(message));
+  }
   if (worker.ended())
-    agent.from_it.push_back(to_bytes(HostMessage{HostWhat::ended, number, {.content = to_bytes(worker.end())}}));
+    agent.from_it.push_back(
+        to_bytes(Message{.word = Word::ended, .content = to_bytes(worker.end()), .worker = number}));
 }
 
 void ScriptedNetwork::meet_fate(Agent& agent) {
@@ -96,7 +99,7 @@ void ScriptedNetwork::meet_fate(Agent& agent) {
   }
   if (agent.fate.what == FateWhat::cut) {
     // What it says next does not come whole, and then nothing is left to say.
-    if (agent.from_it.empty()) agent.from_it.push_back(to_bytes(HostMessage{}));
+    if (agent.from_it.empty()) agent.from_it.push_back(to_bytes(Message{}));
     std::string& bytes = agent.from_it.front();
     bytes.resize(luck_() % bytes.size());
   }
@@ -114,7 +117,7 @@ void ScriptedNetwork::look_at_the_clock() {
       agent.dark = false;
     if (agent.dark || agent.home || seconds_between(agent.spoke, now) < alive_every_) continue;
     agent.spoke = now;
-    agent.from_it.push_back(to_bytes(HostMessage{}));
+    agent.from_it.push_back(to_bytes(Message{}));
   }
 }
 
