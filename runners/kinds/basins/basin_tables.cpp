@@ -66,7 +66,7 @@ class BasinImages {
     for (const CaseRecord& record : results_.cases) {
       const Table* table = cells_.find(record.tables);
       if (!table) continue;
-      images_.push_back({&record, table, SectionIndex(record, "cell_points", "cell", ""), {}, {}});
+      images_.push_back({&record, table, SectionIndex::of_cells(record), {}, {}});
       cells_.rows.each(*table, [&](std::size_t, const CellRow& cell) {
         if (!cell.x || !cell.y) return;
         xs.insert(*cell.x);

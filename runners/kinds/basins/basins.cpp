@@ -94,16 +94,15 @@ std::size_t find_place(const GridAxis& axis, double wanted) {
 // The strobed points that the run stored for a row of cells.csv.
 std::vector<SectionPoint> stored_section(const CaseRecord& record, std::size_t row) {
   std::vector<SectionPoint> out;
-  const NumberTable* table = find_table(record.numbers, "cell_points");
-  const auto* cells = table ? table->numbers("cell") : nullptr;
-  if (!cells) return out;
-  std::vector<const std::vector<double>*> columns;
-  for (const char* name : {"tip_displacement", "tip_velocity", "opposite_displacement", "opposite_velocity"})
-    columns.push_back(table->numbers(name));
-  if (std::count(columns.begin(), columns.end(), nullptr) > 0) return out;
-  for (std::size_t i = 0; i < table->rows(); ++i)
-    if ((*cells)[i] == static_cast<double>(row))
-      out.push_back({(*columns[0])[i], (*columns[1])[i], (*columns[2])[i], (*columns[3])[i]});
+  const NumberType<SectionColumns> type = cell_points_type();
+  const NumberTable* table = type.find(record.numbers);
+  if (!table) return out;
+  const SectionColumns of = type.read(*table);
+  if (!of.cell || !of.displacement || !of.velocity || !of.opposite_displacement || !of.opposite_velocity) return out;
+  const std::vector<double>&cells = of.cell->get(), &x = of.displacement->get(), &v = of.velocity->get();
+  const std::vector<double>&ox = of.opposite_displacement->get(), &ov = of.opposite_velocity->get();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] == static_cast<double>(row)) out.push_back({x[i], v[i], ox[i], ov[i]});
   return out;
 }
 

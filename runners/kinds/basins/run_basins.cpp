@@ -199,7 +199,7 @@ class BasinsRun {
   void write_tables(CaseRecord& record, bool complete) {
     const TableType<CellRow> type = cells_type();
     Table cells = type.head();
-    NumberTable points = cell_points_head();
+    NumberTable points = cell_points_type().head();
     const std::vector<std::size_t> sources = refinement_.sources();
     std::size_t count = 0;
     std::vector<std::size_t> last_use(sources.size());

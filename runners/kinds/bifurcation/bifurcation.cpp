@@ -206,7 +206,7 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
         "ricochet point: this is a study of kind bifurcation; expected --parameter VALUE and --start NAME, as in "
         "values.csv");
   const CaseRecord& record = find_case(results, asked.case_id);
-  const std::vector<OrbitRow> orbits = orbits_in(stored_table(record, "values"));
+  const std::vector<OrbitRow> orbits = orbits_in(stored_table(record, values_name));
   const OrbitRow& orbit = find_orbit(orbits, *asked.parameter, asked.start);
   if (!orbit.done()) throw PointRefused(fmt::format("this orbit is {}: {}", orbit.status, orbit.reason));
   PointTask task;
@@ -225,7 +225,7 @@ int march_orbit_again(const StudyResults& results, const PointRequest& asked, st
   const StudyCase& study_case = stored.find(record.id);
   std::vector<double> strobes;  // as the run stored them; none where its section is another one
   if (study_case.settings.at("section") == "strobe")
-    strobes = orbit_numbers(record, "points", "tip_displacement", task.parameter, task.start);
+    strobes = orbit_numbers(record, points_type(), &SectionColumns::displacement, task.parameter, task.start);
   std::size_t compared = 0, equal = 0;
   SamplePrinter print(out);
   march_point(study_case, stored.registry, task, [&](const PointSample& sample) {

@@ -186,17 +186,17 @@ void DiagramSpeaker::say_changes(say::Answer& answer) const {
 /// Speed of the one impact that repeats from one start, by value of the parameter.
 std::map<double, double> DiagramSpeaker::single_impacts(const CaseRecord& record) const {
   std::map<double, double> speeds;
-  const NumberTable* table = find_table(record.numbers, "impacts");
+  const NumberType<ImpactColumns> type = impacts_type();
+  const NumberTable* table = type.find(record.numbers);
   if (!table) return speeds;
-  const std::vector<double>*parameter = &table->values.front().get(), *from = table->numbers("start"),
-        *speed = table->numbers("speed");
-  const std::vector<std::string>* words = table->words_of("start");
-  if (!from || !speed || !words) return speeds;
+  const ImpactColumns of = type.read(*table);
+  const std::vector<std::string>* words = table->words_of(start_name);
+  if (!of.parameter || !of.start || !of.speed || !words) return speeds;
+  const std::vector<double>&parameter = of.parameter->get(), &from = of.start->get(), &speed = of.speed->get();
   std::set<double> several;
   for (std::size_t row = 0; row < table->rows(); ++row)
-    if ((*words)[static_cast<std::size_t>((*from)[row])] == start_ &&
-        !speeds.emplace((*parameter)[row], (*speed)[row]).second)
-      several.insert((*parameter)[row]);
+    if ((*words)[static_cast<std::size_t>(from[row])] == start_ && !speeds.emplace(parameter[row], speed[row]).second)
+      several.insert(parameter[row]);
   for (const double value : several) speeds.erase(value);
   return speeds;
 }

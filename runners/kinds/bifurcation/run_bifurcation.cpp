@@ -127,7 +127,7 @@ class BifurcationRun {
       discretise(met.scene, case_.elements, *make_mass(case_, registry_), one.get(), &case_.contact.parameters);
     }
     const auto compliance = contact_compliance(*one, case_.contact.parameters, 1e-3 * section_.scale);
-    NumberTable law = contact_law_head();
+    NumberTable law = contact_law_type().head();
     law.add({compliance.value_or(std::numeric_limits<double>::quiet_NaN())});
     record_.numbers.push_back(std::move(law));
     analyse_groups();

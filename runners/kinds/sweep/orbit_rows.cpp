@@ -164,9 +164,9 @@ void add_orbit_tables(CaseRecord& record, const std::vector<OrbitView>& views, c
                       int exponents, const SectionPlan& plan) {
   Table values = values_head(exponents);
   const RowType<OrbitRow> type = orbit_row_type(exponents);
-  NumberTable points = points_head(), impacts = impacts_head();
-  points.words = {{"start", starts}};
-  impacts.words = {{"start", starts}, {"side", {"lower", "upper"}}};
+  NumberTable points = points_type().head(), impacts = impacts_type().head();
+  points.words = {{start_name, starts}};
+  impacts.words = {{start_name, starts}, {"side", {"lower", "upper"}}};
   for (const OrbitView& view : views) {
     values.rows.push_back(type.row(orbit_row(view, starts[view.start], plan)));
     if (!view.complete()) continue;
@@ -246,8 +246,8 @@ LaneState lane_state(const std::vector<double>& all) {
 }  // namespace
 
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts) {
-  NumberTable table = entries_head();
-  table.words = {{"start", starts}};
+  NumberTable table = entries_type().head();
+  table.words = {{start_name, starts}};
   for (const OrbitView& view : views) {
     if (!view.complete()) continue;
     const std::vector<double> state = flat(view.orbit->entry);
@@ -263,23 +263,8 @@ void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const 
   record.numbers.push_back(std::move(table));
 }
 
-std::vector<double> orbit_numbers(const CaseRecord& record, const char* table, const char* column, double parameter,
-                                  const std::string& start) {
-  std::vector<double> found;
-  const NumberTable* numbers = find_table(record.numbers, table);
-  const auto* starts = numbers ? numbers->words_of("start") : nullptr;
-  const auto *parameters = numbers ? numbers->numbers("parameter") : nullptr,
-             *froms = numbers ? numbers->numbers("start") : nullptr,
-             *values = numbers ? numbers->numbers(column) : nullptr;
-  if (!starts || !parameters || !froms || !values) return found;
-  const auto index = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
-  for (std::size_t row = 0; row < numbers->rows(); ++row)
-    if ((*parameters)[row] == parameter && (*froms)[row] == index) found.push_back((*values)[row]);
-  return found;
-}
-
 std::optional<LaneState> find_entry(const CaseRecord& record, double parameter, const std::string& start) {
-  const std::vector<double> all = orbit_numbers(record, "entries", "value", parameter, start);
+  const std::vector<double> all = orbit_numbers(record, entries_type(), &EntryColumns::value, parameter, start);
   if (all.size() >= state_counts) return lane_state(all);
   return std::nullopt;
 }
@@ -308,8 +293,8 @@ void add_portraits(CaseRecord& record, const ForcedScenes& scenes, const std::ve
                     most_portraits, complete.size()));
     return;
   }
-  NumberTable table = portraits_head();
-  if (const NumberTable* points = find_table(record.numbers, "points")) table.words = {points->words.front()};
+  NumberTable table = portraits_type().head();
+  if (const NumberTable* points = points_type().find(record.numbers)) table.words = {points->words.front()};
   const int stride = std::max(2, plan.steps_per_period / samples_per_period);
   std::map<std::pair<int, int>, std::vector<const OrbitView*>> batches;  // by group and periods
   for (const OrbitView* view : complete) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <ricochet/measure/orbits/judge_orbit.hpp>
 #include <ricochet/measure/stability/contact_spring.hpp>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "runners/kinds/sweep/orbit_exponents.hpp"
+#include "runners/kinds/sweep/sweep_tables.hpp"
 #include "runners/store/record.hpp"
 
 namespace ricochet {
@@ -65,8 +67,20 @@ constexpr std::size_t most_entry_numbers = 2000000;
 void add_entries(CaseRecord& record, const std::vector<OrbitView>& views, const std::vector<std::string>& starts);
 
 /// A column of a table of numbers in the rows of one orbit; empty where the case keeps none.
-std::vector<double> orbit_numbers(const CaseRecord& record, const char* table, const char* column, double parameter,
-                                  const std::string& start);
+template <class Columns>
+std::vector<double> orbit_numbers(const CaseRecord& record, const NumberType<Columns>& type,
+                                  const Series* Columns::*column, double parameter, const std::string& start) {
+  std::vector<double> found;
+  const NumberTable* table = type.find(record.numbers);
+  const auto* starts = table ? table->words_of(start_name) : nullptr;
+  const Columns of = table ? type.read(*table) : Columns();
+  if (!starts || !of.parameter || !of.start || !(of.*column)) return found;
+  const auto index = static_cast<double>(std::find(starts->begin(), starts->end(), start) - starts->begin());
+  const std::vector<double>&parameters = of.parameter->get(), &froms = of.start->get(), &values = (of.*column)->get();
+  for (std::size_t row = 0; row < table->rows(); ++row)
+    if (parameters[row] == parameter && froms[row] == index) found.push_back(values[row]);
+  return found;
+}
 
 /// The entry of one orbit of a stored case; none where the case keeps none. Throws std::runtime_error for numbers that
 /// add_entries() did not write.

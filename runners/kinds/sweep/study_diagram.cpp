@@ -45,19 +45,34 @@ void read_runs(StudyDiagram& study, DiagramSource& source, DiagramCase& owner) {
 
 /// Of the contact law of a case, as its law declares it; not known of stores of versions that did not keep it.
 std::optional<double> compliance_of(const CaseRecord& record) {
-  const NumberTable* table = find_table(record.numbers, contact_law_head().name);
+  const NumberTable* table = contact_law_type().find(record.numbers);
   if (!table || table->rows() != 1 || !std::isfinite(table->values.front().front())) return std::nullopt;
   return table->values.front().front();
 }
 
 }  // namespace
 
-SectionIndex::SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key,
-                           const std::string& word) {
-  table_ = find_table(record.numbers, table);
-  const Series *keys = column(key), *second = word.empty() ? nullptr : column(word);
-  if (!keys || (!word.empty() && !second)) return;
-  words_ = table_->words_of(word);
+SectionIndex SectionIndex::of_orbits(const CaseRecord& record) {
+  const NumberType<SectionColumns> type = points_type();
+  const NumberTable* table = type.find(record.numbers);
+  if (!table) return {};
+  const SectionColumns columns = type.read(*table);
+  return columns.start ? SectionIndex(table, columns, columns.parameter, columns.start) : SectionIndex();
+}
+
+SectionIndex SectionIndex::of_cells(const CaseRecord& record) {
+  const NumberType<SectionColumns> type = cell_points_type();
+  const NumberTable* table = type.find(record.numbers);
+  if (!table) return {};
+  const SectionColumns columns = type.read(*table);
+  return SectionIndex(table, columns, columns.cell);
+}
+
+SectionIndex::SectionIndex(const NumberTable* table, const SectionColumns& columns, const Series* keys,
+                           const Series* second)
+    : table_(table), columns_(columns) {
+  if (!keys) return;
+  if (second) words_ = table->words_of(start_name);
   keys->each([&](std::size_t row, double value) {
     const double index = second ? second->at(row) : kNoWord;
     if (std::isnan(value) || std::isnan(index)) return;
@@ -74,9 +89,9 @@ bool SectionIndex::before(const Range& a, const Range& b) {
 }
 
 void SectionIndex::add_points(ScaleOfPoints& scale) const {
-  for (const std::string name : {"tip", "opposite"}) {
-    const double sign = name == "opposite" ? -1 : 1;
-    const Series *x = column(name + "_displacement"), *v = column(name + "_velocity");
+  for (const double sign : {1.0, -1.0}) {
+    const Series* x = sign > 0 ? columns_.displacement : columns_.opposite_displacement;
+    const Series* v = sign > 0 ? columns_.velocity : columns_.opposite_velocity;
     if (!x || !v) return;
     x->each([&](std::size_t row, double value) { scale.add({sign * value, sign * v->at(row)}); });
   }
@@ -84,12 +99,12 @@ void SectionIndex::add_points(ScaleOfPoints& scale) const {
 
 SectionReadings SectionIndex::read(double key, const std::string& word) const {
   SectionReadings out;
-  const Series *x = column("tip_displacement"), *v = column("tip_velocity");
+  const Series *x = columns_.displacement, *v = columns_.velocity;
   double index = kNoWord;
   if (words_) index = static_cast<double>(std::find(words_->begin(), words_->end(), word) - words_->begin());
   const auto [first, last] = std::equal_range(ranges_.begin(), ranges_.end(), Range{key, index, 0, 0}, before);
   if (first == last || !x || !v) return out;
-  const Series *ox = column("opposite_displacement"), *ov = column("opposite_velocity");
+  const Series *ox = columns_.opposite_displacement, *ov = columns_.opposite_velocity;
   bool whole = ox && ov;
   for (auto range = first; range != last; ++range)
     for (std::size_t k = range->first; k < range->last; ++k) {
@@ -117,8 +132,7 @@ StudyDiagram read_diagram(const StudyResults& results) {
     const Table* table = find_table(record.tables, "values");
     if (!table) continue;
     records.push_back(&record);
-    DiagramSource& source =
-        study.sources.emplace_back(DiagramSource{&record, table, SectionIndex(record, "points", "parameter", "start")});
+    DiagramSource& source = study.sources.emplace_back(DiagramSource{&record, table, SectionIndex::of_orbits(record)});
     DiagramCase& owner = study.diagram.cases.emplace_back();
     owner.compliance = compliance_of(record);
     owner.steps_per_period = axis(record, "steps_per_period").number().value_or(0);

@@ -27,14 +27,16 @@ struct SectionReadings {
 class SectionIndex {
  public:
   SectionIndex() = default;
-  /// `word` names the column that holds the second key; "" for none.
-  SectionIndex(const CaseRecord& record, const std::string& table, const std::string& key, const std::string& word);
+  explicit SectionIndex(const NumberTable* table, const SectionColumns& columns, const Series* key,
+                        const Series* second = nullptr);
+  /// By parameter and start.
+  static SectionIndex of_orbits(const CaseRecord& record);
+  /// By cell.
+  static SectionIndex of_cells(const CaseRecord& record);
   SectionReadings read(double key, const std::string& word) const;
   /// Every point of the table, and of the motions half a period later.
   void add_points(ScaleOfPoints& scale) const;
   const NumberTable* table() const { return table_; }
-  /// Column of that name; null where the table has none.
-  const Series* column(const std::string& name) const { return table_ ? table_->series(name) : nullptr; }
 
  private:
   struct Range {
@@ -44,6 +46,7 @@ class SectionIndex {
   static bool before(const Range& a, const Range& b);
 
   const NumberTable* table_ = nullptr;
+  SectionColumns columns_;
   const std::vector<std::string>* words_ = nullptr;
   std::vector<Range> ranges_;  // sorted
 };

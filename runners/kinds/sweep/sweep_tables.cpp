@@ -12,7 +12,7 @@ const Column attractor_column{
 
 namespace {
 
-const Column start_column{"start", "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
+const Column start_column{start_name, "", "Where the orbit begins: rest, state, up, down or random-NUMBER."};
 const Column class_column{
     "class", "",
     "no contact, at rest (what touches its stop never leaves it), periodic, quasi-periodic, chaotic, undecided, or "
@@ -20,12 +20,18 @@ const Column class_column{
 const Column period_column{"period", "1", "Forcing periods after which a periodic orbit repeats."};
 const Column status_column{"status", "", "done, refused, diverged or failed."};
 const Column reason_column{"reason", "", "Why the orbit was refused or stopped."};
-const std::vector<Column> section_columns = {
-    {"index", "1", "Number of the point in its section, from 0, in the order of time."},
-    {"tip_displacement", "m", "Absolute displacement of the tip at the section."},
-    {"tip_velocity", "m/s", "Velocity of the tip at the section."},
-    {"opposite_displacement", "m", "The same of the mirror image of the orbit, x → −x half a forcing period later."},
-    {"opposite_velocity", "m/s", "Velocity of the tip of that mirror image."}};
+
+NumberType<SectionColumns>& add_section(NumberType<SectionColumns>& type) {
+  return type
+      .add({"index", "1", "Number of the point in its section, from 0, in the order of time."}, &SectionColumns::index)
+      .add({"tip_displacement", "m", "Absolute displacement of the tip at the section."}, &SectionColumns::displacement)
+      .add({"tip_velocity", "m/s", "Velocity of the tip at the section."}, &SectionColumns::velocity)
+      .add({"opposite_displacement", "m",
+            "The same of the mirror image of the orbit, x → −x half a forcing period later."},
+           &SectionColumns::opposite_displacement)
+      .add({"opposite_velocity", "m/s", "Velocity of the tip of that mirror image."},
+           &SectionColumns::opposite_velocity);
+}
 
 Column in_units_of(const Column& parameter, const char* name, const char* text) {
   return {name, parameter.unit, text};
@@ -172,58 +178,55 @@ TableType<CellRow> cells_type(const SweptColumns& swept) {
   return {"cells", "One cell of the grid of one case: a start, or a scene, and where it leads.", rows};
 }
 
-NumberTable points_head(const SweptColumns& swept) {
-  NumberTable table = number_table("points", joined({swept.parameter, start_column}, section_columns));
-  table.text = "One point of the section of one orbit.";
-  return table;
+NumberType<SectionColumns> points_type(const SweptColumns& swept) {
+  NumberType<SectionColumns> type("points", "One point of the section of one orbit.");
+  type.add(swept.parameter, &SectionColumns::parameter).add(start_column, &SectionColumns::start);
+  return add_section(type);
 }
 
-NumberTable impacts_head(const SweptColumns& swept) {
-  NumberTable table =
-      number_table("impacts", {swept.parameter,
-                               start_column,
-                               {"phase", "rad", "Phase of the forcing at the impact."},
-                               {"side", "", "The stop that is hit: lower or upper."},
-                               {"speed", "m/s", "Speed at which the contact point closes."},
-                               {"x", "m", "Place of the contact point."},
-                               {"t", "s", "Time since the orbit began: at t = 0, or where its neighbour ended."}});
-  table.text = "One impact of one orbit: of one period of what repeats, else of every kept period.";
-  return table;
+NumberType<ImpactColumns> impacts_type(const SweptColumns& swept) {
+  NumberType<ImpactColumns> type("impacts",
+                                 "One impact of one orbit: of one period of what repeats, else of every kept period.");
+  type.add(swept.parameter, &ImpactColumns::parameter)
+      .add(start_column, &ImpactColumns::start)
+      .add({"phase", "rad", "Phase of the forcing at the impact."}, &ImpactColumns::phase)
+      .add({"side", "", "The stop that is hit: lower or upper."}, &ImpactColumns::side)
+      .add({"speed", "m/s", "Speed at which the contact point closes."}, &ImpactColumns::speed)
+      .add({"x", "m", "Place of the contact point."}, &ImpactColumns::x)
+      .add({"t", "s", "Time since the orbit began: at t = 0, or where its neighbour ended."}, &ImpactColumns::t);
+  return type;
 }
 
-NumberTable portraits_head(const SweptColumns& swept) {
-  NumberTable table = number_table("portraits", {swept.parameter,
-                                                 start_column,
-                                                 {"time", "s", "Time from the strobe that the portrait begins at."},
-                                                 {"tip_displacement", "m", "Absolute displacement of the tip."},
-                                                 {"tip_velocity", "m/s", "Velocity of the tip."}});
-  table.exported = false;
-  return table;
+NumberType<PortraitColumns> portraits_type(const SweptColumns& swept) {
+  NumberType<PortraitColumns> type("portraits", "", false);
+  type.add(swept.parameter, &PortraitColumns::parameter)
+      .add(start_column, &PortraitColumns::start)
+      .add({"time", "s", "Time from the strobe that the portrait begins at."}, &PortraitColumns::time)
+      .add({"tip_displacement", "m", "Absolute displacement of the tip."}, &PortraitColumns::displacement)
+      .add({"tip_velocity", "m/s", "Velocity of the tip."}, &PortraitColumns::velocity);
+  return type;
 }
 
-NumberTable entries_head(const SweptColumns& swept) {
-  NumberTable table =
-      number_table("entries", {swept.parameter,
-                               start_column,
-                               {"index", "1", "Place of the number in the state."},
-                               {"value", "", "One number of the state that the kept periods begin with."}});
-  table.exported = false;
-  return table;
+NumberType<EntryColumns> entries_type(const SweptColumns& swept) {
+  NumberType<EntryColumns> type("entries", "", false);
+  type.add(swept.parameter, &EntryColumns::parameter)
+      .add(start_column, &EntryColumns::start)
+      .add({"index", "1", "Place of the number in the state."}, &EntryColumns::index)
+      .add({"value", "", "One number of the state that the kept periods begin with."}, &EntryColumns::value);
+  return type;
 }
 
-NumberTable cell_points_head() {
-  NumberTable table =
-      number_table("cell_points", joined({{"cell", "1", "Row of the cell in `cells`, from 0."}}, section_columns));
-  table.exported = false;
-  return table;
+NumberType<SectionColumns> cell_points_type() {
+  NumberType<SectionColumns> type("cell_points", "", false);
+  type.add({"cell", "1", "Row of the cell in `cells`, from 0."}, &SectionColumns::cell);
+  return add_section(type);
 }
 
-NumberTable contact_law_head() {
-  NumberTable table =
-      number_table("contact_law",
-                   {{"compliance", "m/N", "How much the contact law gives way, 0 for a rigid one; empty: not known."}});
-  table.exported = false;
-  return table;
+NumberType<ContactLawColumns> contact_law_type() {
+  NumberType<ContactLawColumns> type("contact_law", "", false);
+  type.add({"compliance", "m/N", "How much the contact law gives way, 0 for a rigid one; empty: not known."},
+           &ContactLawColumns::compliance);
+  return type;
 }
 
 TableType<AttractorRow> attractors_type(const SweptColumns& swept) {
@@ -365,8 +368,8 @@ void describe_sweep(CaseRecord& record, const SweptColumns& swept) {
       if (head.name == table.name) describe(table, head);
   }
   for (NumberTable& table : record.numbers)
-    for (const NumberTable& head : {points_head(swept), impacts_head(swept), portraits_head(swept), entries_head(swept),
-                                    cell_points_head(), contact_law_head()})
+    for (const NumberTable& head : {points_type(swept).head(), impacts_type(swept).head(), portraits_type(swept).head(),
+                                    entries_type(swept).head(), cell_points_type().head(), contact_law_type().head()})
       if (head.name == table.name) {
         table.text = head.text;
         describe(table.columns, head.columns);

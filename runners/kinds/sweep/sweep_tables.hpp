@@ -4,7 +4,7 @@
 #include <ricochet/measure/attractors/diagram_attractors.hpp>
 
 #include "runners/kinds/sweep/with_parameter.hpp"
-#include "runners/table/number_table.hpp"
+#include "runners/table/number_type.hpp"
 #include "runners/table/row_type.hpp"
 
 /// \file
@@ -144,16 +144,40 @@ struct UncertaintyRow {
   std::optional<double> boundary_share, exponent, low, high;
 };
 
+/// The column that names the start of an orbit, in words.
+inline constexpr char start_name[] = "start";
+
+/// Points of sections: of the orbits of a diagram (by parameter and start), or of the cells of a grid (by cell).
+struct SectionColumns {
+  const Series *parameter = nullptr, *start = nullptr, *cell = nullptr, *index = nullptr;
+  const Series *displacement = nullptr, *velocity = nullptr;
+  const Series *opposite_displacement = nullptr, *opposite_velocity = nullptr;
+};
+struct ImpactColumns {
+  const Series *parameter = nullptr, *start = nullptr, *phase = nullptr, *side = nullptr, *speed = nullptr;
+  const Series *x = nullptr, *t = nullptr;
+};
+struct PortraitColumns {
+  const Series *parameter = nullptr, *start = nullptr, *time = nullptr, *displacement = nullptr, *velocity = nullptr;
+};
+/// States that the kept periods begin with.
+struct EntryColumns {
+  const Series *parameter = nullptr, *start = nullptr, *index = nullptr, *value = nullptr;
+};
+struct ContactLawColumns {
+  const Series* compliance = nullptr;
+};
+
 /// Of a case, kept in the store.
 Table values_head(int exponents, const SweptColumns& swept = {});
 Table bifurcations_head(const SweptColumns& swept = {});
 TableType<CellRow> cells_type(const SweptColumns& swept = {});
-NumberTable points_head(const SweptColumns& swept = {});
-NumberTable impacts_head(const SweptColumns& swept = {});
-NumberTable portraits_head(const SweptColumns& swept = {});
-NumberTable entries_head(const SweptColumns& swept = {});
-NumberTable cell_points_head();
-NumberTable contact_law_head();
+NumberType<SectionColumns> points_type(const SweptColumns& swept = {});
+NumberType<ImpactColumns> impacts_type(const SweptColumns& swept = {});
+NumberType<PortraitColumns> portraits_type(const SweptColumns& swept = {});
+NumberType<EntryColumns> entries_type(const SweptColumns& swept = {});
+NumberType<SectionColumns> cell_points_type();
+NumberType<ContactLawColumns> contact_law_type();
 
 /// Over all cases, worked out of these.
 TableType<AttractorRow> attractors_type(const SweptColumns& swept = {});

@@ -54,7 +54,7 @@ inline CaseRecord dynamics_case(const std::string& time, double beta, const Dyna
   record.status = "done";
   record.steps = 1200000;
   Table values = values_head(1), changes = bifurcations_head();
-  NumberTable points = points_head(), portraits = portraits_head();
+  NumberTable points = points_type().head(), portraits = portraits_type().head();
   points.words = portraits.words = {{"start", shape.starts}};
   const auto push = [](NumberTable& table, std::initializer_list<double> row) { table.add(row); };
   for (size_t s = 0; s < shape.starts.size(); ++s) {

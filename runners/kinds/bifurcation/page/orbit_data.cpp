@@ -21,19 +21,19 @@ using Rows = std::vector<std::uint32_t>;
 constexpr double cells_across = 4000;
 
 /// Rows of a table of numbers by the orbit that they belong to; rows of no orbit are left out.
-std::vector<Rows> rows_by_orbit(const NumberTable& table, const std::vector<OrbitRow>& orbits) {
+template <class Columns>
+std::vector<Rows> rows_by_orbit(const NumberTable& table, const Columns& columns, const std::vector<OrbitRow>& orbits) {
   std::vector<Rows> out(orbits.size());
-  const auto* parameter = table.numbers("parameter");
-  const auto* start = table.numbers("start");
-  const auto* words = table.words_of("start");
-  if (!parameter || !start || !words) return out;
+  const auto* words = table.words_of(start_name);
+  if (!columns.parameter || !columns.start || !words) return out;
+  const std::vector<double>&parameter = columns.parameter->get(), &start = columns.start->get();
   std::map<std::pair<double, std::string>, size_t> place;
   for (size_t o = 0; o < orbits.size(); ++o) place.emplace(std::pair(orbits[o].parameter, orbits[o].start), o);
   // Rows of one orbit follow one another: the map is asked once for each run of them.
   double last_parameter = std::numeric_limits<double>::quiet_NaN(), last_start = last_parameter;
   Rows* last = nullptr;
   for (size_t i = 0; i < table.rows(); ++i) {
-    const double p = (*parameter)[i], s = (*start)[i];
+    const double p = parameter[i], s = start[i];
     if (p != last_parameter || s != last_start) {
       last = nullptr;
       if (s >= 0 && s < static_cast<double>(words->size())) {
@@ -90,15 +90,16 @@ struct Section {
 };
 
 std::optional<Section> section_of(const CaseRecord& record) {
-  const NumberTable* table = find_table(record.numbers, "points");
-  if (!table) return std::nullopt;
+  const NumberType<SectionColumns> type = points_type();
+  const NumberTable* table = type.find(record.numbers);
+  const SectionColumns columns = table ? type.read(*table) : SectionColumns();
+  if (!columns.displacement || !columns.velocity) return std::nullopt;
   Section out;
   out.record = &record;
-  out.u = table->numbers("tip_displacement");
-  out.v = table->numbers("tip_velocity");
-  if (!out.u || !out.v) return std::nullopt;
+  out.u = &columns.displacement->get();
+  out.v = &columns.velocity->get();
   const std::vector<OrbitRow> orbits = orbits_of(record);
-  out.rows = rows_by_orbit(*table, orbits);
+  out.rows = rows_by_orbit(*table, columns, orbits);
   const Extent us = extent(*out.u), vs = extent(*out.v);
   const auto cell = [](double value, const Extent& range) {
     return range.high > range.low ? std::llround((value - range.low) / (range.high - range.low) * cells_across) : 0LL;
@@ -233,16 +234,17 @@ std::string put_points(const CaseView& view, CurveData& curves, const PageBudget
 std::string put_portraits(const CaseView& view, CurveData& curves, const PageBudget& budget) {
   struct Stored {
     const CaseRecord* record;
-    const NumberTable* table;
+    PortraitColumns columns;
     std::vector<Rows> rows;
   };
+  const NumberType<PortraitColumns> type = portraits_type();
   std::vector<Stored> all;
   size_t samples = 0, count = 0, kept = 0;
   for (const CaseRecord* record : view.all()) {
-    const NumberTable* table = find_table(record->numbers, "portraits");
-    if (!table || !table->numbers("time") || !table->numbers("tip_displacement") || !table->numbers("tip_velocity"))
-      continue;
-    all.push_back({record, table, rows_by_orbit(*table, orbits_of(*record))});
+    const NumberTable* table = type.find(record->numbers);
+    const PortraitColumns columns = table ? type.read(*table) : PortraitColumns();
+    if (!columns.time || !columns.displacement || !columns.velocity) continue;
+    all.push_back({record, columns, rows_by_orbit(*table, columns, orbits_of(*record))});
     for (const Rows& rows : all.back().rows) {
       samples += rows.size();
       count += !rows.empty();
@@ -252,8 +254,8 @@ std::string put_portraits(const CaseView& view, CurveData& curves, const PageBud
   for (const Stored& stored : all) {
     std::vector<std::uint32_t> orbit;
     std::vector<double> columns[3];
-    const std::vector<double>* from[] = {stored.table->numbers("time"), stored.table->numbers("tip_displacement"),
-                                         stored.table->numbers("tip_velocity")};
+    const std::vector<double>* from[] = {&stored.columns.time->get(), &stored.columns.displacement->get(),
+                                         &stored.columns.velocity->get()};
     for (size_t o = 0; o < stored.rows.size(); ++o) {
       if (stored.rows[o].empty() || o % every != 0) continue;
       ++kept;
@@ -284,7 +286,7 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
   OrbitJson out = {{"parameter", {parameter.name, parameter.unit}}, {"groups", groups}, {"kinds", kinds}};
   OrbitJson cases = OrbitJson::object();
   for (const CaseRecord* record : view.all()) {
-    const Table* table = find_table(record->tables, "values");
+    const Table* table = find_table(record->tables, values_name);
     if (!table || table->rows.empty()) continue;
     const std::vector<OrbitRow> orbits = orbits_in(*table);
     OrbitJson one = {{"columns", columns_of(*table)}};
@@ -307,9 +309,9 @@ OrbitJson orbit_data(const CaseView& view, CurveData& curves) {
       }
       one["columns"]["attractor"] = std::move(names);
     }
-    if (const NumberTable* points = find_table(record->numbers, "points"))
-      if (const auto* u = points->numbers("tip_displacement"))
-        if (const Extent reach = extent(*u); reach.low <= reach.high) one["extent"] = {reach.low, reach.high};
+    if (const NumberTable* points = points_type().find(record->numbers))
+      if (const Series* u = points_type().read(*points).displacement)
+        if (const Extent reach = extent(u->get()); reach.low <= reach.high) one["extent"] = {reach.low, reach.high};
     cases[record->id] = std::move(one);
   }
   if (cases.empty()) return nullptr;

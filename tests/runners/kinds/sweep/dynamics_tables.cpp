@@ -65,7 +65,7 @@ CaseRecord make_case(const Method& method, const std::vector<double>& values, co
               named_columns({"parameter", "start", "class", "period", "impacts_per_period", "symmetric",
                              "exponent_method", "attractor", "alpha_equivalent", "status", "reason"}),
               {}};
-  NumberTable points = points_head();
+  NumberTable points = points_type().head();
   points.words = {{"start", starts}};
   for (std::size_t s = 0; s < starts.size(); ++s)
     for (const double value : values) {
@@ -459,7 +459,7 @@ TEST_CASE("the reference case has the stiffest contact, whatever its parameters 
     }
     StudyResults results = study(methods, range(0.07, 0.08, 3));
     for (std::size_t k = 0; k < known; ++k) {
-      NumberTable law = contact_law_head();
+      NumberTable law = contact_law_type().head();
       law.add({laws[k].compliance});
       results.cases[k].numbers.push_back(std::move(law));
     }
@@ -481,7 +481,7 @@ CaseRecord basin_case(const std::string& mass, double slope, int count, bool int
   record.axes = {{"mass", mass}, {"elements", 10}};
   record.status = "done";
   Table cells{"cells", "", named_columns({"x", "y", "class", "period", "attractor", "status", "reason"}), {}};
-  NumberTable points = cell_points_head();
+  NumberTable points = cell_points_type().head();
   for (int j = 0; j < count; ++j)
     for (int i = 0; i < count; ++i) {
       const double x = -1 + 2.0 * i / (count - 1), y = -1 + 2.0 * j / (count - 1);
