@@ -146,9 +146,9 @@ int keep_snapshots(const OpenCase& open, const StoredStudy& stored, StudyCase st
     throw PointRefused(fmt::format("this case leaves no snapshots: it is {}{}", again.status,
                                    again.reason.empty() ? "" : ", " + again.reason));
   keep_numbers(open.folder, open.record.id, *table);
+  const Snapshots kept = snapshots_of(*table).value();
   out << fmt::format("kept beside the case {}: {} instants at {} places, {} forces; `ricochet report {}` shows them\n",
-                     open.record.id, table->numbers("t")->size(), table->numbers("x")->size(),
-                     snapshots_of(*table)->force.size(), open.folder.string());
+                     open.record.id, kept.t.size(), kept.x.size(), kept.force.size(), open.folder.string());
   return exit_done;
 }
 
