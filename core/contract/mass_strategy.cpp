@@ -16,6 +16,34 @@ std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, double leng
   return {curvature, (6 * xi - 4) / length, -curvature, (6 * xi - 2) / length};
 }
 
+std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, const FiniteElementSpace::Element& element,
+                                   double xi) {
+  const double length = element.length, shear = element.shear, eta = 1 - xi;
+  if (shear == 0 || basis == FiniteElementSpace::Basis::linear) return shape_values(basis, length, xi);
+  const double whole = 1 + shear, turn = length * xi * eta / whole;
+  return {eta * (eta * (1 + 2 * xi) + shear) / whole, turn * (eta + shear / 2),
+          xi * (xi * (3 - 2 * xi) + shear) / whole, -turn * (xi + shear / 2)};
+}
+
+std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, const FiniteElementSpace::Element& element,
+                                    double xi) {
+  const double length = element.length, shear = element.shear, whole = 1 + shear;
+  if (shear == 0 || basis == FiniteElementSpace::Basis::linear) return shape_strains(basis, length, xi);
+  const double curvature = (12 * xi - 6) / (length * length * whole);
+  return {curvature, (6 * xi - 4 - shear) / (length * whole), -curvature, (6 * xi - 2 + shear) / (length * whole)};
+}
+
+std::array<double, 4> shape_rotations(const FiniteElementSpace::Element& element, double xi) {
+  const double shear = element.shear, whole = 1 + shear, bow = 6 * xi * (xi - 1) / (element.length * whole);
+  return {bow, (1 - xi) * (1 - 3 * xi + shear) / whole, -bow, xi * (3 * xi - 2 + shear) / whole};
+}
+
+std::array<double, 4> shape_slopes(const FiniteElementSpace::Element& element, double xi) {
+  const double shear = element.shear, whole = 1 + shear, slide = shear / 2 * (1 - 2 * xi);
+  const double bow = (6 * xi * (xi - 1) - shear) / (element.length * whole);
+  return {bow, ((1 - xi) * (1 - 3 * xi) + slide) / whole, -bow, (xi * (3 * xi - 2) - slide) / whole};
+}
+
 const std::array<GaussPoint, 4>& gauss_points() {
   // ½(1 ± √(3/7 ∓ (2/7)√(6/5))) with weights ¼ ± √30/72 (Abramowitz and Stegun 1964, table 25.4, n = 4).
   static constexpr std::array<GaussPoint, 4> points{{{0.06943184420297371239, 0.17392742256872692869},
@@ -43,10 +71,15 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space) {
         if (row < 0 || column < 0) continue;
         double integral = 0;
         for (const auto& [xi, weight] : gauss_points()) {
-          const auto phi = shape_values(space.basis, element.length, xi);
+          const auto phi = shape_values(space.basis, element, xi);
           integral += weight * phi[a] * phi[b];
         }
         integral *= element.line_density * element.length;
+        if (element.rotary != 0)
+          for (const auto& [xi, weight] : gauss_points()) {
+            const auto theta = shape_rotations(element, xi);
+            integral += element.rotary * element.length * weight * theta[a] * theta[b];
+          }
         entries.emplace_back(row, column, integral);
         if (a != b) entries.emplace_back(column, row, integral);
       }
@@ -56,6 +89,15 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space) {
   SparseMatrix mass(space.dofs, space.dofs);
   mass.setFromTriplets(entries.begin(), entries.end());
   return mass;
+}
+
+std::optional<Refusal> refuse_rotary_inertia(const FiniteElementSpace& space) {
+  for (const auto& element : space.elements)
+    if (element.rotary != 0)
+      return Refusal{
+          "rotary inertia gives every rotation a mass, so that no motion without inertia is left for the stops: drop "
+          "shear.rotary, or use the mass redistributed"};
+  return std::nullopt;
 }
 
 int semidefinite_rank(const SparseMatrix& A) {

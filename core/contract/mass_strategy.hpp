@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
+#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <string>
 #include <variant>
@@ -13,16 +14,22 @@ namespace ricochet {
 /// Basis on an element [a, a+ℓ], ξ = (x−a)/ℓ in [0,1]:
 ///   hermite  (4 functions, dofs w_a, w'_a, w_b, w'_b): 1−3ξ²+2ξ³, ℓ(ξ−2ξ²+ξ³), 3ξ²−2ξ³, ℓ(ξ³−ξ²)
 ///   linear   (2 functions): 1−ξ, ξ
-/// Dofs eliminated by a boundary condition are −1. Lengths in m, line density ρS in kg/m.
+/// With shear deformation, φ = 12EI/(kGAℓ²) > 0, the dofs are (w, θ) and the functions those of a beam loaded at its
+/// ends: w: (1+φ)⁻¹ [1−3ξ²+2ξ³+φ(1−ξ), ℓ(ξ−2ξ²+ξ³+φ(ξ−ξ²)/2), 3ξ²−2ξ³+φξ, ℓ(ξ³−ξ²−φ(ξ−ξ²)/2)].
+/// Dofs eliminated by a support, at an end or between, are −1. Lengths in m, line density ρS in kg/m; elements need not
+/// be equal.
 struct FiniteElementSpace {
   enum class Basis { hermite, linear };
   struct Element {
     double left = 0, length = 0, line_density = 0;
     std::array<int, 4> dof{-1, -1, -1, -1};
+    double shear = 0;   ///< φ; 0: slopes are rotations
+    double rotary = 0;  ///< ρI, kg m, inertia of the cross-section against rotation; 0: none
   };
   struct PointMass {
     int dof = 0;
-    double mass = 0;  ///< kg
+    double mass = 0;        ///< kg; kg m² on a rotation
+    bool rotation = false;  ///< whether the dof is a rotation, which a rigid translation does not move
   };
   std::string structure;  ///< "beam", "bar", "oscillator": for sentences only
   Basis basis = Basis::hermite;
@@ -42,6 +49,14 @@ struct FiniteElementSpace {
 std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, double length, double xi);
 /// Second (hermite) or first (linear) derivatives in x: what the elastic energy integrates.
 std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, double length, double xi);
+/// The same of an element that may deform in shear; strains are then θ', rotations θ.
+std::array<double, 4> shape_values(FiniteElementSpace::Basis basis, const FiniteElementSpace::Element& element,
+                                   double xi);
+std::array<double, 4> shape_strains(FiniteElementSpace::Basis basis, const FiniteElementSpace::Element& element,
+                                    double xi);
+/// θ of Hermite functions, w' without shear; and w' itself.
+std::array<double, 4> shape_rotations(const FiniteElementSpace::Element& element, double xi);
+std::array<double, 4> shape_slopes(const FiniteElementSpace::Element& element, double xi);
 
 /// Gauss–Legendre on [0,1] with 4 points: exact for polynomials of degree 7, hence for every product integrated here.
 struct GaussPoint {
@@ -84,9 +99,11 @@ class MassStrategy {
   virtual InertiaOrRefusal build(const FiniteElementSpace& space) const = 0;
 };
 
-/// B_ij = ∫ρS ψ_i φ_j and M_ij = ∫ρS φ_i φ_j helpers shared by strategies: the consistent matrix of the space, point
-/// masses included.
+/// M_ij = ∫ρS φ_i φ_j + ρI θ_i θ_j dx: the consistent matrix of the space, point masses included.
 SparseMatrix consistent_mass(const FiniteElementSpace& space);
+
+/// What a mass without inertia of rotations says of rotary inertia; nothing where there is none.
+std::optional<Refusal> refuse_rotary_inertia(const FiniteElementSpace& space);
 
 /// Rank of a symmetric positive semidefinite A (n × n), rows and columns scaled by D = diag(A)^{-1/2} first so that no
 /// unit matters: how many eigenvalues of D A D are above 1e-11. By Sylvester's law of inertia these are the positive

@@ -63,6 +63,8 @@ struct ReferenceProblem {
   double damping_stiffness = 0;                  ///< α (s) of C = αK + ηM
   double damping_mass = 0;                       ///< η (1/s); an oscillator's c is ηm
   bool left_fixed = false, right_fixed = false;  ///< bar and beam: displacement imposed there
+  /// A beam with supports, sections, masses, tension or a foundation of its own; else it is clamped and uniform.
+  bool other_beam = false;
   double support_amplitude = 0, support_pulsation = 0, support_phase = 0;  ///< φ = A sin(ωt + ψ)
   double force_amplitude = 0, force_pulsation = 0, force_phase = 0;        ///< oscillator: F cos(ωt + ψ), N
   bool load_zero = true, load_constant = true;  ///< of the distributed load f(x,t) (N/m; oscillator: N)

@@ -73,8 +73,7 @@ double visit_seconds(const SemiDiscrete& problem, const StepWork& work) {
 
 bool kind_applies(OperatorKind kind, const SemiDiscrete& problem) {
   // The modal form divides by φᵀKφ; the dense eigenproblem is cubic.
-  if (kind == OperatorKind::modal)
-    return problem.dofs() <= 1000 && (problem.space.left_fixed || problem.space.right_fixed);
+  if (kind == OperatorKind::modal) return problem.dofs() <= 1000 && problem.held;
   return true;
 }
 

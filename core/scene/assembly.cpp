@@ -4,20 +4,28 @@
 #include <cassert>
 #include <cmath>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
 namespace ricochet {
 
 SparseMatrix bending_stiffness(const FiniteElementSpace& space, double EI) {
+  return bending_stiffness(space, std::vector<double>(space.elements.size(), EI));
+}
+
+SparseMatrix bending_stiffness(const FiniteElementSpace& space, const std::vector<double>& EI) {
   assert(space.basis == FiniteElementSpace::Basis::hermite);
+  assert(EI.size() == space.elements.size());
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(16 * space.elements.size());
-  for (const auto& element : space.elements) {
-    const double l = element.length, k = EI / (l * l * l);
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const auto& element = space.elements[e];
+    const double l = element.length, phi = element.shear, k = EI[e] / (l * l * l * (1 + phi));
+    const double near = 4 + phi, far = 2 - phi;
     const double local[4][4] = {{12 * k, 6 * l * k, -12 * k, 6 * l * k},
-                                {6 * l * k, 4 * l * l * k, -6 * l * k, 2 * l * l * k},
+                                {6 * l * k, near * l * l * k, -6 * l * k, far * l * l * k},
                                 {-12 * k, -6 * l * k, 12 * k, -6 * l * k},
-                                {6 * l * k, 2 * l * l * k, -6 * l * k, 4 * l * l * k}};
+                                {6 * l * k, far * l * l * k, -6 * l * k, near * l * l * k}};
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < 4; ++b)
         if (element.dof[a] >= 0 && element.dof[b] >= 0)
@@ -70,7 +78,8 @@ Eigen::VectorXd rigid_motion_load(const FiniteElementSpace& space) {
     for (int a = 0; a < space.functions(); ++a)
       if (element.dof[a] >= 0) load[element.dof[a]] += integrals[a];
   }
-  for (const auto& point : space.point_masses) load[point.dof] += point.mass;
+  for (const auto& point : space.point_masses)
+    if (!point.rotation) load[point.dof] += point.mass;
   return load;
 }
 
@@ -99,13 +108,13 @@ std::vector<std::pair<int, double>> row_of(const FiniteElementSpace& space, cons
 std::vector<std::pair<int, double>> displacement_row(const FiniteElementSpace& space, double x) {
   if (space.elements.empty()) return {{0, 1.0}};
   const auto [element, xi] = locate(space, x);
-  return row_of(space, *element, shape_values(space.basis, element->length, xi));
+  return row_of(space, *element, shape_values(space.basis, *element, xi));
 }
 
 std::vector<std::pair<int, double>> strain_row(const FiniteElementSpace& space, double x) {
   if (space.elements.empty()) return {};
   const auto [element, xi] = locate(space, x);
-  return row_of(space, *element, shape_strains(space.basis, element->length, xi));
+  return row_of(space, *element, shape_strains(space.basis, *element, xi));
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteElementSpace& space,
@@ -127,25 +136,8 @@ std::vector<double> node_positions(double length, int elements) {
 
 namespace {
 
-/// Clamped at x = 0, dofs (w_1, w'_1, w_2, w'_2, …): half-bandwidth 3.
 FiniteElementSpace make(const BeamSpec& beam, int elements) {
-  FiniteElementSpace space;
-  space.structure = "beam";
-  space.basis = FiniteElementSpace::Basis::hermite;
-  space.dofs = 2 * elements;
-  space.left_fixed = true;
-  const double density = section_properties(beam.section, beam.young, beam.density).rhoS;
-  const auto nodes = node_positions(beam.length, elements);
-  for (int e = 0; e < elements; ++e) {
-    FiniteElementSpace::Element element;
-    element.left = nodes[e];
-    element.length = beam.length / elements;
-    element.line_density = density;
-    element.dof = {2 * e - 2, 2 * e - 1, 2 * e, 2 * e + 1};
-    if (e == 0) element.dof = {-1, -1, 0, 1};
-    space.elements.push_back(element);
-  }
-  return space;
+  return beam_space(beam, elements);
 }
 
 /// One point mass and no element.

@@ -7,8 +7,11 @@
 /// Set-up pieces that discretise() is made of; nothing here runs while marching.
 namespace ricochet {
 
-/// K_ij = ∫EI φ_i'' φ_j'' dx (n × n, both triangles) for a Hermite space; EI in N m².
+/// K_ij = ∫EI φ_i'' φ_j'' dx (n × n, both triangles) for a Hermite space, EI in N m²; of elements that deform in shear,
+/// ∫EI θ_i' θ_j' + kGA (w_i' − θ_i)(w_j' − θ_j) dx.
 SparseMatrix bending_stiffness(const FiniteElementSpace& space, double EI);
+/// The same with an EI per element.
+SparseMatrix bending_stiffness(const FiniteElementSpace& space, const std::vector<double>& EI);
 
 /// K_ij = ∫EA φ_i' φ_j' dx (n × n, both triangles) for a linear space; EA in N.
 SparseMatrix axial_stiffness(const FiniteElementSpace& space, double EA);
@@ -36,7 +39,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_rows(const FiniteEleme
 /// its right (to its left at the end).
 std::vector<std::pair<int, double>> strain_row(const FiniteElementSpace& space, double x);
 
-/// Positions of the nodes, x_0 = 0 to x_N = L; the last is exactly L.
+/// Positions of the nodes of equal elements, x_0 = 0 to x_N = L; the last is exactly L.
 std::vector<double> node_positions(double length, int elements);
 
 }  // namespace ricochet

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <ricochet/contract/errors.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
 
@@ -16,9 +18,9 @@ void require(bool holds, const std::string& pointer, const std::string& message)
   if (!holds) throw InputError(pointer, message);
 }
 
-void check_structure(const BeamSpec& beam) {
+void check_structure(const BeamSpec& beam, int elements) {
   require_positive(beam.length, "length", "the length", "m");
-  section_properties(beam.section, beam.young, beam.density);
+  check_beam(beam, elements);
   require(
       std::isfinite(beam.damping.stiffness) && beam.damping.stiffness >= 0, "/scene/structure/damping/stiffness",
       fmt::format("the stiffness damping α is {:.6g} s; expected a finite number, 0 or above", beam.damping.stiffness));
@@ -26,7 +28,7 @@ void check_structure(const BeamSpec& beam) {
           fmt::format("the mass damping η is {:.6g} 1/s; expected a finite number, 0 or above", beam.damping.mass));
 }
 
-void check_structure(const OscillatorSpec& oscillator) {
+void check_structure(const OscillatorSpec& oscillator, int) {
   require_positive(oscillator.mass, "mass", "the mass", "kg");
   const auto not_negative = [](double value, const char* key, const char* what, const char* unit) {
     require(std::isfinite(value) && value >= 0, std::string("/scene/structure/") + key,
@@ -41,7 +43,7 @@ void check_structure(const OscillatorSpec& oscillator) {
           "the phase of the force is not finite");
 }
 
-void check_structure(const BarSpec& bar) {
+void check_structure(const BarSpec& bar, int) {
   require_positive(bar.length, "length", "the length", "m");
   require_positive(bar.EA, "EA", "the stiffness EA", "N");
   require_positive(bar.rhoA, "rhoA", "the mass per length ρA", "kg/m");
@@ -74,23 +76,17 @@ std::string load_pointer(std::size_t term, const char* key) {
   return fmt::format("/scene/load/{}/{}", term, key);
 }
 
-bool left_fixed(const SceneSpec& scene) {
-  const auto* bar = std::get_if<BarSpec>(&scene.structure);
-  return bar ? bar->fixed == BarSpec::Fixed::left : std::holds_alternative<BeamSpec>(scene.structure);
-}
-bool right_fixed(const SceneSpec& scene) {
-  const auto* bar = std::get_if<BarSpec>(&scene.structure);
-  return bar && bar->fixed == BarSpec::Fixed::right;
-}
-
 /// Whether something at x can move the structure there.
 bool on_free_part(const SceneSpec& scene, double x) {
-  const double length = structure_length(scene);
-  return (x > 0 || (x == 0 && !left_fixed(scene))) && (x < length || (x == length && !right_fixed(scene)));
+  return x >= 0 && x <= structure_length(scene) && !displacement_held(scene, x);
 }
 std::string free_part(const SceneSpec& scene) {
-  return fmt::format("0 {} x {} {:.6g} m", left_fixed(scene) ? "<" : "≤", right_fixed(scene) ? "<" : "≤",
-                     structure_length(scene));
+  const double length = structure_length(scene);
+  std::string text = fmt::format("0 {} x {} {:.6g} m", displacement_held(scene, 0) ? "<" : "≤",
+                                 displacement_held(scene, length) ? "<" : "≤", length);
+  for (const HeldPlace& place : held_places(scene))
+    if (place.displacement && place.x > 0 && place.x < length) return text + ", apart from the supports";
+  return text;
 }
 
 /// Every term acts somewhere, and is finite there at t = 0.
@@ -105,7 +101,7 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
             "missing; expected where the force acts, x in m");
     if (term.at) {
       const double x = *term.at;
-      const bool held = (x == 0 && left_fixed(scene)) || (x == structure_length(scene) && right_fixed(scene));
+      const bool held = displacement_held(scene, x);
       require(on_free_part(scene, x), load_pointer(k, "at"),
               fmt::format("a force at x = {:.6g} m {}; expected {}", x,
                           held ? "would act where the structure is held" : "is beyond the " + space.structure,
@@ -119,6 +115,10 @@ void check_load(const SceneSpec& scene, const FiniteElementSpace& space) {
 }
 
 void check_positions(const SceneSpec& scene) {
+  const bool touched = scene.stops.lower || scene.stops.upper;
+  require(!touched || scene.stops.place != StopsSpec::Place::tip || structure_length(scene) == 0 ||
+              !displacement_held(scene, 0) || !displacement_held(scene, structure_length(scene)),
+          "/scene/stops/at", "the beam is held at both ends and has no tip; expected a list of positions x");
   if (scene.stops.place != StopsSpec::Place::positions) return;
   const auto& positions = scene.stops.positions;
   const double length = structure_length(scene);
@@ -144,7 +144,8 @@ std::vector<double> touchable(const SceneSpec& scene, int elements) {
   if (x.empty() || scene.stops.place != StopsSpec::Place::nodes || structure_length(scene) == 0) return x;
   constexpr int fine = 200;
   const auto between = node_positions(structure_length(scene), fine);
-  x.insert(x.end(), between.begin() + (left_fixed(scene) ? 1 : 0), between.end() - (right_fixed(scene) ? 1 : 0));
+  std::copy_if(between.begin(), between.end(), std::back_inserter(x),
+               [&](double place) { return !displacement_held(scene, place); });
   std::sort(x.begin(), x.end());
   return x;
 }
@@ -167,11 +168,10 @@ void check_order(const std::vector<double>& x, const Eigen::VectorXd& lower, con
   }
 }
 
-/// With a stop along the whole structure the clamp lies between the stops too, wherever the support takes it; where a
-/// law lets points pass, the clamp may as well.
-void check_clamp(const SceneSpec& scene, const ForceBeyond& beyond) {
-  if (scene.stops.place != StopsSpec::Place::nodes || (!left_fixed(scene) && !right_fixed(scene))) return;
-  const double clamp = left_fixed(scene) ? 0 : structure_length(scene);
+/// With a stop along the whole structure what is held lies between the stops too, wherever the support takes it; where
+/// a law lets points pass, it may as well.
+void check_held(const SceneSpec& scene, const HeldPlace& place, const ForceBeyond& beyond) {
+  const double clamp = place.x;
   const double lower = scene.stops.lower ? (*scene.stops.lower)(clamp) : -infinity;
   const double upper = scene.stops.upper ? (*scene.stops.upper)(clamp) : infinity;
   const bool moves = scene.support.pulsation != 0;
@@ -184,13 +184,13 @@ void check_clamp(const SceneSpec& scene, const ForceBeyond& beyond) {
   const double stop = above ? upper : lower, reached = above ? highest : lowest;
   if (scene.support.amplitude == 0)
     throw BeyondStop(fmt::format("/scene/stops/{}", side),
-                     fmt::format("the {} stop at x = {:.6g} is at {:.6g} m, beyond the clamp at 0 m; expected lower "
+                     fmt::format("the {} stop at x = {:.6g} is at {:.6g} m, beyond {} at 0 m; expected lower "
                                  "≤ 0 ≤ upper there",
-                                 side, clamp, stop));
+                                 side, clamp, stop, place.name));
   throw BeyondStop("/scene/support/amplitude",
-                   fmt::format("the support takes the clamp to {:.6g} m, through the {} stop at {:.6g} m (x = {:.6g}); "
+                   fmt::format("the support takes {} to {:.6g} m, through the {} stop at {:.6g} m (x = {:.6g}); "
                                "expected an amplitude of at most {:.6g} m",
-                               reached, side, stop, clamp, std::max(0.0, std::min(-lower, upper))));
+                               place.name, reached, side, stop, clamp, std::max(0.0, std::min(-lower, upper))));
 }
 
 }  // namespace
@@ -201,18 +201,58 @@ double structure_length(const SceneSpec& scene) {
   return 0;
 }
 
+std::vector<HeldPlace> held_places(const SceneSpec& scene) {
+  std::vector<HeldPlace> places;
+  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) {
+    for (const BeamSupport& support : supports_of(*beam))
+      if (support.holds_displacement() || support.holds_rotation())
+        places.push_back({support.x, support.holds_displacement(), support.holds_rotation(),
+                          beam->supports ? "the support " + support.name : "the clamp"});
+  } else if (const auto* bar = std::get_if<BarSpec>(&scene.structure); bar && bar->fixed != BarSpec::Fixed::none) {
+    places.push_back({bar->fixed == BarSpec::Fixed::left ? 0 : bar->length, true, false, "the clamp"});
+  }
+  return places;
+}
+
+bool displacement_held(const SceneSpec& scene, double x) {
+  const double rounding = one_place * structure_length(scene);
+  const auto* beam = std::get_if<BeamSpec>(&scene.structure);
+  for (const HeldPlace& place : held_places(scene))
+    if (place.displacement && (beam && beam->supports ? std::abs(place.x - x) <= rounding : place.x == x)) return true;
+  return false;
+}
+
 double tip_position(const SceneSpec& scene) {
   const auto* bar = std::get_if<BarSpec>(&scene.structure);
-  return bar && bar->fixed != BarSpec::Fixed::left ? 0 : structure_length(scene);
+  if (bar) return bar->fixed != BarSpec::Fixed::left ? 0 : bar->length;
+  const double length = structure_length(scene);
+  if (length == 0 || !displacement_held(scene, length)) return length;
+  if (!displacement_held(scene, 0)) return 0;
+  std::vector<double> held;
+  for (const HeldPlace& place : held_places(scene))
+    if (place.displacement) held.push_back(place.x);
+  std::sort(held.begin(), held.end());
+  double middle = 0, longest = 0;
+  for (std::size_t i = 0; i + 1 < held.size(); ++i)
+    if (const double span = held[i + 1] - held[i]; span > (1 + one_place) * longest) {
+      longest = span;
+      middle = held[i] + span / 2;
+    }
+  return middle;
+}
+
+std::vector<double> mesh_nodes(const SceneSpec& scene, int elements) {
+  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure)) return beam_nodes(*beam, elements);
+  if (structure_length(scene) == 0) return {};
+  return node_positions(structure_length(scene), elements);
 }
 
 std::vector<double> contact_positions(const SceneSpec& scene, int elements) {
   if (!scene.stops.lower && !scene.stops.upper) return {};
   if (scene.stops.place == StopsSpec::Place::tip || structure_length(scene) == 0) return {tip_position(scene)};
   if (scene.stops.place == StopsSpec::Place::positions) return scene.stops.positions;
-  auto nodes = node_positions(structure_length(scene), elements);
-  if (right_fixed(scene)) nodes.pop_back();
-  if (left_fixed(scene)) nodes.erase(nodes.begin());
+  std::vector<double> nodes = mesh_nodes(scene, elements);
+  std::erase_if(nodes, [&](double x) { return displacement_held(scene, x); });
   return nodes;
 }
 
@@ -255,7 +295,7 @@ Eigen::VectorXd stop_values(const std::optional<Formula>& stop, const std::vecto
 
 void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyond) {
   const SceneSpec scene = shared;  // formulas keep their variables inside: evaluate our own copies
-  std::visit([](const auto& structure) { check_structure(structure); }, scene.structure);
+  std::visit([&](const auto& structure) { check_structure(structure, elements); }, scene.structure);
   const auto space = make_space(scene.structure, elements);
   check_support(scene.support);
   check_magnitudes(scene, elements);
@@ -264,17 +304,23 @@ void check_scene(const SceneSpec& shared, int elements, const ForceBeyond& beyon
   if (const auto* bar = std::get_if<BarSpec>(&scene.structure))
     require(bar->fixed != BarSpec::Fixed::none || scene.support.amplitude == 0, "/scene/support/amplitude",
             "a bar with two free ends has no clamp that could move; expected an amplitude of 0");
+  if (const auto* beam = std::get_if<BeamSpec>(&scene.structure))
+    require(
+        scene.support.amplitude == 0 || !rigid_freedom(*beam).translates, "/scene/support/amplitude",
+        "no support of the beam would move it; expected an amplitude of 0, or a clamped, pinned or elastic support");
 
   const auto x = touchable(scene, elements);
   const auto lower = stop_values(scene.stops.lower, x, -infinity);
   const auto upper = stop_values(scene.stops.upper, x, infinity);
   check_order(x, lower, upper, beyond);
-  check_clamp(scene, beyond);
+  if (scene.stops.place == StopsSpec::Place::nodes)
+    for (const HeldPlace& place : held_places(scene))
+      if (place.displacement) check_held(scene, place, beyond);
   Eigen::VectorXd start(static_cast<Eigen::Index>(x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) start[static_cast<Eigen::Index>(i)] = scene.initial.displacement(x[i]);
   check_between_stops(x, start, lower, upper, "/scene/initial/displacement", "the initial displacement", beyond);
 
-  for (double node : node_positions(structure_length(scene), elements)) {
+  for (double node : mesh_nodes(scene, elements)) {
     scene.initial.displacement(node);
     scene.initial.velocity(node);
   }
@@ -288,74 +334,6 @@ void require_positive(double value, const char* key, const char* what, const cha
   if (std::isfinite(value) && value > 0) return;
   throw InputError(fmt::format("/scene/structure/{}", key),
                    fmt::format("{} is {:.6g} {}; expected a finite number above 0", what, value, unit));
-}
-
-namespace {
-
-// Squares of coefficients are numbers too: norms, energies and pulsations are made of them.
-constexpr double smallest = 1e-150, largest = 1e150;
-
-void representable(double value, const std::string& pointer, const char* what, const char* unit) {
-  const double size = std::abs(value);
-  if (value == 0 || (size >= smallest && size <= largest)) return;
-  throw InputError(pointer, fmt::format("{} comes out as {:.6g} {}; expected a size between {:g} and {:g}", what, value,
-                                        unit, smallest, largest));
-}
-
-// As representable(), and not zero: a product of positive numbers that has none left is no number of the scene's.
-void not_zero(double value, const std::string& pointer, const char* what, const char* unit) {
-  if (value == 0)
-    throw InputError(pointer, fmt::format("{} comes out as 0 {}; expected a size between {:g} and {:g}", what, unit,
-                                          smallest, largest));
-  representable(value, pointer, what, unit);
-}
-
-void check_damping(const Damping& damping, double stiffness, double mass) {
-  representable(damping.stiffness * stiffness, "/scene/structure/damping/stiffness", "the damping of an element α·k",
-                "N s/m");
-  representable(damping.mass * mass, "/scene/structure/damping/mass", "the damping of an element η·m", "N s/m");
-}
-
-// An element's stiffness and mass, and the pulsation of the one on the other.
-void check_element(const Damping& damping, double stiffness, double mass) {
-  const std::string length = "/scene/structure/length";
-  not_zero(stiffness, length, "the stiffness of an element", "N/m");
-  not_zero(mass, length, "the mass of an element", "kg");
-  not_zero(stiffness / mass, length, "the squared pulsation of an element", "1/s²");
-  check_damping(damping, stiffness, mass);
-}
-
-void check(const BeamSpec& beam, double length) {
-  const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
-  not_zero(section.EI, "/scene/structure/section", "the bending stiffness EI", "N m²");
-  not_zero(section.rhoS, "/scene/structure/section", "the line density ρS", "kg/m");
-  not_zero(section.EI / length, "/scene/structure/length", "the rotational stiffness of an element", "N m");
-  not_zero(section.rhoS * length * length * length, "/scene/structure/length", "the rotational inertia of an element",
-           "kg m²");
-  check_element(beam.damping, section.EI / length / length / length, section.rhoS * length);
-}
-
-void check(const BarSpec& bar, double length) {
-  check_element(bar.damping, bar.EA / length, bar.rhoA * length);
-}
-
-void check(const OscillatorSpec& oscillator, double) {
-  not_zero(oscillator.mass, "/scene/structure/mass", "the mass", "kg");
-  representable(oscillator.stiffness, "/scene/structure/stiffness", "the stiffness", "N/m");
-  representable(oscillator.stiffness / oscillator.mass, "/scene/structure/stiffness", "the squared pulsation k/m",
-                "1/s²");
-  representable(oscillator.damping / oscillator.mass, "/scene/structure/damping", "the rate of damping c/m", "1/s");
-}
-
-}  // namespace
-
-void check_magnitudes(const SceneSpec& scene, int elements) {
-  const double length = structure_length(scene) / elements;
-  std::visit([&](const auto& structure) { check(structure, length); }, scene.structure);
-  const double w = scene.support.pulsation;
-  representable(scene.support.amplitude, "/scene/support/amplitude", "the amplitude of the support", "m");
-  representable(w, "/scene/support/pulsation", "the pulsation of the support", "rad/s");
-  representable(scene.support.amplitude * w * w, "/scene/support/pulsation", "the acceleration of the support", "m/s²");
 }
 
 }  // namespace ricochet

@@ -13,8 +13,23 @@ namespace ricochet {
 /// Length of the structure, m; 0 for an oscillator.
 double structure_length(const SceneSpec& scene);
 
-/// Where the tip is, m: the free end of a beam or bar.
+/// Where the displacement shown to people is, m: the free end of a beam or bar, at L before at 0; of a beam held at
+/// both, the middle of its longest span.
 double tip_position(const SceneSpec& scene);
+
+/// A place of the structure whose displacement or slope is imposed, x in m; `name` for sentences ("the clamp").
+struct HeldPlace {
+  double x = 0;
+  bool displacement = true, rotation = false;
+  std::string name;
+};
+/// Those of a beam's supports, of a bar's fixed end.
+std::vector<HeldPlace> held_places(const SceneSpec& scene);
+/// Whether the displacement at x is imposed, to 1e-9 of the length.
+bool displacement_held(const SceneSpec& scene, double x);
+
+/// Positions of the nodes, from 0 to exactly L; empty without a mesh.
+std::vector<double> mesh_nodes(const SceneSpec& scene, int elements);
 
 /// Positions of the contact points: free nodes, the tip, or the positions given; empty without stops.
 std::vector<double> contact_positions(const SceneSpec& scene, int elements);

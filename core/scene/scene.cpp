@@ -49,18 +49,26 @@ Moments rectangle(const Section& section) {
 
 }  // namespace
 
+double shear_factor(const Section& section, double poisson) {
+  if (section.type == Section::Type::rectangle) return 10 * (1 + poisson) / (12 + 11 * poisson);
+  if (section.type == Section::Type::circle) return 6 * (1 + poisson) / (7 + 6 * poisson);
+  const double inner = 1 - 2 * section.wall / section.outer_diameter, square = inner * inner,
+               thick = (1 + square) * (1 + square);
+  return 6 * (1 + poisson) * thick / ((7 + 6 * poisson) * thick + (20 + 12 * poisson) * square);
+}
+
 SectionProperties section_properties(const Section& section, double young, double density) {
   if (section.type == Section::Type::given) {
     require_positive(section.EI, "section/EI", "the bending stiffness EI", "N m²");
     require_positive(section.rhoS, "section/rhoS", "the line density ρS", "kg/m");
-    return {section.EI, section.rhoS};
+    return {section.EI, section.rhoS, 0, 0};
   }
   require_positive(young, "young", "Young's modulus", "Pa");
   require_positive(density, "density", "the density", "kg/m³");
   const Moments moments = section.type == Section::Type::tube     ? tube(section)
                           : section.type == Section::Type::circle ? circle(section)
                                                                   : rectangle(section);
-  return {young * moments.inertia, density * moments.area};
+  return {young * moments.inertia, density * moments.area, moments.inertia, moments.area};
 }
 
 namespace {
@@ -101,7 +109,7 @@ DistributedLoad::DistributedLoad(const LoadSpec& load, const FiniteElementSpace&
     auto& weights = weights_.emplace_back();
     for (std::size_t g = 0; g < gauss.size(); ++g) {
       points_.push_back(element.left + gauss[g].xi * element.length);
-      const auto phi = shape_values(space.basis, element.length, gauss[g].xi);
+      const auto phi = shape_values(space.basis, element, gauss[g].xi);
       for (std::size_t a = 0; a < 4; ++a) weights[4 * g + a] = gauss[g].weight * element.length * phi[a];
     }
   }

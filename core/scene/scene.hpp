@@ -21,11 +21,15 @@ struct Section {
 };
 
 struct SectionProperties {
-  double EI = 0;    ///< N m²
-  double rhoS = 0;  ///< kg/m
+  double EI = 0;        ///< N m²
+  double rhoS = 0;      ///< kg/m
+  double I = 0, S = 0;  ///< m⁴, m²; 0 of a given section
 };
 /// tube: I = π(D⁴ − d⁴)/64, S = π(D² − d²)/4, d = D − 2·wall; circle: I = πD⁴/64; rectangle: I = b h³/12.
 SectionProperties section_properties(const Section& section, double young, double density);
+/// k of kGA (Cowper 1966), m = d/D: rectangle 10(1+ν)/(12+11ν); circle 6(1+ν)/(7+6ν); tube
+/// 6(1+ν)(1+m²)²/((7+6ν)(1+m²)² + (20+12ν)m²).
+double shear_factor(const Section& section, double poisson);
 
 /// C = α K + η M.
 struct Damping {
@@ -33,11 +37,55 @@ struct Damping {
   double mass = 0;       ///< η, 1/s
 };
 
+/// What holds a beam at x. An elastic support stands on springs, whose ground end is what it holds.
+struct BeamSupport {
+  enum class Type { clamped, pinned, sliding, elastic };  ///< w = w' = 0; w = 0; w' = 0; springs
+  std::string name;
+  double x = 0;  ///< m, 0 to L
+  Type type = Type::clamped;
+  double stiffness = 0;  ///< elastic: N/m, against w
+  double rotation = 0;   ///< elastic: N m/rad, against w'
+
+  bool holds_displacement() const { return type == Type::clamped || type == Type::pinned; }
+  bool holds_rotation() const { return type == Type::clamped || type == Type::sliding; }
+  /// Whether a motion of the support is felt: by what it holds, or through a spring.
+  bool moves_beam() const { return holds_displacement() || stiffness > 0; }
+};
+
+/// A length of a beam with one section: from where the one before ends (or 0) to `to`.
+struct BeamPart {
+  double to = 0;  ///< m
+  Section section;
+  double young = 0, density = 0;
+};
+
+/// A point mass on a beam.
+struct BeamMass {
+  double x = 0;        ///< m, 0 to L
+  double mass = 0;     ///< kg
+  double inertia = 0;  ///< kg m², against rotation
+};
+
+/// Shear deformation (Timoshenko), G = E/(2(1+ν)).
+struct BeamShear {
+  double poisson = 0;            ///< ν
+  std::optional<double> factor;  ///< k of kGA; none: shear_factor()
+  bool rotary = false;           ///< whether cross-sections have inertia against rotation, ρI
+};
+
+/// A beam in bending, ρS w_tt + (EI w_xx)_xx − T w_xx + k_f w = f, each term of it with C = αK + ηM.
 struct BeamSpec {
   double length = 1;
   double young = 0, density = 0;
   Section section;
   Damping damping;
+  std::optional<std::vector<BeamSupport>> supports;  ///< none: clamped at 0, free at L; an end without one is free
+  std::vector<BeamPart> sections;                    ///< from 0 upwards to L; empty: `section` all along
+  double added_mass = 0;                             ///< kg/m, of what moves with it
+  double tension = 0;                                ///< T, N; below 0 it compresses
+  double foundation = 0;                             ///< k_f, N/m²
+  std::vector<BeamMass> masses;
+  std::optional<BeamShear> shear;  ///< none: Euler–Bernoulli
 };
 
 /// One mass on a spring and a dashpot, m w'' + c w' + k w = F cos(ωt + ψ) + load(t) − m φ''. Its only point is the tip.

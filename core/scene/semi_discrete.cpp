@@ -6,6 +6,7 @@
 #include <ricochet/contract/contact_law.hpp>
 #include <ricochet/kernels/floating_point.hpp>
 #include <ricochet/scene/assembly.hpp>
+#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <ricochet/scene/massless_part.hpp>
 #include <ricochet/scene/semi_discrete.hpp>
@@ -52,11 +53,11 @@ Eigen::VectorXd load_rate_at_start(const DistributedLoad& load, int dofs) {
   return rate;
 }
 
-void note_clamp(SemiDiscrete& problem, const char* what, const char* unit, double formula, double imposed,
-                double rounding) {
+void note_held(SemiDiscrete& problem, const char* what, const char* place, const char* unit, double formula,
+               double imposed, double rounding) {
   if (std::abs(formula - imposed) <= rounding) return;
-  problem.notes.push_back(fmt::format("the initial {} at the clamp is {:.6g} {}; the clamp imposes {:.6g} {}", what,
-                                      formula, unit, imposed, unit));
+  problem.notes.push_back(fmt::format("the initial {} at {} is {:.6g} {}; {} imposes {:.6g} {}", what, place, formula,
+                                      unit, place, imposed, unit));
 }
 
 Eigen::VectorXd load_at_start(const SemiDiscrete& problem) {
@@ -83,19 +84,23 @@ void interpolate_initial(const SceneSpec& scene, SemiDiscrete& problem) {
     problem.velocity[row] =
         slope ? initial.velocity.slope(std::min(x, length), 0, length) : initial.velocity(x) - support.velocity;
   }
-  if (!problem.space.left_fixed && !problem.space.right_fixed) return;
-  const double clamp = problem.space.left_fixed ? 0 : length;
-
+  const std::vector<HeldPlace> held = held_places(scene);
+  if (held.empty()) return;
   const double size = problem.position.lpNorm<Eigen::Infinity>() + std::abs(support.position);
   const double rate = problem.velocity.lpNorm<Eigen::Infinity>() + std::abs(support.velocity);
   // Values are rounded to 1e-16; slopes come from a stencil of length/256.
-  note_clamp(problem, "displacement", "m", scene.initial.displacement(clamp), support.position, 1e-12 * size);
-  note_clamp(problem, "velocity", "m/s", scene.initial.velocity(clamp), support.velocity, 1e-12 * rate);
-  if (problem.space.basis != FiniteElementSpace::Basis::hermite) return;
-  note_clamp(problem, "slope", "rad", scene.initial.displacement.slope(0, 0, length), 0,
-             1e-10 * (size + size / length));
-  note_clamp(problem, "rate of slope", "rad/s", scene.initial.velocity.slope(0, 0, length), 0,
-             1e-10 * (rate + rate / length));
+  for (const auto& [x, displacement, rotation, name] : held) {
+    const char* at = name.c_str();
+    if (displacement) {
+      note_held(problem, "displacement", at, "m", scene.initial.displacement(x), support.position, 1e-12 * size);
+      note_held(problem, "velocity", at, "m/s", scene.initial.velocity(x), support.velocity, 1e-12 * rate);
+    }
+    if (!rotation) continue;
+    note_held(problem, "slope", at, "rad", scene.initial.displacement.slope(x, 0, length), 0,
+              1e-10 * (size + size / length));
+    note_held(problem, "rate of slope", at, "rad/s", scene.initial.velocity.slope(x, 0, length), 0,
+              1e-10 * (rate + rate / length));
+  }
 }
 
 void measure_mass_constraint(SemiDiscrete& problem, const Eigen::VectorXd& pushed) {
@@ -133,9 +138,40 @@ void project_on_mass_constraint(SemiDiscrete& problem) {
 
 namespace {
 
+// One support that holds the structure as a whole: its static mode is the translation.
+void hold_rigidly(SemiDiscrete& problem, const char* name) {
+  problem.supports = {name};
+  problem.static_modes = Eigen::MatrixXd::Zero(problem.space.dofs, 1);
+  const auto places = dof_places(problem.space);
+  for (Eigen::Index i = 0; i < problem.space.dofs; ++i)
+    problem.static_modes(i, 0) = places[static_cast<std::size_t>(i)].slope ? 0 : 1;
+  problem.support_loads = rigid_motion_load(problem.space);
+}
+
+void add_supports(const BeamSpec& beam, int elements, SemiDiscrete& problem) {
+  problem.held = rigid_freedom(beam).held();
+  if (!beam.supports && beam.foundation == 0) return hold_rigidly(problem, "clamp");
+  StaticModes found = static_modes(beam, elements);
+  problem.supports = std::move(found.supports);
+  problem.static_modes = std::move(found.modes);
+  problem.support_loads = std::move(found.loads);
+}
+void add_supports(const BarSpec& bar, int, SemiDiscrete& problem) {
+  problem.held = bar.fixed != BarSpec::Fixed::none;
+  if (problem.held) return hold_rigidly(problem, "clamp");
+  problem.static_modes.resize(problem.space.dofs, 0);
+  problem.support_loads.resize(problem.space.dofs, 0);
+}
+void add_supports(const OscillatorSpec&, int, SemiDiscrete& problem) {
+  problem.supports = {"base"};
+  problem.static_modes = Eigen::MatrixXd::Ones(1, 1);
+  problem.support_loads = rigid_motion_load(problem.space);
+}
+
+// Of several sections, the stiffest says how stiff the beam is.
 void add_stiffness(const BeamSpec& beam, SemiDiscrete& problem) {
-  problem.rigidity = section_properties(beam.section, beam.young, beam.density).EI;
-  problem.stiffness = bending_stiffness(problem.space, problem.rigidity);
+  for (const UniformPart& part : uniform_parts(beam)) problem.rigidity = std::max(problem.rigidity, part.section.EI);
+  problem.stiffness = beam_stiffness(beam, problem.space);
   problem.damping = beam.damping;
 }
 void add_stiffness(const BarSpec& bar, SemiDiscrete& problem) {
@@ -245,6 +281,7 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
   std::visit([&](const auto& structure) { add_stiffness(structure, problem); }, scene.structure);
   problem.support = scene.support;
   problem.support_shape = rigid_motion_load(problem.space);
+  std::visit([&](const auto& structure) { add_supports(structure, elements, problem); }, scene.structure);
   problem.load = std::make_shared<const DistributedLoad>(whole_load(scene), problem.space);
 
   problem.lower = stop_values(scene.stops.lower, problem.contact_x, -infinity);
@@ -255,6 +292,9 @@ SemiDiscreteOrRefusal discretise(const SceneSpec& shared, int elements, const Ma
     if (law_decides) beyond = force_beyond(*law, *parameters);
   }
 
+  if (tip_position(scene) != structure_length(scene) && std::holds_alternative<BeamSpec>(scene.structure))
+    problem.notes.push_back(
+        fmt::format("the displacement shown as that of the tip is at x = {:.6g} m", tip_position(scene)));
   interpolate_initial(scene, problem);
   check_start(problem, "/scene/initial/displacement", "the initial displacement", beyond);
   Eigen::VectorXd pushed;

@@ -54,8 +54,8 @@ class DistributedLoad {
 
 /// The semi-discrete problem for w = u − φ:
 ///     M q'' + C q' + K q = F(t) − φ''(t) s + Hᵀ p,     lower − φ(t) ≤ H q ≤ upper − φ(t),     C = αK + ηM
-/// with s_i = ∫ρS φ_i (whatever the mass strategy). Of a contact law that changes the problem, K is the K' and H the G
-/// of ContactStructure; `contact` stays H.
+/// with s_i = ∫ρS φ_i (whatever the mass strategy). φ moves all supports and the ground of a foundation together. Of a
+/// contact law that changes the problem, K is the K' and H the G of ContactStructure; `contact` stays H.
 struct SemiDiscrete {
   FiniteElementSpace space;
   Inertia inertia;
@@ -64,6 +64,16 @@ struct SemiDiscrete {
   Damping damping;         ///< α, η
   SupportSpec support;
   Eigen::VectorXd support_shape;  ///< s (kg)
+  /// What holds the structure, by name: the supports of a beam, the clamp of a beam or bar, the base of an oscillator.
+  std::vector<std::string> supports;
+  /// ψ_j (n × r), K ψ_j = −K_fs e_j: the displacement of the structure at rest while support j alone is moved by 1. Its
+  /// columns sum to the rigid translation, unless a foundation, whose ground stays at rest, holds the beam too.
+  Eigen::MatrixXd static_modes;
+  /// s_j = M ψ_j + M_fs e_j (n × r, kg) with the consistent mass whatever the strategy: support j accelerating by a
+  /// loads the displacements relative to ψ_j by −a s_j.
+  Eigen::MatrixXd support_loads;
+  /// Whether nothing of the structure can move rigidly, so that K is positive definite; false of an oscillator.
+  bool held = false;
   std::shared_ptr<const DistributedLoad> load;
   SparseRows contact;                                ///< H, m × n: displacements of the contact points
   SparseRows law_rows;                               ///< G, where the law changed the problem; else empty
@@ -88,7 +98,8 @@ struct SemiDiscrete {
 
 using SemiDiscreteOrRefusal = std::variant<SemiDiscrete, Refusal>;
 
-/// The displacement space of the structure on a uniform mesh of `elements` elements, without contact dofs.
+/// The displacement space of the structure without contact dofs, on `elements` equal elements; of a beam with supports,
+/// sections or masses between its ends, on those of beam_intervals().
 FiniteElementSpace make_space(const StructureSpec& structure, int elements);
 
 /// Scene × mesh × mass strategy → matrices. Throws InputError with JSON pointers into the scene ("/scene/stops/lower",

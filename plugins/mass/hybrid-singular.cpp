@@ -27,6 +27,7 @@ class HybridSingular : public MassStrategy {
     if (space.elements.empty())
       return Refusal{"the hybrid-singular mass needs elements to spread velocities over, and this " + space.structure +
                      " has none: use the mass consistent or lumped"};
+    if (auto refusal = refuse_rotary_inertia(space)) return *refusal;
     const bool hermite = space.basis == FiniteElementSpace::Basis::hermite;
     const int elements = static_cast<int>(space.elements.size());
     // The number of the velocity at each node.
@@ -48,7 +49,7 @@ class HybridSingular : public MassStrategy {
                        " whose two nodes touch a stop or are fixed: leave a free node between them, or use the mass "
                        "consistent"};
       for (const auto& [xi, weight] : gauss_points()) {
-        const auto phi = shape_values(space.basis, element.length, xi);
+        const auto phi = shape_values(space.basis, element, xi);
         const std::array<double, 2> dual{2 - 3 * xi, 3 * xi - 1};
         const std::array<double, 2> hat{touched[e + 1] ? 1 : 1 - xi, touched[e] ? 1 : xi};
         const double length = weight * element.length;

@@ -9,6 +9,7 @@ class Lumped : public MassStrategy {
   explicit Lumped(bool rotations) : rotations_(rotations) {}
 
   InertiaOrRefusal build(const FiniteElementSpace& space) const override {
+    if (auto refusal = refuse_rotary_inertia(space); refusal && !rotations_) return *refusal;
     return diagonal_inertia(lumped_diagonal(space, rotations_));
   }
 

@@ -4,9 +4,19 @@
 namespace ricochet {
 
 /// What one end of an element carries, Hinton, Rock and Zienkiewicz (1976): half the element's mass for a translation;
-/// for the rotation of a Hermite element the consistent diagonal ρSℓ(156, 4ℓ², 156, 4ℓ²)/420 scaled alike, ρSℓ³/78.
+/// for the rotation of a Hermite element the consistent diagonal ρSℓ(156, 4ℓ², 156, 4ℓ²)/420 scaled alike, ρSℓ³/78;
+/// with shear or rotary inertia, their consistent diagonal scaled alike.
 inline double lumped_share(const FiniteElementSpace& space, const FiniteElementSpace::Element& element, int function) {
   const double mass = element.line_density * element.length;
+  if (element.shear != 0 || element.rotary != 0) {
+    FiniteElementSpace alone;
+    alone.basis = space.basis;
+    alone.dofs = 4;
+    alone.elements = {element};
+    alone.elements.front().dof = {0, 1, 2, 3};
+    const Eigen::VectorXd diagonal = consistent_mass(alone).diagonal();
+    return mass * diagonal[function] / (diagonal[0] + diagonal[2]);
+  }
   const bool rotation = space.basis == FiniteElementSpace::Basis::hermite && function % 2 == 1;
   return rotation ? mass * element.length * element.length / 78 : mass / 2;
 }

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <ricochet/contract/plugin.hpp>
 #include <ricochet/kernels/dense_solvers.hpp>
 #include <ricochet/kernels/sparse_ldlt.hpp>
-#include <ricochet/contract/plugin.hpp>
 
 namespace {
 
@@ -155,7 +155,10 @@ class Projected : public MassStrategy {
     Inertia inertia;
     inertia.mass = consistent_mass(bare);
     const RigidMotions rigid(space);
-    const double length = space.elements.front().length, reach = reach_ > 0 ? reach_ * length : INFINITY;
+    // Where elements differ, `reach` counts the longest.
+    double length = 0;
+    for (const auto& element : space.elements) length = std::max(length, element.length);
+    const double reach = reach_ > 0 ? reach_ * length : INFINITY;
     for (const std::vector<int>& group : groups(space.contact_dofs, rigid, reach))
       if (!move_mass(inertia.mass, rigid, group, reach))
         return Refusal{"no dof near the contact points of this " + space.structure +

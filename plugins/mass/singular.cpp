@@ -26,33 +26,40 @@ class Singular : public MassStrategy {
     if (continuous_ && space.basis == FiniteElementSpace::Basis::linear)
       return Refusal{"velocities P1 are the displacement space of this " + space.structure +
                      ", whose mass would be the consistent one: use velocity P0, or the mass consistent"};
-    return continuous_ ? factored(space) : assembled(space);
+    if (auto refusal = refuse_rotary_inertia(space)) return *refusal;
+    if (continuous_) return factored(space);
+    return assembled(space);
   }
 
  private:
   /// P1: hat functions at the nodes, without those where the displacement is imposed. C_v⁻¹ is full: M stays in
   /// factors.
-  static Inertia factored(const FiniteElementSpace& space) {
+  static InertiaOrRefusal factored(const FiniteElementSpace& space) {
     const int elements = static_cast<int>(space.elements.size());
-    const int first = space.left_fixed ? 1 : 0, last = space.right_fixed ? elements - 1 : elements;
-    const int points = static_cast<int>(space.point_masses.size()), velocities = last - first + 1;
+    const int points = static_cast<int>(space.point_masses.size());
+    std::vector<int> number(static_cast<std::size_t>(elements) + 1, -1);
+    int velocities = 0;
+    for (int node = 0; node <= elements; ++node)
+      if ((node < elements ? space.elements[node].dof[0] : space.elements.back().dof[2]) >= 0)
+        number[node] = velocities++;
     Triplets coupling, velocity_mass;
     for (int e = 0; e < elements; ++e) {
       const auto& element = space.elements[e];
       const double mass = element.line_density * element.length;
+      if (number[e] < 0 && number[e + 1] < 0)
+        return Refusal{"no velocity P1 is left on an element of this " + space.structure +
+                       " whose two nodes are held: use more elements, velocity P0, or the mass consistent"};
       for (int end = 0; end < 2; ++end) {
-        const int row = e + end - first;
-        if (row < 0 || row >= velocities) continue;
-        for (int other = 0; other < 2; ++other) {
-          const int column = e + other - first;
-          if (column >= 0 && column < velocities)
+        const int row = number[e + end];
+        if (row < 0) continue;
+        for (int other = 0; other < 2; ++other)
+          if (const int column = number[e + other]; column >= 0)
             velocity_mass.emplace_back(row, column, mass / (end == other ? 3 : 6));
-        }
         for (int a = 0; a < space.functions(); ++a) {
           if (element.dof[a] < 0) continue;
           double integral = 0;
           for (const auto& [xi, weight] : gauss_points())
-            integral += weight * (end == 0 ? 1 - xi : xi) * shape_values(space.basis, element.length, xi)[a];
+            integral += weight * (end == 0 ? 1 - xi : xi) * shape_values(space.basis, element, xi)[a];
           coupling.emplace_back(row, element.dof[a], mass * integral);
         }
       }
@@ -77,8 +84,7 @@ class Singular : public MassStrategy {
       const double weight_of_element = element.line_density * element.length;
       std::array<double, 4> mean{};
       for (const auto& [xi, weight] : gauss_points())
-        for (int a = 0; a < space.functions(); ++a)
-          mean[a] += weight * shape_values(space.basis, element.length, xi)[a];
+        for (int a = 0; a < space.functions(); ++a) mean[a] += weight * shape_values(space.basis, element, xi)[a];
       for (int a = 0; a < space.functions(); ++a) {
         if (element.dof[a] < 0) continue;
         coupling.emplace_back(e, element.dof[a], weight_of_element * mean[a]);

@@ -68,7 +68,7 @@ std::string type_of(const Field& field) {
     case Field::Form::object:
       return "object";
     case Field::Form::objects:
-      return fmt::format("list of {} objects", field.count);
+      return field.count == 0 ? "list of objects" : fmt::format("list of {} objects", field.count);
     case Field::Form::methods:
       return "method, or a list";
     case Field::Form::numbers:
@@ -85,6 +85,7 @@ std::string type_of(const Field& field) {
 
 std::string default_of(const Field& field) {
   constexpr std::size_t longest = 30;
+  if (!field.unless.empty()) return "or " + field.unless;
   if (field.required()) return "required";
   const std::string text = plain(*field.fallback);
   return text.size() > longest ? "see below" : text;

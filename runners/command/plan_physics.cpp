@@ -110,6 +110,7 @@ std::string structure_text(const StudyCase& one, const std::vector<double>& step
   text += std::holds_alternative<OscillatorSpec>(one.scene.structure)
               ? "\n"
               : fmt::format("; modes with mass {} on {} elements\n", one.mass.name, physics->elements);
+  for (const std::string& line : physics->details) text += "    " + line + "\n";
   return text + modes_text(*physics, steps);
 }
 

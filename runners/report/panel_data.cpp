@@ -181,6 +181,12 @@ PageJson snapshot_data(const CaseView& view, CurveData& blocks) {
   const size_t stride = (bytes + most_bytes - 1) / most_bytes;
   PageJson out = {{"stride", stride}, {"cases", PageJson::object()}};
   for (const auto& [id, shots] : found) out["cases"][id] = one_case(id, thinned(shots, stride), blocks);
+  const PageJson::json_pointer supports("/scene/structure/supports");
+  if (view.results().study.contains(supports)) {
+    out["supports"] = PageJson::array();
+    for (const auto& one : view.results().study.at(supports))
+      out["supports"].push_back({{"x", one.value("x", 0.0)}, {"type", one.value("type", "")}});
+  }
   return out;
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runners/report/held_beam.hpp"
 #include "runners/report/html.hpp"
 #include "runners/report/scene_values.hpp"
+#include "runners/report/sketch_lines.hpp"
 
 namespace ricochet::report {
 namespace {
@@ -14,39 +16,6 @@ namespace {
 // Pixels of the drawing: where the structure begins, how long it is, its line at rest, and how far stops may lie off.
 constexpr double sketch_width = 640, sketch_height = 168, sketch_left = 76, sketch_span = 480, sketch_rest = 84,
                  nearest_gap = 9, widest_gap = 44;
-
-std::string line(double x1, double y1, double x2, double y2, const char* classes) {
-  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", classes, x1, y1,
-                     x2, y2);
-}
-
-std::string label(double x, double y, const std::string& text, const char* anchor = "middle") {
-  return text.empty()
-             ? ""
-             : fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", x, y, anchor, escape(text));
-}
-
-std::string path(const std::string& d, const char* classes) {
-  return fmt::format("<path class=\"{}\" d=\"{}\"/>", classes, d);
-}
-
-/// An arrow along x or y, its head at the second end; `both`: one at each.
-std::string arrow(double x1, double y1, double x2, double y2, bool both = false) {
-  const double length = std::hypot(x2 - x1, y2 - y1), ux = (x2 - x1) / length, uy = (y2 - y1) / length;
-  const auto head = [&](double x, double y, double sign) {
-    const double bx = x - sign * 7 * ux, by = y - sign * 7 * uy;
-    return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, bx - 3.5 * uy, by + 3.5 * ux,
-                       x, y, bx + 3.5 * uy, by - 3.5 * ux);
-  };
-  return line(x1, y1, x2, y2, "acts") + path(head(x2, y2, 1) + (both ? head(x1, y1, -1) : ""), "acts");
-}
-
-/// A wall whose face stands at x; hatched to its left (or right).
-std::string wall(double x, double from, double to, double side) {
-  std::string hatch;
-  for (double y = from; y < to; y += 8) hatch += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x, y, x + side * 8, y + 8);
-  return line(x, from, x, to, "solid") + path(hatch, "hatch");
-}
 
 /// A stop above (or below) a point: its face level at y, hatched away from the structure.
 std::string level_stop(double x, double y, double side) {
@@ -99,8 +68,9 @@ bool loaded(const SceneValues& scene) {
 std::string beam(const SceneValues& scene) {
   const double length = scene.number("/scene/structure/length").value_or(1);
   const auto x_of = [&](double x) { return sketch_left + sketch_span * std::clamp(x / length, 0.0, 1.0); };
-  std::string out = wall(sketch_left, sketch_rest - 30, sketch_rest + 30, -1) +
-                    line(sketch_left, sketch_rest, sketch_left + sketch_span, sketch_rest, "structure");
+  const HeldBeam held = held_beam(scene, length, {sketch_left, sketch_span, sketch_rest, sketch_height - 14});
+  std::string out = (held.given ? held.svg : wall(sketch_left, sketch_rest - 30, sketch_rest + 30, -1)) +
+                    line(sketch_left, sketch_rest, sketch_left + sketch_span, sketch_rest, "structure") + held.masses;
   if (const std::string shaken = support_words(scene); !shaken.empty())
     out += arrow(sketch_left - 24, sketch_rest - 24, sketch_left - 24, sketch_rest + 24, true) +
            label(sketch_left - 24, sketch_rest + 48, shaken);
@@ -124,8 +94,9 @@ std::string beam(const SceneValues& scene) {
   out += line(sketch_left, sketch_height - 14, sketch_left + sketch_span, sketch_height - 14, "measure") +
          line(sketch_left, sketch_height - 19, sketch_left, sketch_height - 9, "measure") +
          line(sketch_left + sketch_span, sketch_height - 19, sketch_left + sketch_span, sketch_height - 9, "measure");
-  return out +
-         label(sketch_left + sketch_span / 2, sketch_height - 18, "L = " + scene.text("/scene/structure/length", "m"));
+  return out + (held.measured ? held.spans
+                              : label(sketch_left + sketch_span / 2, sketch_height - 18,
+                                      "L = " + scene.text("/scene/structure/length", "m")));
 }
 
 /// A pin on what moves along x, between the stops of its tip.
@@ -190,6 +161,9 @@ const std::vector<Structure>& structures() {
                                               {{"L", "length", "m"},
                                                {"E", "young", "Pa"},
                                                {"ρ", "density", "kg/m³"},
+                                               {"added mass", "added_mass", "kg/m"},
+                                               {"tension", "tension", "N"},
+                                               {"foundation", "foundation", "N/m²"},
                                                {"α (damping, of K)", "damping/stiffness", "s"},
                                                {"η (damping, of M)", "damping/mass", "1/s"}}},
                                              {"oscillator",
@@ -243,6 +217,7 @@ std::vector<std::pair<std::string, std::string>> scene_numbers(const nlohmann::o
     add("EI", number_text(section->EI, 4) + " N m²");
     add("ρS", number_text(section->rhoS, 4) + " kg/m");
   }
+  for (const auto& [symbol, text] : held_beam_words(scene)) add(symbol, text);
   for (const auto& [symbol, key] : {std::pair("lower stop", "lower"), {"upper stop", "upper"}}) {
     const std::string pointer = std::string("/scene/stops/") + key;
     const auto* stop = scene.at(pointer);

@@ -153,9 +153,11 @@ Json check_starts(const Field& field, const Json& value, const std::string& poin
 }
 
 Json check_objects(const Field& field, const Json& value, const std::string& pointer, std::vector<Axis>& axes) {
-  const std::string expected = "expected a list of " + std::to_string(field.count) + " objects";
+  const std::string expected = field.count == 0 ? "expected a list of objects"
+                                                : "expected a list of " + std::to_string(field.count) + " objects";
   if (!value.is_array()) throw InputError(pointer, expected + ", found " + quote(value));
-  if (value.size() != field.count) throw InputError(pointer, expected + ", found " + std::to_string(value.size()));
+  if (field.count != 0 && value.size() != field.count)
+    throw InputError(pointer, expected + ", found " + std::to_string(value.size()));
   Json result = Json::array();
   for (std::size_t i = 0; i < value.size(); ++i)
     result.push_back(check_object(field.nested.front(), value[i], pointer_to(pointer, i), axes));
@@ -284,6 +286,14 @@ const Json& discriminate(const std::vector<const Field*>& declared, const Json& 
   return *here;
 }
 
+// Whether another key stands for the one on whose words further keys depend.
+bool replaced(const ObjectForm& form, const Json& value) {
+  return std::any_of(form.fields.begin(), form.fields.end(), [&](const Field& field) {
+    return !field.unless.empty() && value.contains(field.unless) && !value.contains(field.key()) &&
+           form.discriminator.starts_with("/" + field.key() + "/");
+  });
+}
+
 }  // namespace
 
 bool is_object_list(const Field& field, const Json& value) {
@@ -299,7 +309,7 @@ std::vector<const Field*> fields_of(const ObjectForm& form, const Json& value, c
     for (const Field& field : level->fields) fields.push_back(&field);
     if (!level->ways.empty())
       for (const Field& field : find_way(*level, value, pointer).fields) fields.push_back(&field);
-    if (level->discriminator.empty()) return fields;
+    if (level->discriminator.empty() || replaced(*level, value)) return fields;
     std::vector<std::string> words;
     for (const Variant& variant : level->variants)
       words.insert(words.end(), variant.words.begin(), variant.words.end());
@@ -331,11 +341,16 @@ Json check_object(const ObjectForm& form, const Json& value, const std::string& 
   for (const Field* field : fields) {
     const std::string here = pointer_to(pointer, field->key());
     const auto given = value.find(field->key());
+    const bool stands_elsewhere = !field->unless.empty() && value.contains(field->unless);
+    if (stands_elsewhere && given != value.end())
+      throw InputError(here, "does not go together with \"" + field->unless + "\"; expected one of them");
+    if (given == value.end() && (field->quiet || stands_elsewhere)) continue;
     if (given == value.end() && field->required()) {
       const bool scalar = field->form == Field::Form::scalar;
       throw InputError(here, "missing" + (scalar ? "; " + expectation(*field) : "; this key is required"));
     }
-    result[field->key()] = check_value(*field, given == value.end() ? *field->fallback : *given, here, axes);
+    Json checked = check_value(*field, given == value.end() ? *field->fallback : *given, here, axes);
+    if (!field->quiet || checked != *field->fallback) result[field->key()] = std::move(checked);
   }
   return result;
 }

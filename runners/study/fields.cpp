@@ -54,6 +54,17 @@ Field object(const char* key, std::optional<Json> fallback, const char* text, Ob
   return field;
 }
 
+Field objects(const char* key, const char* text, ObjectForm keys) {
+  Field field = of_form(Field::Form::objects, key, Json(nullptr), text);
+  field.nested.push_back(std::move(keys));
+  return field;
+}
+
+Field quiet(Field field) {
+  field.quiet = true;
+  return field;
+}
+
 Field methods(const char* key, Role role, const char* text) {
   Field field = of_form(Field::Form::methods, key, std::nullopt, text);
   field.role = role;

@@ -35,7 +35,7 @@ struct Field {
     places,    ///< where stops act: "nodes", "tip" or a list of positions
     object,    ///< a nested object
     methods,   ///< methods of `role`: a name, an object, or a list of either
-    objects,   ///< a list of exactly `count` nested objects, one value together
+    objects,   ///< a list of exactly `count` nested objects (0: of any number), one value together
     numbers,   ///< a number or a list of different numbers in `spec.range`, one value together
     words,     ///< a word or a list of words out of `spec.words`, one value together
     starts,    ///< a word out of `spec.words`, a nested object (at most one), or a list of these, one value together
@@ -51,6 +51,8 @@ struct Field {
   bool marched = false;            ///< for references: marched_reference is one as well
   std::vector<ObjectForm> nested;  ///< one entry for Form::object, objects, starts and such formulas
   std::size_t count = 0;           ///< for Form::objects
+  bool quiet = false;              ///< absent or its default, it is not written out: older studies keep their identity
+  std::string unless;              ///< another key of the object in whose presence this one is not given
 
   const std::string& key() const { return spec.key; }
   bool required() const { return !fallback; }
@@ -95,10 +97,14 @@ Field of_form(Field::Form form, const char* key, std::optional<Json> fallback, c
 Field formula(const char* key, const char* unit, const char* variables, bool nullable, std::optional<Json> fallback,
               const char* text);
 Field object(const char* key, std::optional<Json> fallback, const char* text, ObjectForm keys);
+/// A list of any number of objects, one value together.
+Field objects(const char* key, const char* text, ObjectForm keys);
 Field methods(const char* key, Role role, const char* text);
 
 /// The field as one value, never a list.
 Field single(Field field);
+/// The field, not written out where it is absent or its default.
+Field quiet(Field field);
 /// The field as one value that may be null: no such limit.
 Field optional(Field field);
 

@@ -51,15 +51,51 @@ Damping read_damping(const Json& json) {
   return {json.at("stiffness").get<double>(), json.at("mass").get<double>()};
 }
 
+/// What a beam, or a length of one, is made of.
+template <class Part>
+void read_material(const Json& json, Part& part) {
+  part.section = read_section(json.at("section"));
+  if (part.section.type == Section::Type::given) return;
+  part.young = json.at("young").get<double>();
+  part.density = json.at("density").get<double>();
+}
+
+BeamSupport read_support(const Json& json) {
+  using Type = BeamSupport::Type;
+  const auto type = json.at("type").get<std::string>();
+  return {json.at("name").get<std::string>(), json.at("x").get<double>(),
+          type == "clamped"   ? Type::clamped
+          : type == "pinned"  ? Type::pinned
+          : type == "sliding" ? Type::sliding
+                              : Type::elastic,
+          json.value("stiffness", 0.0), json.value("rotation", 0.0)};
+}
+
 BeamSpec read_beam(const Json& json) {
   BeamSpec beam;
   beam.length = json.at("length").get<double>();
-  beam.section = read_section(json.at("section"));
-  if (beam.section.type != Section::Type::given) {
-    beam.young = json.at("young").get<double>();
-    beam.density = json.at("density").get<double>();
-  }
+  if (json.contains("section")) read_material(json, beam);
   beam.damping = read_damping(json.at("damping"));
+  if (json.contains("supports")) {
+    beam.supports.emplace();
+    for (const Json& one : json.at("supports")) beam.supports->push_back(read_support(one));
+  }
+  for (const Json& one : json.value("sections", Json::array())) {
+    read_material(one, beam.sections.emplace_back());
+    beam.sections.back().to = one.at("to").get<double>();
+  }
+  for (const Json& one : json.value("masses", Json::array()))
+    beam.masses.push_back({one.at("x").get<double>(), one.at("mass").get<double>(), one.at("inertia").get<double>()});
+  beam.added_mass = json.value("added_mass", 0.0);
+  beam.tension = json.value("tension", 0.0);
+  beam.foundation = json.value("foundation", 0.0);
+  if (json.contains("shear")) {
+    const Json& shear = json.at("shear");
+    beam.shear.emplace();
+    beam.shear->poisson = shear.at("poisson").get<double>();
+    beam.shear->rotary = shear.at("rotary").get<bool>();
+    if (!shear.at("factor").is_null()) beam.shear->factor = shear.at("factor").get<double>();
+  }
   return beam;
 }
 

@@ -47,14 +47,78 @@ ObjectForm section() {
   return keys;
 }
 
+ObjectForm beam_support() {
+  ObjectForm keys;
+  keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
+                 single(real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L.")),
+                 word("type", {"clamped", "pinned", "sliding", "elastic"}, std::nullopt,
+                      "What it holds: w and w', w, w', or the ground end of springs.")};
+  keys.discriminator = "/type";
+  keys.variants = {{{"clamped", "pinned", "sliding"}, {}},
+                   {{"elastic"},
+                    {{single(real("stiffness", "N/m", non_negative, 0.0, "Spring against w.")),
+                      single(real("rotation", "N m/rad", non_negative, 0.0, "Spring against w'."))},
+                     "",
+                     {}}}};
+  return keys;
+}
+
+ObjectForm beam_part() {
+  ObjectForm keys;
+  keys.fields = {single(real("to", "m", positive, std::nullopt, "Where it ends; it begins where the one before ends.")),
+                 object("section", std::nullopt, "Its cross-section.", section())};
+  keys.discriminator = "/section/type";
+  keys.variants = {{{"tube", "circle", "rectangle"},
+                    {{single(real("young", "Pa", positive, std::nullopt, "Young's modulus E.")),
+                      single(real("density", "kg/m³", positive, std::nullopt, "Density ρ."))},
+                     "",
+                     {}}},
+                   {{"given"}, {}}};
+  return keys;
+}
+
+ObjectForm beam_mass() {
+  ObjectForm keys;
+  keys.fields = {single(real("x", "m", non_negative, std::nullopt, "Where it sits, 0 to L.")),
+                 single(real("mass", "kg", non_negative, 0.0, "Its mass.")),
+                 single(real("inertia", "kg m²", non_negative, 0.0, "Its inertia against rotation."))};
+  return keys;
+}
+
+ObjectForm beam_shear() {
+  ObjectForm keys;
+  keys.fields = {
+      real("poisson", "1", {-1, 0.5, true, false}, std::nullopt, "Poisson's ratio ν: G = E/(2(1 + ν))."),
+      keys::optional(real("factor", "1", positive, std::nullopt, "k of kGA; null: Cowper's, from the section and ν.")),
+      of_form(Field::Form::scalar, "rotary", Json(false), "Whether cross-sections have inertia against rotation.")};
+  keys.fields.back().spec.type = ParameterSpec::Type::boolean;
+  return keys;
+}
+
+/// Absent in studies of a clamped beam of one section, whose text they leave as it is.
+std::vector<Field> beam_extras() {
+  return {
+      quiet(objects("supports", "What holds the beam; absent: a clamp at 0. An end without one is free.",
+                    beam_support())),
+      quiet(objects("sections", "Sections from 0 upwards, the last one to L, in the place of `section`.", beam_part())),
+      quiet(real("added_mass", "kg/m", non_negative, 0.0, "Mass per length that moves with it, as of a fluid.")),
+      quiet(real("tension", "N", any, 0.0, "Axial force T; below 0 it compresses.")),
+      quiet(real("foundation", "N/m²", non_negative, 0.0, "Elastic foundation k_f, which moves with the supports.")),
+      quiet(objects("masses", "Point masses on the beam.", beam_mass())),
+      quiet(object("shear", Json(nullptr), "Deformation in shear; absent: Euler–Bernoulli.", beam_shear()))};
+}
+
 ObjectForm structure() {
   ObjectForm damping;
   damping.fields = {real("stiffness", "s", non_negative, 0.0, "α of C = αK + ηM."),
                     real("mass", "1/s", non_negative, 0.0, "η of C = αK + ηM.")};
   ObjectForm beam;
-  beam.fields = {real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L."),
-                 object("section", std::nullopt, "Cross-section: EI and ρS follow from it.", section()),
-                 object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  beam.fields = {
+      real("length", "m", positive, std::nullopt, "Length L; clamped at x = 0, free at x = L, unless `supports` say."),
+      object("section", std::nullopt, "Cross-section: EI and ρS follow from it.", section()),
+      object("damping", Json::object(), "Viscous damping C = αK + ηM.", damping)};
+  beam.fields[1].unless = "sections";
+  for (Field& extra : beam_extras()) beam.fields.push_back(std::move(extra));
   beam.discriminator = "/section/type";
   beam.variants = {{{"tube", "circle", "rectangle"},
                     {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
@@ -95,9 +159,9 @@ ObjectForm scene() {
   stops.fields.back().axis = true;
 
   ObjectForm support;
-  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the clamp's motion."),
-                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the clamp's motion."),
-                    real("phase", "rad", any, 0.0, "ψ of the clamp's motion.")};
+  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of that motion."),
+                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of that motion."),
+                    real("phase", "rad", any, 0.0, "ψ of that motion.")};
 
   ObjectForm initial;
   initial.fields = {
@@ -122,7 +186,7 @@ ObjectForm scene() {
   keys.fields = {object("structure", std::nullopt, "The structure.", structure()),
                  object("stops", Json::object(), "Two rigid stops g1(x) ≤ u ≤ g2(x); absent: none.", stops),
                  object("support", Json{{"amplitude", 0.0}, {"pulsation", 0.0}, {"phase", 0.0}},
-                        "Motion of the clamp, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
+                        "Motion of all supports together, φ(t) = A0 sin(ωt + ψ); absent: at rest.", support),
                  std::move(load),
                  object("initial", Json::object(), "Absolute initial state; absent: at rest.", initial)};
   return keys;

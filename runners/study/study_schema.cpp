@@ -57,7 +57,7 @@ class SchemaWriter {
   void add_fields(const ObjectForm& form, Json& properties, Json& required) {
     for (const Field& field : form.fields) {
       properties[field.key()] = value(field);
-      if (field.required()) required.push_back(field.key());
+      if (field.required() && field.unless.empty()) required.push_back(field.key());
     }
   }
 
@@ -85,6 +85,9 @@ class SchemaWriter {
   }
 
   void add_conditions(const ObjectForm& form, Json& schema) {
+    for (const Field& field : form.fields)
+      if (!field.unless.empty())
+        schema["oneOf"] = Json::array({{{"required", {field.key()}}}, {{"required", {field.unless}}}});
     std::set<std::string> of_all;
     for (const Variant& variant : form.variants) of_all.merge(keys_of(variant.keys));
     for (const ObjectForm& way : form.ways) of_all.merge(keys_of(way));
@@ -134,6 +137,7 @@ class SchemaWriter {
       case Field::Form::object:
         return or_null(field, object(field.nested.front()));
       case Field::Form::objects:
+        if (field.count == 0) return {{"type", "array"}, {"items", object(field.nested.front())}};
         return {{"type", "array"},
                 {"items", object(field.nested.front())},
                 {"minItems", field.count},

@@ -160,8 +160,8 @@ TEST_CASE("a formula that is too long is told by its beginning, the limit and th
 TEST_CASE("no error echoes more than the beginning of a formula") {
   const std::string tail = std::string(5000, ' ') + "+1";
   for (const std::string& text : {"2*y" + tail, "sqr(x)" + tail, "2*(x" + tail, "2x" + tail, "x = 3" + tail,
-                                 "0,1" + tail, "1/0" + tail, "sqrt(-1)" + tail, "x+" + std::string(5000, 'y'),
-                                 "x+\"" + std::string(5000, 'y') + "\"", std::string(5000, '(')}) {
+                                  "0,1" + tail, "1/0" + tail, "sqrt(-1)" + tail, "x+" + std::string(5000, 'y'),
+                                  "x+\"" + std::string(5000, 'y') + "\"", std::string(5000, '(')}) {
     const std::string said = refused(text);
     CAPTURE(said);
     CHECK(said.size() > 20);

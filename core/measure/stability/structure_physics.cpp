@@ -7,6 +7,7 @@
 #include <ricochet/kernels/sparse_ldlt.hpp>
 #include <ricochet/measure/stability/no_contact.hpp>
 #include <ricochet/measure/stability/structure_physics.hpp>
+#include <ricochet/scene/beam.hpp>
 
 namespace ricochet {
 
@@ -82,14 +83,73 @@ constexpr int most_elements = 120;
 
 struct Numbers {
   std::vector<PhysicalNumber> operator()(const BeamSpec& beam) const {
-    const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
-    return {{"EI", section.EI, "N m²"}, {"ρS", section.rhoS, "kg/m"}, {"length", beam.length, "m"}};
+    std::vector<PhysicalNumber> numbers;
+    if (beam.sections.empty()) {
+      const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
+      numbers = {{"EI", section.EI, "N m²"}, {"ρS", section.rhoS, "kg/m"}};
+    }
+    numbers.push_back({"length", beam.length, "m"});
+    if (beam.added_mass != 0) numbers.push_back({"added mass", beam.added_mass, "kg/m"});
+    if (beam.tension != 0) numbers.push_back({"tension", beam.tension, "N"});
+    if (beam.foundation != 0) numbers.push_back({"foundation", beam.foundation, "N/m²"});
+    if (beam.shear) numbers.push_back({"kGA", uniform_parts(beam).front().kGA, "N"});
+    return numbers;
   }
   std::vector<PhysicalNumber> operator()(const OscillatorSpec& oscillator) const {
     return {{"k", oscillator.stiffness, "N/m"}, {"m", oscillator.mass, "kg"}};
   }
   std::vector<PhysicalNumber> operator()(const BarSpec& bar) const {
     return {{"EA", bar.EA, "N"}, {"ρA", bar.rhoA, "kg/m"}, {"length", bar.length, "m"}};
+  }
+};
+
+std::string support_text(const BeamSupport& support) {
+  constexpr const char* types[] = {"clamped", "pinned", "sliding", "elastic"};
+  std::string text =
+      fmt::format("{} {} at {:.6g} m", support.name, types[static_cast<std::size_t>(support.type)], support.x);
+  if (support.type != BeamSupport::Type::elastic) return text;
+  std::vector<std::string> springs;
+  if (support.stiffness > 0) springs.push_back(fmt::format("{:.4g} N/m", support.stiffness));
+  if (support.rotation > 0) springs.push_back(fmt::format("{:.4g} N m/rad", support.rotation));
+  return fmt::format("{} ({})", text, fmt::join(springs, ", "));
+}
+
+struct Details {
+  int elements = 0, dofs = 0;
+
+  std::vector<std::string> operator()(const BeamSpec& beam) const {
+    const std::vector<BeamInterval> intervals = beam_intervals(beam, elements);
+    if (!beam.supports && intervals.size() == 1) return {};
+    std::vector<std::string> lines, parts;
+    for (const BeamSupport& support : supports_of(beam)) parts.push_back(support_text(support));
+    const RigidFreedom freedom = rigid_freedom(beam);
+    const int rigid = (freedom.translates ? 1 : 0) + (freedom.turns ? 1 : 0);
+    lines.push_back(fmt::format("supports: {}{}", parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", ")),
+                                rigid == 0 ? "" : fmt::format("; {} rigid motion{}", rigid, rigid == 1 ? "" : "s")));
+    double from = 0;
+    if (!beam.sections.empty())
+      for (const UniformPart& part : uniform_parts(beam)) {
+        lines.push_back(fmt::format("from {:.6g} to {:.6g} m: EI {:.4g} N m², ρS {:.4g} kg/m", from, part.to,
+                                    part.section.EI, part.section.rhoS));
+        from = part.to;
+      }
+    for (const BeamMass& mass : beam.masses)
+      lines.push_back(
+          fmt::format("at {:.6g} m: mass {:.4g} kg, inertia {:.4g} kg m²", mass.x, mass.mass, mass.inertia));
+    parts.clear();
+    int count = 0;
+    for (const BeamInterval& interval : intervals) {
+      parts.push_back(
+          fmt::format("{} from {:.6g} to {:.6g} m", interval.elements, interval.from, interval.from + interval.length));
+      count += interval.elements;
+    }
+    lines.push_back(fmt::format("elements: {}", fmt::join(parts, ", ")));
+    lines.push_back(fmt::format("dofs: {}, held {}", dofs, 2 * (count + 1) - dofs));
+    return lines;
+  }
+  template <class Other>
+  std::vector<std::string> operator()(const Other&) const {
+    return {};
   }
 };
 
@@ -120,6 +180,7 @@ std::variant<StructurePhysics, Refusal> structure_physics(const SceneSpec& scene
   out.damping = problem.damping;
   out.structure = problem.space.structure;
   out.numbers = std::visit(Numbers{}, scene.structure);
+  out.details = std::visit(Details{out.elements, problem.dofs()}, scene.structure);
   if (out.damping.stiffness != 0) out.numbers.push_back({"α", out.damping.stiffness, "s"});
   if (out.damping.mass != 0) out.numbers.push_back({"η", out.damping.mass, "1/s"});
   const StructureModes modes = open_modes(problem);

@@ -48,6 +48,9 @@ struct StructurePhysics {
   int elements = 0;                     ///< of the mesh whose modes these are
   std::vector<double> pulsations;  ///< ω_i of M φ ω² = K φ, open, slowest first, rad/s; Ker M has no part in them
   Damping damping;                 ///< α, η
+  /// Of a beam with supports, sections or masses of its own: one line each on what holds it, what it is made of, the
+  /// mesh between its breaks, the dofs held.
+  std::vector<std::string> details;
 
   /// ζ_i = (αω_i + η/ω_i)/2 of C = αK + ηM; nothing where nothing is damped, or for a rigid motion.
   std::optional<double> damping_ratio(std::size_t mode) const;

@@ -41,6 +41,11 @@ class EventDriven final : public ReferenceSolver {
           fmt::format("event-driven solves the continuous beam, and the structure is a{} {}: the closed forms of "
                       "`exact` are made for it, `self` refines any scheme",
                       problem.structure.starts_with('o') ? "n" : "", problem.structure)};
+    if (problem.other_beam)
+      return Refusal{
+          "event-driven knows the uniform beam clamped at x = 0 and free at x = L, and this one has supports, "
+          "sections, "
+          "masses, tension or a foundation of its own: use `event-driven-semi-discrete` or `self`"};
     if (problem.right_fixed)
       return Refusal{
           "event-driven solves a beam that is clamped at x = 0 and free at x = L; this one is fixed at x = L"};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <ricochet/loader/child.hpp>
+#include <ricochet/scene/beam.hpp>
 #include <ricochet/scene/checks.hpp>
 #include <set>
 
@@ -124,14 +125,16 @@ std::function<double(double)> of_x(const std::optional<Formula>& formula, double
 }
 
 void describe(const BeamSpec& beam, ReferenceProblem& problem) {
-  const SectionProperties section = section_properties(beam.section, beam.young, beam.density);
+  problem.other_beam = beam.supports || !beam.sections.empty() || !beam.masses.empty() || beam.shear ||
+                       beam.tension != 0 || beam.foundation != 0 || beam.added_mass != 0;
+  const SectionProperties section = uniform_parts(beam).front().section;
   problem.structure = "beam";
   problem.length = beam.length;
   problem.stiffness = section.EI;
   problem.inertia = section.rhoS;
   problem.damping_stiffness = beam.damping.stiffness;
   problem.damping_mass = beam.damping.mass;
-  problem.left_fixed = true;
+  problem.left_fixed = !problem.other_beam;
 }
 void describe(const BarSpec& bar, ReferenceProblem& problem) {
   problem.structure = "bar";

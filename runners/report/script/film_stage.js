@@ -4,6 +4,7 @@
   class Snapshots {
     constructor(data, one) {
       const held = data.page.snapshots.cases[one.id], block = (name) => data.block(one.id + "/snapshots/" + name);
+      this.supports = data.page.snapshots.supports ?? [{ x: 0, type: "clamped" }];
       Object.assign(this, { one, ...held, t: block("t"), clamp: block("clamp"), counts: block("u"), pushed: block("pushed"), forces: block("force") });
       this.largest = this.counts.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.metres;
       this.strongest = this.forces.reduce((most, count) => Math.max(most, Math.abs(count)), 0) * this.newtons;
@@ -87,6 +88,16 @@
       }
     });
   }
+  // What holds a beam at (x, y): a block beside a clamp, a triangle under a pin, plates beside a guide, coils under a spring.
+  function support(context, ink, type, x, y, side) {
+    context.fillStyle = ink;
+    if (type === "clamped") context.fillRect(side < 0 ? x - 10 : x, y - 14, 10, 28);
+    else stroke(context, ink, 1.4, [], (c) => {
+      if (type === "sliding") for (const away of [2, 8]) { c.moveTo(x + side * away, y - 12); c.lineTo(x + side * away, y + 12); }
+      else if (type === "pinned") { c.moveTo(x, y); c.lineTo(x - 7, y + 12); c.lineTo(x + 7, y + 12); c.closePath(); }
+      else { c.moveTo(x, y); for (let n = 0; n < 6; ++n) c.lineTo(x + (n % 2 ? -5 : 5), y + 4 + 3 * n); c.lineTo(x, y + 24); }
+    });
+  }
   const arrowLength = (force, strongest) => 12 + 42 * Math.abs(force) / strongest;
 
   // Each draws {shots, k, colour, dash} with scales into a box.
@@ -95,8 +106,7 @@
       const px = (x) => left + along * x, py = (u) => middle - across * u, half = Math.min(9, 0.5 * along * shots.length / Math.max(1, shots.point.length));
       for (const [stops, side] of [[shots.lower, 1], [shots.upper, -1]])
         stops.forEach((u, p) => { if (u !== null) stop(context, ink, [px(shots.point[p]) - half, py(u)], [px(shots.point[p]) + half, py(u)], [0, side]); });
-      context.fillStyle = ink;
-      context.fillRect(px(0) - 10, py(shots.clamp[k]) - 14, 10, 28);
+      for (const { x, type } of shots.supports) support(context, ink, type, px(x), py(shots.clamp[k]), x < 0.5 * shots.length ? -1 : 1);
       stroke(context, colour, 3, dash, (c) => shots.x.forEach((x, place) => c.lineTo(px(x), py(shots.at(k, place)))));
       for (const { point, force } of shots.contacts(k)) {
         const x = shots.point[point];

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/beam.hpp>
+#include <ricochet/scene/checks.hpp>
+
+namespace ricochet {
+namespace {
+
+/// At /scene/structure/`key`.
+void demand(bool holds, const std::string& key, const std::string& message) {
+  if (!holds) throw InputError("/scene/structure/" + key, message);
+}
+
+void demand_not_negative(double value, const std::string& key, const char* what, const char* unit) {
+  demand(std::isfinite(value) && value >= 0, key,
+         fmt::format("{} is {:.6g} {}; expected a finite number, 0 or above", what, value, unit));
+}
+
+void demand_inside(const BeamSpec& beam, double x, const std::string& key) {
+  demand(std::isfinite(x) && x >= -one_place * beam.length && x <= (1 + one_place) * beam.length, key,
+         fmt::format("{:.6g} m; expected 0 to L = {:.6g}", x, beam.length));
+}
+
+void check_supports(const BeamSpec& beam) {
+  if (!beam.supports) return;
+  const std::vector<BeamSupport>& supports = *beam.supports;
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const BeamSupport& support = supports[i];
+    const std::string key = fmt::format("supports/{}", i);
+    demand_inside(beam, support.x, key + "/x");
+    demand(!support.name.empty(), key + "/name", "an empty name; expected letters, digits, '-' or '_'");
+    demand_not_negative(support.stiffness, key + "/stiffness", "the stiffness of the support", "N/m");
+    demand_not_negative(support.rotation, key + "/rotation", "the stiffness of the support against rotation",
+                        "N m/rad");
+    demand(support.type != BeamSupport::Type::elastic || support.stiffness > 0 || support.rotation > 0,
+           key + "/stiffness", "an elastic support without springs; expected stiffness or rotation above 0");
+    for (std::size_t j = 0; j < i; ++j) {
+      demand(std::abs(support.x - supports[j].x) > one_place * beam.length, key + "/x",
+             fmt::format("two supports at x = {:.6g} m; expected different places", support.x));
+      demand(support.name != supports[j].name, key + "/name",
+             fmt::format("two supports are called \"{}\"; expected different names", support.name));
+    }
+  }
+}
+
+void check_sections(const BeamSpec& beam) {
+  double before = 0;
+  for (std::size_t i = 0; i < beam.sections.size(); ++i) {
+    const double to = beam.sections[i].to;
+    const std::string key = fmt::format("sections/{}/to", i);
+    demand_inside(beam, to, key);
+    demand(to > before + one_place * beam.length, key,
+           fmt::format("{:.6g} m; expected more than {:.6g}, where the section begins", to, before));
+    const bool last = i + 1 == beam.sections.size();
+    demand(!last || std::abs(to - beam.length) <= one_place * beam.length, key,
+           fmt::format("the last section ends at {:.6g} m; expected L = {:.6g}", to, beam.length));
+    before = to;
+  }
+}
+
+void check_masses(const BeamSpec& beam) {
+  for (std::size_t i = 0; i < beam.masses.size(); ++i) {
+    const std::string key = fmt::format("masses/{}", i);
+    demand_inside(beam, beam.masses[i].x, key + "/x");
+    demand_not_negative(beam.masses[i].mass, key + "/mass", "the point mass", "kg");
+    demand_not_negative(beam.masses[i].inertia, key + "/inertia", "the inertia against rotation", "kg m²");
+  }
+}
+
+void check_tension(const BeamSpec& beam, int elements) {
+  demand(std::isfinite(beam.tension), "tension", "the tension is not finite");
+  if (beam.tension >= 0) return;
+  const double limit = buckling_load(beam, elements);
+  demand(limit > 0, "tension",
+         fmt::format("the tension {:.6g} N compresses a beam that nothing keeps from turning; expected 0 or above",
+                     beam.tension));
+  demand(-beam.tension < limit, "tension",
+         fmt::format("the tension {:.6g} N is beyond the first buckling load, {:.6g} N; expected a tension above that",
+                     beam.tension, -limit));
+}
+
+void check_shear(const BeamSpec& beam) {
+  if (!beam.shear) return;
+  const double poisson = beam.shear->poisson;
+  demand(poisson > -1 && poisson <= 0.5, "shear/poisson",
+         fmt::format("Poisson's ratio is {:.6g}; expected a number in ]-1, 0.5]", poisson));
+  const double factor = beam.shear->factor.value_or(1);
+  demand(std::isfinite(factor) && factor > 0, "shear/factor",
+         fmt::format("the shear factor is {:.6g}; expected a finite number above 0", factor));
+}
+
+}  // namespace
+
+void check_beam(const BeamSpec& beam, int elements) {
+  check_supports(beam);
+  check_sections(beam);
+  check_masses(beam);
+  demand_not_negative(beam.added_mass, "added_mass", "the added mass", "kg/m");
+  demand_not_negative(beam.foundation, "foundation", "the stiffness of the foundation", "N/m²");
+  check_shear(beam);
+  uniform_parts(beam);
+  check_tension(beam, elements);
+  demand(beam_space(beam, elements).dofs > 0, "supports",
+         "the supports hold every dof of this mesh; expected more elements, or fewer supports");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,132 @@
+#include "runners/report/held_beam.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runners/report/html.hpp"
+#include "runners/report/sketch_lines.hpp"
+
+namespace ricochet::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_named = 8, most_spans = 8;
+constexpr int shown_digits = 4;
+
+std::vector<Json> objects_at(const SceneValues& scene, const std::string& pointer) {
+  const Json* found = scene.at(pointer);
+  return found && found->is_array() ? found->get<std::vector<Json>>() : std::vector<Json>();
+}
+
+std::string ground_mark(double x, double y) {
+  std::string hatch;
+  for (double u = -10; u <= 10; u += 5) hatch += fmt::format("M{:.1f} {:.1f}l-4 5", x + u, y);
+  return line(x - 12, y, x + 12, y, "solid") + path(hatch, "hatch");
+}
+
+std::string clamp_mark(double x, double y, double side) {
+  if (side != 0) return wall(x, y - 30, y + 30, side);
+  // Between the ends it lets the beam pass.
+  return ground_mark(x, y + 7) + line(x - 12, y - 7, x + 12, y - 7, "solid") +
+         line(x - 12, y - 7, x - 12, y - 3, "solid") + line(x + 12, y - 7, x + 12, y - 3, "solid");
+}
+
+std::string pin_mark(double x, double y) {
+  return path(fmt::format("M{:.1f} {:.1f}l-9 15h18z", x, y + 1), "solid pin") + ground_mark(x, y + 16);
+}
+
+// Two plates with rollers: the slope is held, the height is free.
+std::string slide_mark(double x, double y, double side) {
+  const double out = side == 0 ? 0 : side * 9;
+  std::string marks = line(x, y - 14, x, y + 14, "solid");
+  for (const double v : {-8.0, 8.0})
+    marks += fmt::format("<circle class=\"solid\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\"/>", x + out / 2, y + v);
+  return marks + (side == 0 ? "" : wall(x + out, y - 22, y + 22, side));
+}
+
+std::string spring_mark(double x, double y, bool spring, bool rotation) {
+  std::string marks;
+  if (spring) {
+    std::string zigzag = fmt::format("M{:.1f} {:.1f}v4", x, y);
+    for (int k = 0; k < 4; ++k) zigzag += "l6 2.5l-12 5l6 2.5";
+    marks += path(zigzag + "v4", "spring") + ground_mark(x, y + 48);
+  }
+  if (rotation) marks += path(fmt::format("M{:.1f} {:.1f}a11 11 0 1 1 14 6", x - 11, y - 3), "spring");
+  return marks;
+}
+
+std::string mark_of(const Json& support, double x, double y, double side) {
+  const auto type = support.value("type", "");
+  if (type == "clamped") return clamp_mark(x, y, side);
+  if (type == "pinned") return pin_mark(x, y);
+  if (type == "sliding") return slide_mark(x, y, side);
+  return spring_mark(x, y, support.value("stiffness", 0.0) > 0, support.value("rotation", 0.0) > 0);
+}
+
+std::string mark_words(const Json& support) {
+  std::string text = fmt::format("{} {} at {} m", support.value("name", ""), support.value("type", ""),
+                                 number_text(support.value("x", 0.0), shown_digits));
+  for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"rotation", "N m/rad"}})
+    if (const double value = support.value(key, 0.0); value > 0)
+      text += fmt::format(", {} {}", number_text(value, shown_digits), unit);
+  return text;
+}
+
+std::string semicolon_list(const std::vector<std::string>& texts) {
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+}  // namespace
+
+HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& frame) {
+  HeldBeam out;
+  const auto x_of = [&](double x) { return frame.left + frame.span * std::clamp(x / length, 0.0, 1.0); };
+  const std::vector<Json> supports = objects_at(scene, "/scene/structure/supports");
+  out.given = scene.at("/scene/structure/supports") != nullptr;
+  std::vector<double> places = {0, length};
+  for (const Json& support : supports) {
+    const double place = support.value("x", 0.0), x = x_of(place);
+    const double side = place <= 0 ? -1 : place >= length ? 1 : 0;
+    out.svg += mark_of(support, x, frame.rest, side);
+    if (supports.size() <= most_named) out.svg += label(x, frame.rest - 36, support.value("name", ""));
+    places.push_back(place);
+  }
+  for (const Json& mass : objects_at(scene, "/scene/structure/masses")) {
+    const double x = x_of(mass.value("x", 0.0));
+    out.masses += fmt::format("<circle class=\"body\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/>", x, frame.rest) +
+                  label(x, frame.rest - 14, number_text(mass.value("mass", 0.0), shown_digits) + " kg");
+  }
+  if (const auto tension = scene.number("/scene/structure/tension"); tension && *tension != 0) {
+    const double near = frame.left + frame.span + 8, far = near + 34;
+    out.svg += (*tension > 0 ? arrow(near, frame.rest, far, frame.rest) : arrow(far, frame.rest, near, frame.rest)) +
+               label(far + 4, frame.rest + 4, "T", "start");
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  out.measured = out.given && places.size() > 2 && places.size() <= most_spans + 1;
+  if (!out.measured) return out;
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const double from = x_of(places[i]), to = x_of(places[i + 1]);
+    out.spans += line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
+                 label((from + to) / 2, frame.measure - 4, number_text(places[i + 1] - places[i], shown_digits) + " m");
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValues& scene) {
+  std::vector<std::string> supports, sections, masses;
+  for (const Json& support : objects_at(scene, "/scene/structure/supports")) supports.push_back(mark_words(support));
+  for (const Json& part : objects_at(scene, "/scene/structure/sections"))
+    sections.push_back(fmt::format("{} to {} m", part.contains("section") ? part["section"].value("type", "") : "",
+                                   number_text(part.value("to", 0.0), shown_digits)));
+  for (const Json& mass : objects_at(scene, "/scene/structure/masses"))
+    masses.push_back(fmt::format("{} kg at {} m", number_text(mass.value("mass", 0.0), shown_digits),
+                                 number_text(mass.value("x", 0.0), shown_digits)));
+  return {{"supports", semicolon_list(supports)},
+          {"sections", semicolon_list(sections)},
+          {"masses", semicolon_list(masses)}};
+}
+
+}  // namespace ricochet::report

@@ -1,0 +1,115 @@
+// Beams that deform in shear (Timoshenko), with rotary inertia.
+#include <ricochet/scene/assembly.hpp>
+
+#include "tests/scene/beam_numbers.hpp"
+
+using namespace ricochet;
+using namespace ricochet::testing;
+
+namespace {
+
+// Deep square beam, pinned: NAFEMS FV5.
+SceneSpec deep_beam() {
+  SceneSpec scene = held_beam(10, {pinned("left", 0), pinned("right", 10)});
+  BeamSpec& beam = beam_of(scene);
+  beam.young = 2e11;
+  beam.density = 8000;
+  beam.section = {.type = Section::Type::rectangle, .width = 2, .height = 2};
+  beam.shear = BeamShear{0.3, std::nullopt, true};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("functions of an element in shear: rigid motions, w' = θ + constant strain, derivatives") {
+  FiniteElementSpace::Element element;
+  element.length = 0.3;
+  element.shear = 1.7;
+  const auto basis = FiniteElementSpace::Basis::hermite;
+  CHECK(shape_values(basis, element, 0) == std::array<double, 4>{1, 0, 0, 0});
+  CHECK(shape_values(basis, element, 1) == std::array<double, 4>{0, 0, 1, 0});
+  const double d = 1e-5;
+  std::array<double, 4> strain_before{};
+  for (const double xi : {0.1, 0.5, 0.87}) {
+    const auto w = shape_values(basis, element, xi), theta = shape_rotations(element, xi);
+    const auto slope = shape_slopes(element, xi), bend = shape_strains(basis, element, xi);
+    CHECK(w[0] + w[2] == Approx(1).epsilon(1e-14));
+    CHECK(w[2] * 0.3 + w[1] + w[3] == Approx(0.3 * xi).epsilon(1e-14));
+    CHECK(theta[0] + theta[2] == Approx(0).margin(1e-14));
+    CHECK(theta[2] * 0.3 + theta[1] + theta[3] == Approx(1).epsilon(1e-14));
+    const auto after = shape_values(basis, element, xi + d), before = shape_values(basis, element, xi - d);
+    const auto turned = shape_rotations(element, xi + d), turned_before = shape_rotations(element, xi - d);
+    for (std::size_t a = 0; a < 4; ++a) {
+      // Central differences of cubics: d² of the third derivative, and round-off over d.
+      CHECK(slope[a] == Approx((after[a] - before[a]) / (2 * d * 0.3)).margin(1e-7));
+      CHECK(bend[a] == Approx((turned[a] - turned_before[a]) / (2 * d * 0.3)).margin(1e-7));
+      if (xi > 0.1) CHECK(slope[a] - theta[a] == Approx(strain_before[a]).margin(1e-13));
+      strain_before[a] = slope[a] - theta[a];
+    }
+  }
+}
+
+TEST_CASE("K in shear is the integral of EI θ'θ' + kGA (w' − θ)²") {
+  const SceneSpec scene = deep_beam();
+  const BeamSpec& beam = std::get<BeamSpec>(scene.structure);
+  const FiniteElementSpace space = beam_space(beam, 6);
+  const UniformPart part = uniform_parts(beam).front();
+  CHECK(part.kGA == Approx(10 * 1.3 / (12 + 3.3) * 2e11 / 2.6 * 4).epsilon(1e-14));  // Cowper
+  Eigen::MatrixXd integrated = Eigen::MatrixXd::Zero(space.dofs, space.dofs);
+  for (const auto& element : space.elements)
+    for (const auto& [xi, weight] : gauss_points()) {
+      const auto bend = shape_strains(space.basis, element, xi), slope = shape_slopes(element, xi),
+                 theta = shape_rotations(element, xi);
+      for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b < 4; ++b)
+          if (element.dof[a] >= 0 && element.dof[b] >= 0)
+            integrated(element.dof[a], element.dof[b]) +=
+                element.length * weight *
+                (part.section.EI * bend[a] * bend[b] + part.kGA * (slope[a] - theta[a]) * (slope[b] - theta[b]));
+    }
+  const Eigen::MatrixXd K = beam_stiffness(beam, space);
+  // Sums of eight products: a few ulps of the largest entry.
+  CHECK((K - integrated).cwiseAbs().maxCoeff() <= 1e-13 * K.cwiseAbs().maxCoeff());
+}
+
+TEST_CASE("nodal values are exact in statics with shear: the middle of a pinned beam under a point force") {
+  SceneSpec scene = deep_beam();
+  scene.load.terms = {{.force = true, .at = 5.0, .shape = Formula(), .history = Formula(1e6)}};
+  const UniformPart part = uniform_parts(beam_of(scene)).front();
+  for (const int elements : {2, 8}) {
+    const SemiDiscrete problem = discretised(scene, elements, *mass("consistent"));
+    Eigen::VectorXd F(problem.dofs());
+    problem.load->assemble(0, F.data());
+    const double w = (displacement_rows(problem.space, {5}) * eigen::ldlt_solve(problem.stiffness, F))(0);
+    // PL³/48EI + PL/4kGA.
+    CHECK(w == Approx(1e6 * 1000 / (48 * part.section.EI) + 1e6 * 10 / (4 * part.kGA)).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("a deep pinned beam: 42.645, 148.149, 283.468 Hz (NAFEMS FV5: 42.650, 148.15, 283.47)") {
+  const Eigen::VectorXd found = pulsations(deep_beam(), 40) / (2 * std::numbers::pi);
+  const std::vector<double> hertz = {42.645, 148.149, 283.468};
+  for (std::size_t i = 0; i < hertz.size(); ++i)
+    CHECK(found[static_cast<Eigen::Index>(i)] == Approx(hertz[i]).epsilon(3e-4));
+}
+
+TEST_CASE("shear of a slender beam vanishes with its slenderness, and a stiff factor is none") {
+  SceneSpec scene = deep_beam();
+  BeamSpec& beam = beam_of(scene);
+  beam.shear->rotary = false;
+  beam.shear->factor = 1e9;
+  const double stiff = pulsations(scene, 20)[0];
+  beam.shear = std::nullopt;
+  CHECK(stiff == Approx(pulsations(scene, 20)[0]).epsilon(1e-8));
+}
+
+TEST_CASE("static modes in shear sum to the translation; sections given by numbers have no area") {
+  SceneSpec scene = deep_beam();
+  beam_of(scene).supports = {clamped("a", 0), pinned("b", 4), elastic("c", 10, 1e8)};
+  const SemiDiscrete problem = discretised(scene, 20, *mass("consistent"));
+  CHECK((problem.support_loads.rowwise().sum() - problem.support_shape).norm() <= 1e-9 * problem.support_shape.norm());
+  beam_of(scene).section = {.type = Section::Type::given, .EI = 1, .rhoS = 1};
+  CHECK(input_error([&] { check_scene(scene, 4); }).find("has no area for shear") != std::string::npos);
+  beam_of(scene).shear->poisson = 0.7;
+  CHECK(input_error([&] { check_scene(scene, 4); }).starts_with("/scene/structure/shear/poisson"));
+}
