@@ -20,6 +20,14 @@ std::vector<Json> objects_at(const SceneValues& scene, const std::string& pointe
   return found && found->is_array() ? found->get<std::vector<Json>>() : std::vector<Json>();
 }
 
+/// The number there, the first of a list; 0 where there is none.
+double number_of(const Json& object, const std::string& key) {
+  const auto found = object.find(key);
+  if (found == object.end()) return 0;
+  const Json& value = found->is_array() && !found->empty() ? found->front() : *found;
+  return value.is_number() ? value.get<double>() : 0;
+}
+
 std::string ground_mark(double x, double y) {
   std::string hatch;
   for (double u = -10; u <= 10; u += 5) hatch += fmt::format("M{:.1f} {:.1f}l-4 5", x + u, y);
@@ -62,14 +70,14 @@ std::string mark_of(const Json& support, double x, double y, double side) {
   if (type == "clamped") return clamp_mark(x, y, side);
   if (type == "pinned") return pin_mark(x, y);
   if (type == "sliding") return slide_mark(x, y, side);
-  return spring_mark(x, y, support.value("stiffness", 0.0) > 0, support.value("rotation", 0.0) > 0);
+  return spring_mark(x, y, number_of(support, "stiffness") > 0, number_of(support, "rotation") > 0);
 }
 
 std::string mark_words(const Json& support) {
   std::string text = fmt::format("{} {} at {} m", support.value("name", ""), support.value("type", ""),
-                                 number_text(support.value("x", 0.0), shown_digits));
+                                 number_text(number_of(support, "x"), shown_digits));
   for (const auto& [key, unit] : {std::pair("stiffness", "N/m"), {"rotation", "N m/rad"}})
-    if (const double value = support.value(key, 0.0); value > 0)
+    if (const double value = number_of(support, key); value > 0)
       text += fmt::format(", {} {}", number_text(value, shown_digits), unit);
   return text;
 }
@@ -87,16 +95,20 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
   out.given = scene.at("/scene/structure/supports") != nullptr;
   std::vector<double> places = {0, length};
   for (const Json& support : supports) {
-    const double place = support.value("x", 0.0), x = x_of(place);
+    const double place = number_of(support, "x"), x = x_of(place);
     const double side = place <= 0 ? -1 : place >= length ? 1 : 0;
     out.svg += mark_of(support, x, frame.rest, side);
-    if (supports.size() <= most_named) out.svg += label(x, frame.rest - 36, support.value("name", ""));
+    const bool spring = number_of(support, "stiffness") > 0;
+    if (supports.size() <= most_named)
+      out.svg += spring     ? label(x + 12, frame.rest + 34, support.value("name", ""), "start")
+                 : side < 0 ? label(x + 4, frame.rest + 44, support.value("name", ""), "start")
+                            : label(x, frame.rest + 44, support.value("name", ""));
     places.push_back(place);
   }
   for (const Json& mass : objects_at(scene, "/scene/structure/masses")) {
-    const double x = x_of(mass.value("x", 0.0));
+    const double x = x_of(number_of(mass, "x"));
     out.masses += fmt::format("<circle class=\"body\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/>", x, frame.rest) +
-                  label(x, frame.rest - 14, number_text(mass.value("mass", 0.0), shown_digits) + " kg");
+                  label(x, frame.rest - 14, number_text(number_of(mass, "mass"), shown_digits) + " kg");
   }
   if (const auto tension = scene.number("/scene/structure/tension"); tension && *tension != 0) {
     const double near = frame.left + frame.span + 8, far = near + 34;
@@ -109,8 +121,9 @@ HeldBeam held_beam(const SceneValues& scene, double length, const BeamFrame& fra
   if (!out.measured) return out;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const double from = x_of(places[i]), to = x_of(places[i + 1]);
-    out.spans += line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
-                 label((from + to) / 2, frame.measure - 4, number_text(places[i + 1] - places[i], shown_digits) + " m");
+    out.spans +=
+        line(to, frame.measure - 5, to, frame.measure + 5, "measure") +
+        label((from + to) / 2, frame.measure + 12, number_text(places[i + 1] - places[i], shown_digits) + " m");
   }
   return out;
 }
@@ -120,10 +133,10 @@ std::vector<std::pair<std::string, std::string>> held_beam_words(const SceneValu
   for (const Json& support : objects_at(scene, "/scene/structure/supports")) supports.push_back(mark_words(support));
   for (const Json& part : objects_at(scene, "/scene/structure/sections"))
     sections.push_back(fmt::format("{} to {} m", part.contains("section") ? part["section"].value("type", "") : "",
-                                   number_text(part.value("to", 0.0), shown_digits)));
+                                   number_text(number_of(part, "to"), shown_digits)));
   for (const Json& mass : objects_at(scene, "/scene/structure/masses"))
-    masses.push_back(fmt::format("{} kg at {} m", number_text(mass.value("mass", 0.0), shown_digits),
-                                 number_text(mass.value("x", 0.0), shown_digits)));
+    masses.push_back(fmt::format("{} kg at {} m", number_text(number_of(mass, "mass"), shown_digits),
+                                 number_text(number_of(mass, "x"), shown_digits)));
   return {{"supports", semicolon_list(supports)},
           {"sections", semicolon_list(sections)},
           {"masses", semicolon_list(masses)}};

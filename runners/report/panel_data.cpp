@@ -184,8 +184,10 @@ PageJson snapshot_data(const CaseView& view, CurveData& blocks) {
   const PageJson::json_pointer supports("/scene/structure/supports");
   if (view.results().study.contains(supports)) {
     out["supports"] = PageJson::array();
-    for (const auto& one : view.results().study.at(supports))
-      out["supports"].push_back({{"x", one.value("x", 0.0)}, {"type", one.value("type", "")}});
+    for (const auto& one : view.results().study.at(supports)) {
+      const auto& x = one.at("x");
+      out["supports"].push_back({{"x", x.is_array() ? x.front() : x}, {"type", one.at("type")}});
+    }
   }
   return out;
 }

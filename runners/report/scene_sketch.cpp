@@ -65,6 +65,18 @@ bool loaded(const SceneValues& scene) {
                                       : !load->empty());
 }
 
+/// Where forces at points push, of a load that is made of these alone.
+std::vector<double> point_forces(const SceneValues& scene) {
+  std::vector<double> places;
+  const auto* load = scene.at("/scene/load");
+  if (!load || !load->is_array()) return places;
+  for (const auto& term : *load) {
+    if (!term.is_object() || !term.contains("force") || !term.contains("at") || !term["at"].is_number()) return {};
+    places.push_back(term["at"].get<double>());
+  }
+  return places;
+}
+
 std::string beam(const SceneValues& scene) {
   const double length = scene.number("/scene/structure/length").value_or(1);
   const auto x_of = [&](double x) { return sketch_left + sketch_span * std::clamp(x / length, 0.0, 1.0); };
@@ -74,7 +86,10 @@ std::string beam(const SceneValues& scene) {
   if (const std::string shaken = support_words(scene); !shaken.empty())
     out += arrow(sketch_left - 24, sketch_rest - 24, sketch_left - 24, sketch_rest + 24, true) +
            label(sketch_left - 24, sketch_rest + 48, shaken);
-  if (loaded(scene)) {
+  const std::vector<double> forces = point_forces(scene);
+  for (const double x : forces)
+    out += arrow(x_of(x), sketch_rest - 34, x_of(x), sketch_rest - 6) + label(x_of(x), sketch_rest - 38, "F(t)");
+  if (loaded(scene) && forces.empty()) {
     for (int k = 1; k <= 6; ++k)
       out += arrow(sketch_left + sketch_span * k / 7.0, sketch_rest - 30, sketch_left + sketch_span * k / 7.0,
                    sketch_rest - 8);

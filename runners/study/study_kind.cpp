@@ -50,14 +50,14 @@ ObjectForm section() {
 ObjectForm beam_support() {
   ObjectForm keys;
   keys.fields = {of_form(Field::Form::text, "name", std::nullopt, "Its name, for motions and tables."),
-                 single(real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L.")),
+                 real("x", "m", non_negative, std::nullopt, "Where it holds the beam, 0 to L."),
                  word("type", {"clamped", "pinned", "sliding", "elastic"}, std::nullopt,
                       "What it holds: w and w', w, w', or the ground end of springs.")};
   keys.discriminator = "/type";
   keys.variants = {{{"clamped", "pinned", "sliding"}, {}},
                    {{"elastic"},
-                    {{single(real("stiffness", "N/m", non_negative, 0.0, "Spring against w.")),
-                      single(real("rotation", "N m/rad", non_negative, 0.0, "Spring against w'."))},
+                    {{real("stiffness", "N/m", non_negative, 0.0, "Spring against w."),
+                      real("rotation", "N m/rad", non_negative, 0.0, "Spring against w'.")},
                      "",
                      {}}}};
   return keys;
@@ -65,12 +65,12 @@ ObjectForm beam_support() {
 
 ObjectForm beam_part() {
   ObjectForm keys;
-  keys.fields = {single(real("to", "m", positive, std::nullopt, "Where it ends; it begins where the one before ends.")),
+  keys.fields = {real("to", "m", positive, std::nullopt, "Where it ends; it begins where the one before ends."),
                  object("section", std::nullopt, "Its cross-section.", section())};
   keys.discriminator = "/section/type";
   keys.variants = {{{"tube", "circle", "rectangle"},
-                    {{single(real("young", "Pa", positive, std::nullopt, "Young's modulus E.")),
-                      single(real("density", "kg/m³", positive, std::nullopt, "Density ρ."))},
+                    {{real("young", "Pa", positive, std::nullopt, "Young's modulus E."),
+                      real("density", "kg/m³", positive, std::nullopt, "Density ρ.")},
                      "",
                      {}}},
                    {{"given"}, {}}};
@@ -79,9 +79,9 @@ ObjectForm beam_part() {
 
 ObjectForm beam_mass() {
   ObjectForm keys;
-  keys.fields = {single(real("x", "m", non_negative, std::nullopt, "Where it sits, 0 to L.")),
-                 single(real("mass", "kg", non_negative, 0.0, "Its mass.")),
-                 single(real("inertia", "kg m²", non_negative, 0.0, "Its inertia against rotation."))};
+  keys.fields = {real("x", "m", non_negative, std::nullopt, "Where it sits, 0 to L."),
+                 real("mass", "kg", non_negative, 0.0, "Its mass."),
+                 real("inertia", "kg m²", non_negative, 0.0, "Its inertia against rotation.")};
   return keys;
 }
 
@@ -159,9 +159,9 @@ ObjectForm scene() {
   stops.fields.back().axis = true;
 
   ObjectForm support;
-  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of that motion."),
-                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of that motion."),
-                    real("phase", "rad", any, 0.0, "ψ of that motion.")};
+  support.fields = {real("amplitude", "m", any, std::nullopt, "A0 of the motion of the supports."),
+                    real("pulsation", "rad/s", non_negative, std::nullopt, "ω of the motion of the supports."),
+                    real("phase", "rad", any, 0.0, "ψ of the motion of the supports.")};
 
   ObjectForm initial;
   initial.fields = {

@@ -259,7 +259,10 @@ class SchemaWriter {
     }
     for (const Field& field : study_form().fields)
       if (field.key() == "scene") scene_axes(field.nested.front(), "", properties);
-    const Json entry = {{"type", "object"},   {"additionalProperties", false}, {"patternProperties", remarks()},
+    // Numbers of objects in lists: "structure.supports.1.stiffness".
+    Json patterns = remarks();
+    patterns["^structure[.][a-z]+[.][0-9]+[.]"] = true;
+    const Json entry = {{"type", "object"},   {"additionalProperties", false}, {"patternProperties", patterns},
                         {"minProperties", 2}, {"properties", properties},      {"required", {"why"}}};
     return {{"type", "array"}, {"items", entry}};
   }

@@ -1,5 +1,6 @@
 // Keys of a beam with supports, sections and masses of its own.
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "tests/runners/study/study_fixture.hpp"
 
@@ -84,4 +85,12 @@ TEST_CASE("numbers of a beam are axes as others are") {
   const Study study = parse(changed("/scene/structure/tension", {0, 10}));
   CHECK(study.cases.size() == 2 * parse(held_study()).cases.size());
   CHECK(std::count(study.columns.begin(), study.columns.end(), "structure.tension") == 1);
+  const Study stiffer = parse(changed("/scene/structure/supports/1/stiffness", {1e4, 1e5}));
+  CHECK(std::count(stiffer.columns.begin(), stiffer.columns.end(), "structure.supports.1.stiffness") == 1);
+  std::set<double> values;
+  for (const StudyCase& one : stiffer.cases)
+    values.insert(std::get<BeamSpec>(one.scene.structure).supports->back().stiffness);
+  CHECK(values == std::set<double>{1e4, 1e5});
+  CHECK_THAT(refusal(changed("/scene/structure/supports/1/x", {1.2, 1.7})),
+             Contains("/scene/structure/supports/1/x/1: 1.7 m; expected 0 to L = 1.5"));
 }
