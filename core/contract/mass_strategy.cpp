@@ -91,15 +91,6 @@ SparseMatrix consistent_mass(const FiniteElementSpace& space) {
   return mass;
 }
 
-std::optional<Refusal> refuse_rotary_inertia(const FiniteElementSpace& space) {
-  for (const auto& element : space.elements)
-    if (element.rotary != 0)
-      return Refusal{
-          "rotary inertia gives every rotation a mass, so that no motion without inertia is left for the stops: drop "
-          "shear.rotary, or use the mass redistributed"};
-  return std::nullopt;
-}
-
 int semidefinite_rank(const SparseMatrix& A) {
   constexpr double zero = 1e-11;
   Eigen::VectorXd scales = A.diagonal();

@@ -1,7 +1,6 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
-#include <optional>
 #include <ricochet/contract/errors.hpp>
 #include <string>
 #include <variant>
@@ -101,9 +100,6 @@ class MassStrategy {
 
 /// M_ij = ∫ρS φ_i φ_j + ρI θ_i θ_j dx: the consistent matrix of the space, point masses included.
 SparseMatrix consistent_mass(const FiniteElementSpace& space);
-
-/// What a mass without inertia of rotations says of rotary inertia; nothing where there is none.
-std::optional<Refusal> refuse_rotary_inertia(const FiniteElementSpace& space);
 
 /// Rank of a symmetric positive semidefinite A (n × n), rows and columns scaled by D = diag(A)^{-1/2} first so that no
 /// unit matters: how many eigenvalues of D A D are above 1e-11. By Sylvester's law of inertia these are the positive

@@ -1,4 +1,5 @@
 #include "lumped_diagonal.hpp"
+#include "rotary_inertia.hpp"
 
 namespace {
 

@@ -1,6 +1,8 @@
 #include <ricochet/contract/mass_strategy.hpp>
 #include <ricochet/contract/plugin.hpp>
 
+#include "rotary_inertia.hpp"
+
 namespace {
 
 using namespace ricochet;

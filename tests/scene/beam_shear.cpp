@@ -113,6 +113,18 @@ TEST_CASE("a deep pinned beam: the roots of Timoshenko's frequency equation, wit
   CHECK(fine[2] == Approx(283.468).epsilon(3e-4));
 }
 
+TEST_CASE("a uniform load on a deep beam: 5qL⁴/384EI + qL²/8kGA, 0.5361 mm in NAFEMS 5T") {
+  SceneSpec scene = deep_beam();
+  scene.load = Formula(1e6);
+  const SemiDiscrete problem = discretised(scene, 4, *mass("consistent"));
+  Eigen::VectorXd F(problem.dofs());
+  problem.load->assemble(0, F.data());
+  const double w = (displacement_rows(problem.space, {5}) * eigen::ldlt_solve(problem.stiffness, F))(0);
+  const UniformPart part = uniform_parts(beam_of(scene)).front();
+  CHECK(w == Approx(5e10 / (384 * part.section.EI) + 1e8 / (8 * part.kGA)).epsilon(1e-11));
+  CHECK(w == Approx(0.5361e-3).epsilon(1e-4));
+}
+
 TEST_CASE("shear of a slender beam vanishes with its slenderness, and a stiff factor is none") {
   SceneSpec scene = deep_beam();
   BeamSpec& beam = beam_of(scene);
