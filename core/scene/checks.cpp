@@ -215,11 +215,15 @@ std::vector<HeldPlace> held_places(const SceneSpec& scene) {
 }
 
 bool displacement_held(const SceneSpec& scene, double x) {
-  const double rounding = one_place * structure_length(scene);
+  if (const auto* bar = std::get_if<BarSpec>(&scene.structure))
+    return (bar->fixed == BarSpec::Fixed::left && x == 0) || (bar->fixed == BarSpec::Fixed::right && x == bar->length);
   const auto* beam = std::get_if<BeamSpec>(&scene.structure);
-  for (const HeldPlace& place : held_places(scene))
-    if (place.displacement && (beam && beam->supports ? std::abs(place.x - x) <= rounding : place.x == x)) return true;
-  return false;
+  if (!beam) return false;
+  if (!beam->supports) return x == 0;
+  const double rounding = one_place * beam->length;
+  return std::any_of(beam->supports->begin(), beam->supports->end(), [&](const BeamSupport& support) {
+    return support.holds_displacement() && std::abs(support.x - x) <= rounding;
+  });
 }
 
 double tip_position(const SceneSpec& scene) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ricochet/scene/scene.hpp>
 
 #include "runners/report/html.hpp"
@@ -112,6 +113,12 @@ std::vector<SceneValues::Stop> SceneValues::stops(double length) const {
     const std::size_t shown = std::min(elements, most_stops);
     for (std::size_t k = 1; k <= shown; ++k)
       places.push_back(length * static_cast<double>(k) / static_cast<double>(shown));
+    // Nothing touches where the beam is held.
+    if (const SceneJson* supports = at("/scene/structure/supports"); supports && supports->is_array())
+      for (const SceneJson& one : *supports)
+        if (const auto x = one.contains("x") ? first_number(&one["x"]) : std::nullopt;
+            x && (one.value("type", "") == "clamped" || one.value("type", "") == "pinned"))
+          std::erase_if(places, [&](double place) { return std::abs(place - *x) <= 1e-9 * length; });
   }
   if (places.size() > most_stops) places.resize(most_stops);
   std::vector<Stop> out;

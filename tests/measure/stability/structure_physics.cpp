@@ -44,6 +44,34 @@ TEST_CASE("physics: the frequencies of a cantilever are β²√(EI/ρSL⁴), wha
   }
 }
 
+TEST_CASE("physics: a beam on supports of its own says what holds it, its mesh and its held dofs") {
+  BeamSpec beam;
+  beam.length = 3;
+  beam.section = {.type = Section::Type::given, .EI = 1, .rhoS = 1};
+  beam.supports.emplace();
+  for (const double x : {0.0, 1.0})
+    beam.supports->push_back({.name = x == 0 ? "a" : "b", .x = x, .type = BeamSupport::Type::pinned});
+  beam.supports->push_back({.name = "c", .x = 3, .type = BeamSupport::Type::elastic, .stiffness = 1e3, .rotation = 5});
+  beam.masses = {{.x = 2, .mass = 0.5, .inertia = 0}};
+  SceneSpec scene;
+  scene.structure = beam;
+  CHECK(physics_of(scene, 12).details ==
+        std::vector<std::string>{"supports: a pinned at 0 m, b pinned at 1 m, c elastic at 3 m (1000 N/m, 5 N m/rad)",
+                                 "at 2 m: mass 0.5 kg, inertia 0 kg m²",
+                                 "elements: 4 from 0 to 1 m, 4 from 1 to 2 m, 4 from 2 to 3 m", "dofs: 24, held 2"});
+  // Held nowhere, it translates and turns.
+  beam.supports->clear();
+  beam.masses.clear();
+  scene.structure = beam;
+  const StructurePhysics free = physics_of(scene, 12);
+  CHECK(free.details.front() == "supports: none; 2 rigid motions");
+  CHECK(free.pulsations[1] == 0);
+  CHECK(free.pulsations[2] == Approx(std::pow(4.730040745 / 3, 2)).epsilon(1e-4));  // (kℓ)⁴/1440 of 12 elements
+  beam.supports.reset();
+  scene.structure = beam;
+  CHECK(physics_of(scene, 12).details.empty());
+}
+
 TEST_CASE("physics: a step resolves the modes that have so many steps in their period") {
   SceneSpec scene;
   scene.structure = BarSpec{};  // ω_i = (i − ½)π
