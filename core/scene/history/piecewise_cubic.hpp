@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+/// \file
+/// Quantities given at instants: how they go on between these and beyond them.
+namespace ricochet {
+
+/// A quantity at increasing instants: t (s) and its values.
+struct TimeTable {
+  enum class Between { linear, cubic, step };
+  enum class Beyond { zero, hold, error };
+
+  std::string name;  ///< for messages: "ground.csv"
+  std::vector<double> times, values;
+  Between between = Between::linear;
+  /// Before the first and after the last instant. `error` holds the value: whoever integrates asks covers() first.
+  Beyond before = Beyond::error, after = Beyond::error;
+
+  /// Whether the quantity is given from t = `from` to `to`; up to a rounding of `slack`.
+  bool covers(double from, double to, double slack) const {
+    return (before != Beyond::error || times.front() <= from + slack) &&
+           (after != Beyond::error || to <= times.back() + slack);
+  }
+  /// Throws InputError at `pointer` unless there are two instants or more, all increasing, and all numbers finite.
+  void check(const std::string& pointer) const;
+};
+
+/// A function of t in pieces, each a polynomial of degree 3: f(t) = Σ_k c_k (t − t_i)^k from t_i to t_{i+1}. The first
+/// piece reaches to −∞, the last to +∞. At an instant t_i the piece behind it holds. Any number of threads may ask.
+class PiecewiseCubic {
+ public:
+  using Piece = std::array<double, 4>;
+
+  /// The values of a table: straight between instants, a natural cubic spline (f'' = 0 at both ends), or each value
+  /// until the next instant.
+  static PiecewiseCubic interpolate(const TimeTable& table);
+  /// The motion whose acceleration is that of a table, straight between instants: f'' is exact, f and f' are its exact
+  /// integrals with f(0) and f'(0) as given (m, m/s).
+  static PiecewiseCubic integrate_twice(const TimeTable& acceleration, double position, double velocity);
+
+  PiecewiseCubic(std::vector<double> starts, std::vector<Piece> pieces);
+  PiecewiseCubic(const PiecewiseCubic& other);
+  PiecewiseCubic& operator=(const PiecewiseCubic&) = delete;
+
+  double value(double t) const;
+  double rate(double t) const;
+  double acceleration(double t) const;
+
+ private:
+  std::size_t piece(double t) const;
+
+  std::vector<double> starts_;
+  std::vector<Piece> pieces_;
+  mutable std::atomic<std::size_t> near_{0};  ///< the piece asked for last
+};
+
+}  // namespace ricochet

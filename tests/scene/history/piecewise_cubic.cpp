@@ -1,0 +1,108 @@
+// Tables between their entries and beyond them, and motions integrated from accelerations.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <ricochet/contract/errors.hpp>
+#include <ricochet/scene/history/piecewise_cubic.hpp>
+
+using namespace ricochet;
+using Catch::Matchers::WithinAbs;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TimeTable triangle() {
+  TimeTable table;
+  table.name = "a.csv";
+  table.times = {0, 0.025, 0.05};
+  table.values = {0, 9.81, 0};
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("a table goes straight between entries, in steps, or as a spline") {
+  TimeTable table = triangle();
+  const PiecewiseCubic straight = PiecewiseCubic::interpolate(table);
+  CHECK_THAT(straight.value(0.0125), WithinAbs(9.81 / 2, 1e-14));
+  CHECK(straight.value(0.025) == 9.81);
+  CHECK_THAT(straight.rate(0.03), WithinAbs(-9.81 / 0.025, 1e-10));
+  table.between = TimeTable::Between::step;
+  const PiecewiseCubic steps = PiecewiseCubic::interpolate(table);
+  CHECK(steps.value(0.02499) == 0);
+  CHECK(steps.value(0.025) == 9.81);
+  CHECK(steps.value(0.0499) == 9.81);
+}
+
+TEST_CASE("a natural spline is off by 5/384 h⁴ max f'''' of a function without curvature at its ends") {
+  TimeTable table;
+  constexpr int pieces = 40;
+  for (int i = 0; i <= pieces; ++i) {
+    table.times.push_back(2 * pi * i / pieces);
+    table.values.push_back(std::sin(table.times.back()));
+  }
+  table.between = TimeTable::Between::cubic;
+  const PiecewiseCubic spline = PiecewiseCubic::interpolate(table);
+  const double h = 2 * pi / pieces;
+  for (double t = 0; t <= 2 * pi; t += 0.01) {
+    CHECK_THAT(spline.value(t), WithinAbs(std::sin(t), 5.0 / 384 * std::pow(h, 4) * 1.01));
+    CHECK_THAT(spline.rate(t), WithinAbs(std::cos(t), std::pow(h, 3) / 24 * 1.01));
+    CHECK_THAT(spline.acceleration(t), WithinAbs(-std::sin(t), 3.0 / 8 * h * h));
+  }
+}
+
+TEST_CASE("beyond its ends a table is zero or holds, as it says") {
+  TimeTable table = triangle();
+  table.times = {1, 2, 3};
+  table.values = {4, 5, 6};
+  using Beyond = TimeTable::Beyond;
+  table.before = Beyond::zero;
+  table.after = Beyond::hold;
+  const PiecewiseCubic held = PiecewiseCubic::interpolate(table);
+  CHECK(held.value(0.9) == 0);
+  CHECK(held.value(3.5) == 6);
+  CHECK(held.value(1e6) == 6);
+  CHECK_FALSE(triangle().covers(0, 0.06, 1e-9));
+  CHECK(triangle().covers(0, 0.05, 1e-9));
+  CHECK(table.covers(0, 100, 0));
+}
+
+TEST_CASE("an acceleration in straight pieces is integrated exactly, from any state at t = 0") {
+  TimeTable table = triangle();
+  table.after = TimeTable::Beyond::zero;
+  const PiecewiseCubic motion = PiecewiseCubic::integrate_twice(table, 0.5, -2);
+  const double slope = 9.81 / 0.025;
+  CHECK_THAT(motion.value(0), WithinAbs(0.5, 1e-15));
+  CHECK_THAT(motion.rate(0), WithinAbs(-2, 1e-15));
+  for (const double t : {0.004, 0.02, 0.025}) {
+    CHECK_THAT(motion.acceleration(t), WithinAbs(t < 0.025 ? slope * t : 9.81, 1e-12));
+    CHECK_THAT(motion.rate(t), WithinAbs(-2 + slope * t * t / 2, 1e-13));
+    CHECK_THAT(motion.value(t), WithinAbs(0.5 - 2 * t + slope * t * t * t / 6, 1e-14));
+  }
+  // The pulse leaves the velocity of its area, and moves on.
+  const double area = 9.81 * 0.025;
+  CHECK_THAT(motion.rate(1), WithinAbs(-2 + area, 1e-13));
+  CHECK_THAT(motion.value(1) - motion.value(0.5), WithinAbs(0.5 * (-2 + area), 1e-13));
+  CHECK(motion.acceleration(1) == 0);
+}
+
+TEST_CASE("a table that begins before t = 0 has the asked state at t = 0") {
+  TimeTable table;
+  table.times = {-1, 1};
+  table.values = {3, 3};
+  const PiecewiseCubic motion = PiecewiseCubic::integrate_twice(table, 2, 1);
+  for (const double t : {-0.5, 0.0, 0.7}) CHECK_THAT(motion.value(t), WithinAbs(2 + t + 1.5 * t * t, 1e-14));
+}
+
+TEST_CASE("tables that are none are refused") {
+  TimeTable table = triangle();
+  table.times[2] = 0.02;
+  CHECK_THROWS_WITH(table.check("/scene/load/0/force"), Catch::Contains("times must increase"));
+  table.times = {0};
+  table.values = {1};
+  CHECK_THROWS_WITH(table.check(""), Catch::Contains("one entry; expected two"));
+  table = triangle();
+  table.values[1] = std::nan("");
+  CHECK_THROWS_WITH(table.check(""), Catch::Contains("entry 2"));
+}
